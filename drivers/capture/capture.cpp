@@ -1,0 +1,209 @@
+#include "drivers/capture/capture.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "drivers/capture/text_file.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& what) {
+  throw std::runtime_error(path + ":" + std::to_string(line) + ": " + what);
+}
+
+std::string_view trimmed(std::string_view cell) {
+  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
+  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r')) cell.remove_suffix(1);
+  return cell;
+}
+
+// Hands out one line at a time, without its end.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    ++number_;
+    return true;
+  }
+  [[nodiscard]] std::size_t number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+std::vector<std::string> split_header(std::string_view line) {
+  std::vector<std::string> names;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    names.emplace_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return names;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+// The axis of a rate column: "rate_radps" is "", "rate_x_radps" is "x". False: not such a column.
+bool axis_of(const std::string& name, std::string_view prefix, std::string& axis) {
+  constexpr std::string_view kUnit = "_radps";
+  if (!name.starts_with(prefix) || !name.ends_with(kUnit)) return false;
+  if (name.size() == prefix.size() + kUnit.size()) {
+    axis.clear();
+    return true;
+  }
+  if (name.size() < prefix.size() + kUnit.size() + 2 || name[prefix.size()] != '_') return false;
+  axis = name.substr(prefix.size() + 1, name.size() - prefix.size() - kUnit.size() - 1);
+  return axis.find('_') == std::string::npos;  // rate_ramp_x_radps is somebody's channel, not an axis
+}
+
+double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell) {
+  cell = trimmed(cell);
+  if (cell.empty()) return kMissing;
+  std::string_view digits = cell;
+  if (digits.front() == '+') digits.remove_prefix(1);  // from_chars takes no plus sign
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range)
+    fail(path, line, column + " is '" + std::string(cell) + "', outside what a double holds");
+  if (error != std::errc() || end != digits.data() + digits.size())
+    fail(path, line, column + " is '" + std::string(cell) + "', expected a number, 'nan' or nothing");
+  if (std::isinf(value)) fail(path, line, column + " is infinite, expected a finite number, 'nan' or nothing");
+  return value;
+}
+
+void append(std::string& out, double value) {
+  if (std::isnan(value)) {
+    out += "nan";
+    return;
+  }
+  std::array<char, 40> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  (void)error;  // 40 characters hold any double
+  out.append(text.data(), end);
+}
+
+}  // namespace
+
+Capture read_capture(const std::string& path) {
+  const std::string text = read_text_file(path);
+  Capture capture;
+  Lines lines(text);
+  std::string_view line;
+  std::vector<std::string> names;
+  while (lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    if (line.front() == '#') {
+      capture.comments.emplace_back(trimmed(line.substr(1)));
+      continue;
+    }
+    names = split_header(line);
+    break;
+  }
+  if (names.empty()) throw std::runtime_error(path + ": no header line, expected 'time_s,rate_radps,…'");
+  if (names.front() != "time_s")
+    fail(path, lines.number(), "first column is '" + names.front() + "', expected 'time_s'");
+
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.empty()) fail(path, lines.number(), "a column has no name");
+    if (!seen.insert(name).second) fail(path, lines.number(), "column '" + name + "' stands twice");
+  }
+
+  // Where each column's values go; the vectors below must not move any more once their addresses are taken.
+  std::vector<std::vector<double>*> target(names.size());
+  target[0] = &capture.time_s;
+  std::string axis;
+  for (const std::string& name : names)
+    if (axis_of(name, "rate", axis)) capture.axes.push_back(axis);
+  if (capture.axes.empty())
+    fail(path, lines.number(), "no rate column, expected 'rate_radps' or 'rate_x_radps', …");
+  capture.rate_radps.resize(capture.axes.size());
+  capture.reference_rate_radps.resize(capture.axes.size());
+  const auto index_of = [&](const std::string& name) {
+    for (std::size_t i = 0; i < capture.axes.size(); ++i)
+      if (capture.axes[i] == name) return i;
+    fail(path, lines.number(), "reference column of axis '" + name + "' has no rate column beside it");
+  };
+  capture.channels.reserve(names.size());
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (axis_of(names[i], "rate", axis)) {
+      target[i] = &capture.rate_radps[index_of(axis)];
+    } else if (axis_of(names[i], "reference_rate", axis)) {
+      target[i] = &capture.reference_rate_radps[index_of(axis)];
+    } else {
+      capture.channels.push_back({names[i], {}});
+      target[i] = &capture.channels.back().values;
+    }
+  }
+
+  while (lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    if (line.front() == '#') {
+      capture.comments.emplace_back(trimmed(line.substr(1)));
+      continue;
+    }
+    std::size_t column = 0;
+    std::string_view rest = line;
+    for (;;) {
+      const std::size_t comma = rest.find(',');
+      if (column == names.size())
+        fail(path, lines.number(), "more cells than the " + std::to_string(names.size()) + " columns of the header");
+      target[column]->push_back(number(path, lines.number(), names[column], rest.substr(0, comma)));
+      ++column;
+      if (comma == std::string_view::npos) break;
+      rest.remove_prefix(comma + 1);
+    }
+    if (column != names.size())
+      fail(path, lines.number(), std::to_string(column) + " cells, expected " + std::to_string(names.size()) +
+                                     " (a truncated line?)");
+    const double now = capture.time_s.back();
+    if (std::isnan(now)) fail(path, lines.number(), "time_s is missing, expected seconds");
+    if (capture.time_s.size() > 1 && now <= capture.time_s[capture.time_s.size() - 2])
+      fail(path, lines.number(), "time_s is " + std::string(trimmed(line.substr(0, line.find(',')))) +
+                                     ", expected more than in the row before");
+  }
+  if (capture.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
+  return capture;
+}
+
+void write_capture(const Capture& capture, const std::string& path) {
+  std::vector<std::pair<std::string, const std::vector<double>*>> columns;
+  columns.emplace_back("time_s", &capture.time_s);
+  const auto named = [](const std::string& prefix, const std::string& axis) {
+    return axis.empty() ? prefix + "_radps" : prefix + "_" + axis + "_radps";
+  };
+  for (std::size_t i = 0; i < capture.axes.size(); ++i)
+    columns.emplace_back(named("rate", capture.axes[i]), &capture.rate_radps[i]);
+  for (std::size_t i = 0; i < capture.reference_rate_radps.size(); ++i)
+    if (!capture.reference_rate_radps[i].empty())
+      columns.emplace_back(named("reference_rate", capture.axes[i]), &capture.reference_rate_radps[i]);
+  for (const CaptureColumn& channel : capture.channels) columns.emplace_back(channel.name, &channel.values);
+
+  std::string out;
+  out.reserve(capture.size() * columns.size() * 16 + 256);
+  for (const std::string& comment : capture.comments) out += "# " + comment + "\n";
+  for (std::size_t c = 0; c < columns.size(); ++c) out += (c == 0 ? "" : ",") + columns[c].first;
+  out += '\n';
+  for (std::size_t row = 0; row < capture.size(); ++row) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c != 0) out += ',';
+      append(out, (*columns[c].second)[row]);
+    }
+    out += '\n';
+  }
+  write_text_file(path, out);
+}
+
+}  // namespace ifog

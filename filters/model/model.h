@@ -1,0 +1,71 @@
+// The model of one sensor: its noise, its filter, its effects, the range they were fitted on, and where all that came
+// from. Written by `ifog tune` and `ifog diagnose`, read by ifogd, `ifog denoise` and `ifog diagnose`.
+//
+// The file is TOML. Version rule: `version` is the first key; a reader accepts exactly the versions it knows and says
+// so otherwise. Unknown keys are errors.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/estimator/settings.h"
+
+namespace ifog {
+
+struct ModelParameter {
+  std::string name;  // "coefficient", "lag_s", "frequency_hz", "bandwidth_s", …
+  double value = 0.0;
+  double std_error = 0.0;
+  std::string unit;
+};
+
+// A form applied to a channel; for "product" also `with_form` of `with_channel`.
+struct Effect {
+  std::string form;
+  std::string channel;  // the capture's column name; "" for forms without one
+  std::string with_form, with_channel;
+  std::string axis;     // "" for a single-axis sensor
+  double reference = 0.0;  // the channel's value at which the effect is zero (25 degC, 12 V, 0 elsewhere)
+  std::vector<ModelParameter> parameters;
+  std::vector<double> table_x, table_y;  // "lookup": knots in the channel's unit, values in rad/s
+  double period = 0.0;                   // "lookup": > 0 when periodic
+  std::string meaning;
+};
+
+struct ChannelRange {
+  std::string channel;
+  double low = 0.0, high = 0.0;
+};
+
+// IEEE Std 952 coefficients, SI: Q rad, N rad/s/sqrt(Hz), B rad/s, K rad/s^2/sqrt(Hz), R rad/s^2; absent: not seen.
+struct NoiseTerms {
+  std::optional<double> Q, N, B, K, R;
+};
+
+struct ModelSource {
+  std::string capture, sha256, date;           // what it was fitted on
+  std::map<std::string, double> before, after;  // held-out figures of the diagnosis
+};
+
+struct Model {
+  static constexpr int kVersion = 1;
+  std::string sensor;
+  std::map<std::string, NoiseTerms> noise;  // by axis
+  std::optional<FilterSettings> filter;     // from `ifog tune`
+  std::vector<Effect> effects;
+  std::vector<double> covariance;  // of all effect parameters in order, row-major, SI; empty when unknown
+  std::vector<ChannelRange> ranges;
+  ModelSource source;
+
+  // Short and stable: the first 12 hex digits of the SHA-256 of the file's text as written.
+  [[nodiscard]] std::string identity() const;
+};
+
+// Both throw std::runtime_error with one line: file, line or key, value, what was expected.
+// write_model writes to a temporary file, fsyncs and renames.
+Model read_model(const std::string& path);
+void write_model(const Model& model, const std::string& path);
+
+}  // namespace ifog

@@ -1,0 +1,95 @@
+#include "drivers/capture/capture.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "drivers/capture/text_file.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class CaptureFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ifog-capture-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& text) const {
+    std::ofstream(path("c.csv")) << text;
+    return path("c.csv");
+  }
+  // The message of the refusal, without the folder.
+  std::string refusal(const std::string& text) const {
+    try {
+      ifog::read_capture(file(text));
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what()).substr(folder_.string().size() + 1);
+    }
+    return "accepted";
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(CaptureFile, SortsColumnsByTheirNames) {
+  const ifog::Capture c = ifog::read_capture(
+      file("# a gyro\ntime_s,rate_x_radps,rate_y_radps,reference_rate_y_radps,temperature_degC\n"
+           "0,1e-3,2,3,25.5\n0.5,,nan,+4,\n"));
+  EXPECT_EQ(c.comments, std::vector<std::string>{"a gyro"});
+  EXPECT_EQ(c.axes, (std::vector<std::string>{"x", "y"}));
+  EXPECT_EQ(c.time_s, (std::vector<double>{0.0, 0.5}));
+  EXPECT_EQ(c.rate_radps[0][0], 1e-3);
+  EXPECT_TRUE(std::isnan(c.rate_radps[0][1]));
+  EXPECT_TRUE(std::isnan(c.rate_radps[1][1]));
+  EXPECT_TRUE(c.reference_rate_radps[0].empty());
+  EXPECT_EQ(c.reference_rate_radps[1], (std::vector<double>{3.0, 4.0}));
+  ASSERT_EQ(c.channels.size(), 1U);
+  EXPECT_EQ(c.channels[0].name, "temperature_degC");
+}
+
+TEST_F(CaptureFile, RefusesWithFileLineValueAndExpectation) {
+  EXPECT_EQ(refusal("rate_radps\n1\n"), "c.csv:1: first column is 'rate_radps', expected 'time_s'");
+  EXPECT_EQ(refusal("time_s,temperature_degC\n0,1\n"),
+            "c.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …");
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1,1x\n"),
+            "c.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n0.0,1\n"), "c.csv:3: time_s is 0.0, expected more than in the row before");
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1\n"), "c.csv:3: 1 cells, expected 2 (a truncated line?)");
+  EXPECT_EQ(refusal("time_s,rate_radps\n"), "c.csv: no rows after the header");
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,inf\n"),
+            "c.csv:2: rate_radps is infinite, expected a finite number, 'nan' or nothing");
+}
+
+TEST_F(CaptureFile, GzipReadsBackTheSameBitsAndATruncatedOneIsRefused) {
+  ifog::Capture c;
+  c.axes = {""};
+  c.rate_radps.resize(1);
+  c.reference_rate_radps.resize(1);
+  for (int i = 0; i < 5000; ++i) {
+    c.time_s.push_back(i / 3.0);
+    c.rate_radps[0].push_back(std::sin(i * 0.7) * 1e-5);
+  }
+  const std::string name = path("c.csv.gz");
+  ifog::write_capture(c, name);
+  const ifog::Capture back = ifog::read_capture(name);
+  EXPECT_EQ(back.time_s, c.time_s);
+  EXPECT_EQ(back.rate_radps, c.rate_radps);
+  fs::resize_file(name, fs::file_size(name) / 2);
+  try {
+    ifog::read_capture(name);
+    FAIL() << "a truncated file was accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("truncated"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace

@@ -1,0 +1,17 @@
+// The commands of `ifog`. Each lives in a file of its own and adds itself to the command line.
+#pragma once
+
+#include <stdexcept>
+
+namespace CLI {
+class App;
+}
+
+namespace ifog::tools {
+
+// What a command throws after it has told the user why: exit code 1, no further message.
+struct Failed : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace ifog::tools

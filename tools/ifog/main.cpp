@@ -1,0 +1,24 @@
+// ifog: the command line. Exit 0 good, 1 failed, 2 usage.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "tools/ifog/commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros", "ifog"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", IFOG_VERSION);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const ifog::tools::Failed&) {
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ifog: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
