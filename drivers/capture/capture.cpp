@@ -21,7 +21,8 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view trimmed(std::string_view cell) {
   while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r')) cell.remove_suffix(1);
+  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
+    cell.remove_suffix(1);
   return cell;
 }
 
@@ -79,7 +80,8 @@ double number(const std::string& path, std::size_t line, const std::string& colu
     fail(path, line, column + " is '" + std::string(cell) + "', outside what a double holds");
   if (error != std::errc() || end != digits.data() + digits.size())
     fail(path, line, column + " is '" + std::string(cell) + "', expected a number, 'nan' or nothing");
-  if (std::isinf(value)) fail(path, line, column + " is infinite, expected a finite number, 'nan' or nothing");
+  if (std::isinf(value))
+    fail(path, line, column + " is infinite, expected a finite number, 'nan' or nothing");
   return value;
 }
 
@@ -159,20 +161,23 @@ Capture read_capture(const std::string& path) {
     for (;;) {
       const std::size_t comma = rest.find(',');
       if (column == names.size())
-        fail(path, lines.number(), "more cells than the " + std::to_string(names.size()) + " columns of the header");
+        fail(path, lines.number(),
+             "more cells than the " + std::to_string(names.size()) + " columns of the header");
       target[column]->push_back(number(path, lines.number(), names[column], rest.substr(0, comma)));
       ++column;
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
     }
     if (column != names.size())
-      fail(path, lines.number(), std::to_string(column) + " cells, expected " + std::to_string(names.size()) +
-                                     " (a truncated line?)");
+      fail(path, lines.number(),
+           std::to_string(column) + " cells, expected " + std::to_string(names.size()) +
+               " (a truncated line?)");
     const double now = capture.time_s.back();
     if (std::isnan(now)) fail(path, lines.number(), "time_s is missing, expected seconds");
     if (capture.time_s.size() > 1 && now <= capture.time_s[capture.time_s.size() - 2])
-      fail(path, lines.number(), "time_s is " + std::string(trimmed(line.substr(0, line.find(',')))) +
-                                     ", expected more than in the row before");
+      fail(path, lines.number(),
+           "time_s is " + std::string(trimmed(line.substr(0, line.find(',')))) +
+               ", expected more than in the row before");
   }
   if (capture.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
   return capture;

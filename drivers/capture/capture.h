@@ -1,6 +1,6 @@
-// A capture: what a sensor recorded, as columns. CSV with optional `#` lines, a header whose first column is time_s,
-// then rate_radps or rate_x_radps … per axis, optionally reference_rate_radps per axis, and environment channels
-// NAME_UNIT. Empty or `nan` is missing. `.gz` is read and written through zlib.
+// A capture: what a sensor recorded, as columns. CSV with optional `#` lines, a header whose first column is
+// time_s, then rate_radps or rate_x_radps … per axis, optionally reference_rate_radps per axis, and
+// environment channels NAME_UNIT. Empty or `nan` is missing. `.gz` is read and written through zlib.
 #pragma once
 
 #include <string>
@@ -14,9 +14,9 @@ struct CaptureColumn {
 };
 
 struct Capture {
-  std::vector<std::string> comments;  // without the '#'
-  std::vector<double> time_s;         // strictly increasing, never NaN
-  std::vector<std::string> axes;      // "x", "y", "z", or one "" for a single-axis sensor
+  std::vector<std::string> comments;                      // without the '#'
+  std::vector<double> time_s;                             // strictly increasing, never NaN
+  std::vector<std::string> axes;                          // "x", "y", "z", or one "" for a single-axis sensor
   std::vector<std::vector<double>> rate_radps;            // by axis
   std::vector<std::vector<double>> reference_rate_radps;  // by axis, an empty vector where there is none
   std::vector<CaptureColumn> channels;                    // every other column
@@ -25,8 +25,8 @@ struct Capture {
 };
 
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
-// Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line with another
-// number of cells, a .gz that ends early.
+// Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line
+// with another number of cells, a .gz that ends early.
 Capture read_capture(const std::string& path);
 
 // Shortest text that reads back as the same double. Writes beside the target, fsyncs, renames.

@@ -83,7 +83,8 @@ void write_text_file(const std::string& path, std::string_view text) {
   struct stat info {};
   const bool in_place = stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
   const std::string target = in_place ? path : path + ".partial." + std::to_string(getpid());
-  const int fd = open(target.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int fd =
+      open(target.c_str(), in_place ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (fd < 0) throw std::runtime_error(path + ": cannot create: " + reason());
   const auto fail = [&](const char* what) {
     const std::string why = reason();

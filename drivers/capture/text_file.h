@@ -9,8 +9,8 @@ namespace ifog {
 // Throws std::runtime_error: missing, unreadable, or a gzip stream that ends early or is damaged.
 std::string read_text_file(const std::string& path);
 
-// Compresses when the name ends in .gz. Writes beside the target, fsyncs, renames; "/dev/stdout" and FIFOs are written
-// in place.
+// Compresses when the name ends in .gz. Writes beside the target, fsyncs, renames; "/dev/stdout" and FIFOs
+// are written in place.
 void write_text_file(const std::string& path, std::string_view text);
 
 }  // namespace ifog

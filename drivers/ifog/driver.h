@@ -80,19 +80,22 @@ typedef struct ifog_driver_counters {
 
 /* What a configured instance will deliver. Filled by `describe`, constant afterwards. */
 typedef struct ifog_description {
-  uint32_t kind;         /* ifog_kind */
-  uint32_t axes;         /* 1 … IFOG_MAX_AXES */
+  uint32_t kind;                              /* ifog_kind */
+  uint32_t axes;                              /* 1 … IFOG_MAX_AXES */
   char axis[IFOG_MAX_AXES][IFOG_NAME_LENGTH]; /* "x", "y", "z"; "" for a single-axis sensor */
-  uint32_t sequence_modulus;  /* the counter counts modulo this; 0: the device sends no counter */
-  uint32_t has_device_time;   /* 1: samples carry device_time_ns */
-  double nominal_rate_hz;     /* samples a second; 0: unknown, the configuration must say */
-  double angle_wrap_rad;      /* IFOG_ANGLE: the value wraps modulo this; 0: it does not */
-  uint32_t environments;      /* 0 … IFOG_MAX_ENVIRONMENT */
+  uint32_t sequence_modulus; /* the counter counts modulo this; 0: the device sends no counter */
+  uint32_t has_device_time;  /* 1: samples carry device_time_ns */
+  double nominal_rate_hz;    /* samples a second; 0: unknown, the configuration must say */
+  double angle_wrap_rad;     /* IFOG_ANGLE: the value wraps modulo this; 0: it does not */
+  uint32_t environments;     /* 0 … IFOG_MAX_ENVIRONMENT */
   char environment[IFOG_MAX_ENVIRONMENT][IFOG_NAME_LENGTH]; /* capture column names: "temperature_degC" */
-  uint32_t can_ids;           /* wanted CAN ids, for the kernel's filter; 0: all */
-  struct { uint32_t id; uint32_t extended; } can_id[IFOG_MAX_CAN_IDS];
-  uint32_t baud;              /* serial speed the maker specifies; 0: the configuration must say */
-  uint8_t opening[64];        /* bytes to send when the device opens */
+  uint32_t can_ids; /* wanted CAN ids, for the kernel's filter; 0: all */
+  struct {
+    uint32_t id;
+    uint32_t extended;
+  } can_id[IFOG_MAX_CAN_IDS];
+  uint32_t baud;       /* serial speed the maker specifies; 0: the configuration must say */
+  uint8_t opening[64]; /* bytes to send when the device opens */
   uint32_t opening_length;
 } ifog_description;
 
@@ -102,7 +105,8 @@ typedef struct ifog_setting {
   const char* value;
 } ifog_setting;
 
-/* An option the plugin knows; the list is what `ifog drivers` prints and what unknown keys are checked against. */
+/* An option the plugin knows; the list is what `ifog drivers` prints and what unknown keys are checked
+ * against. */
 typedef struct ifog_option {
   const char* key;
   const char* values;        /* what is allowed, for people: "rate | delta" or "a number > 0" */
@@ -115,11 +119,11 @@ typedef void (*ifog_emit_bytes)(void* sink, const uint8_t* bytes, size_t length)
 typedef void (*ifog_emit_can)(void* sink, const ifog_can_frame* frame);
 
 typedef struct ifog_driver {
-  uint32_t abi;         /* IFOG_DRIVER_ABI */
-  uint32_t transports;  /* ifog_transport bits */
-  const char* name;     /* as in `driver = "…"`: lower case, digits, dash */
+  uint32_t abi;        /* IFOG_DRIVER_ABI */
+  uint32_t transports; /* ifog_transport bits */
+  const char* name;    /* as in `driver = "…"`: lower case, digits, dash */
   const char* version;
-  const char* summary;  /* one line */
+  const char* summary;        /* one line */
   const ifog_option* options; /* ended by an entry whose key is NULL */
 
   /* Makes an instance, or returns NULL with one line in error: the key, its value and what was expected. */
@@ -138,8 +142,8 @@ typedef struct ifog_driver {
 
   /* The inverse, for `ifog convert` and `ifog replay`; NULL if the plugin has none. Returns 0, or −1 with
    * one line in error when the sample cannot be expressed in the format (out of range, an axis missing). */
-  int (*encode_bytes)(void* instance, const ifog_sample* sample, ifog_emit_bytes emit, void* sink, char* error,
-                      size_t error_size);
+  int (*encode_bytes)(void* instance, const ifog_sample* sample, ifog_emit_bytes emit, void* sink,
+                      char* error, size_t error_size);
   int (*encode_can)(void* instance, const ifog_sample* sample, ifog_emit_can emit, void* sink, char* error,
                     size_t error_size);
 } ifog_driver;

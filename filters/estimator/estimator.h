@@ -1,7 +1,7 @@
 // The filter of one sensor: all its axes, one state model, one adaptation rule, one gain for all axes.
 //
-// step() is the daemon's hot path: no allocation, no lock, no log, no exception. Everything it does depends only on
-// the settings and on the sequence of its arguments, so that a replay gives the same bits.
+// step() is the daemon's hot path: no allocation, no lock, no log, no exception. Everything it does depends
+// only on the settings and on the sequence of its arguments, so that a replay gives the same bits.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@ namespace ifog {
 inline constexpr int kMaxAxes = 3;
 
 struct EstimatorInput {
-  std::uint64_t sequence = 0;  // unwrapped; also the counter of the random weights
-  double dt_s = 0.0;           // time covered by this sample; after a gap, the whole gap
+  std::uint64_t sequence = 0;                 // unwrapped; also the counter of the random weights
+  double dt_s = 0.0;                          // time covered by this sample; after a gap, the whole gap
   std::array<double, kMaxAxes> rate_radps{};  // compensated mean rate over dt
   std::uint32_t valid_axes = 0;               // bit i; an axis that is not valid is only predicted
 };
 
 enum EstimatorFlags : std::uint32_t {
-  kGated = 1,       // a measurement was kept out as an outlier
-  kManoeuvre = 2,   // change of rate detected, covariance raised
-  kRestarted = 4,   // divergence: the filter started again from this measurement
-  kFloored = 8,     // the innovation covariance met its floor
+  kGated = 1,      // a measurement was kept out as an outlier
+  kManoeuvre = 2,  // change of rate detected, covariance raised
+  kRestarted = 4,  // divergence: the filter started again from this measurement
+  kFloored = 8,    // the innovation covariance met its floor
   kSaturated = 16,
   kStuck = 32,
 };
@@ -41,7 +41,8 @@ struct EstimatorOutput {
 
 // Figures for the status message; counters only grow.
 struct EstimatorHealth {
-  std::array<double, kMaxAxes> nis_mean{};   // exponentially averaged, 1 when the filter believes itself rightly
+  std::array<double, kMaxAxes>
+      nis_mean{};  // exponentially averaged, 1 when the filter believes itself rightly
   std::array<double, kMaxAxes> whiteness{};  // lag-1 autocorrelation of the innovations
   std::array<double, kMaxAxes> measurement_noise{};
   double group_delay_s = 0.0;

@@ -1,5 +1,6 @@
-// What a sensor's filter is told: state model, noise, adaptation rule. Read from [sensor.filter] of the daemon's
-// configuration, from [filter] of a model file, or from the command line; one structure for all three.
+// What a sensor's filter is told: state model, noise, adaptation rule. Read from [sensor.filter] of the
+// daemon's configuration, from [filter] of a model file, or from the command line; one structure for all
+// three.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +10,24 @@
 namespace ifog {
 
 struct FilterSettings {
-  std::string rule = "irwe-akfg";     // a name from the list in filters/rules
-  std::string state = "random-walk";  // a name from the list in filters/models, or a sum: "random-walk + harmonic"
+  std::string rule = "irwe-akfg";  // a name from the list in filters/rules
+  std::string state =
+      "random-walk";  // a name from the list in filters/models, or a sum: "random-walk + harmonic"
 
-  // Variances per second of the driving noise and per sample of the measurement. For the random walk: process noise
-  // spectral density of the rate, (rad/s)^2/s; measurement variance at the nominal period, (rad/s)^2.
+  // Variances per second of the driving noise and per sample of the measurement. For the random walk: process
+  // noise spectral density of the rate, (rad/s)^2/s; measurement variance at the nominal period, (rad/s)^2.
   double process_noise = 0.0;      // 0: not given; taken from the model file, else from start-up data
   double measurement_noise = 0.0;  // 0: not given, likewise
-  std::vector<double> state_parameters;  // of the state model: AR/MA coefficients, correlation time, line frequency…
+  std::vector<double>
+      state_parameters;  // of the state model: AR/MA coefficients, correlation time, line frequency…
 
-  int window = 50;                  // N of IRWE, IAE, RAE
-  std::string weights = "kept";     // "kept" | "fresh" | "uniform"
-  int draws = 1;                    // B: average of this many weight draws
-  double floor = 0.01;              // epsilon of the floor on the innovation covariance; 0 switches it off
-  bool follow_manoeuvres = true;    // the cure for inertia
-  bool conserve_angle = true;       // integral of (denoised - compensated) returns to zero
-  std::uint64_t seed = 1;           // of the weights
+  int window = 50;                // N of IRWE, IAE, RAE
+  std::string weights = "kept";   // "kept" | "fresh" | "uniform"
+  int draws = 1;                  // B: average of this many weight draws
+  double floor = 0.01;            // epsilon of the floor on the innovation covariance; 0 switches it off
+  bool follow_manoeuvres = true;  // the cure for inertia
+  bool conserve_angle = true;     // integral of (denoised - compensated) returns to zero
+  std::uint64_t seed = 1;         // of the weights
 };
 
 }  // namespace ifog

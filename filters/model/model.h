@@ -1,8 +1,9 @@
-// The model of one sensor: its noise, its filter, its effects, the range they were fitted on, and where all that came
-// from. Written by `ifog tune` and `ifog diagnose`, read by ifogd, `ifog denoise` and `ifog diagnose`.
+// The model of one sensor: its noise, its filter, its effects, the range they were fitted on, and where all
+// that came from. Written by `ifog tune` and `ifog diagnose`, read by ifogd, `ifog denoise` and `ifog
+// diagnose`.
 //
-// The file is TOML. Version rule: `version` is the first key; a reader accepts exactly the versions it knows and says
-// so otherwise. Unknown keys are errors.
+// The file is TOML. Version rule: `version` is the first key; a reader accepts exactly the versions it knows
+// and says so otherwise. Unknown keys are errors.
 #pragma once
 
 #include <map>
@@ -26,7 +27,7 @@ struct Effect {
   std::string form;
   std::string channel;  // the capture's column name; "" for forms without one
   std::string with_form, with_channel;
-  std::string axis;     // "" for a single-axis sensor
+  std::string axis;        // "" for a single-axis sensor
   double reference = 0.0;  // the channel's value at which the effect is zero (25 degC, 12 V, 0 elsewhere)
   std::vector<ModelParameter> parameters;
   std::vector<double> table_x, table_y;  // "lookup": knots in the channel's unit, values in rad/s
@@ -39,13 +40,14 @@ struct ChannelRange {
   double low = 0.0, high = 0.0;
 };
 
-// IEEE Std 952 coefficients, SI: Q rad, N rad/s/sqrt(Hz), B rad/s, K rad/s^2/sqrt(Hz), R rad/s^2; absent: not seen.
+// IEEE Std 952 coefficients, SI: Q rad, N rad/s/sqrt(Hz), B rad/s, K rad/s^2/sqrt(Hz), R rad/s^2; absent: not
+// seen.
 struct NoiseTerms {
   std::optional<double> Q, N, B, K, R;
 };
 
 struct ModelSource {
-  std::string capture, sha256, date;           // what it was fitted on
+  std::string capture, sha256, date;            // what it was fitted on
   std::map<std::string, double> before, after;  // held-out figures of the diagnosis
 };
 

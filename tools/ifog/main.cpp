@@ -6,7 +6,8 @@
 #include "tools/ifog/commands.h"
 
 int main(int argc, char** argv) {
-  CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros", "ifog"};
+  CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
+               "ifog"};
   app.require_subcommand(1);
   app.set_version_flag("--version", IFOG_VERSION);
 

@@ -45,19 +45,27 @@ void plot(const std::string& path, const std::vector<Panel>& panels, int width, 
   const std::string partial = path + ".partial" + std::to_string(getpid()) + ending;
   std::FILE* pipe = popen("gnuplot 1>&2", "w");
   if (pipe == nullptr) throw std::runtime_error(path + ": cannot start gnuplot");
-  std::fprintf(pipe, "set terminal %s size %d,%d %s\nset output %s\n", ending == ".svg" ? "svg" : "pngcairo", width,
-               height_each * static_cast<int>(panels.size()),
-               ending == ".svg" ? "background rgb 'white' font 'sans,13'" : "background rgb 'white' font 'sans,11'",
-               quoted(partial).c_str());
-  std::fprintf(pipe, "set encoding utf8\nset grid lc rgb '#dddddd'\nset multiplot layout %zu,1\n", panels.size());
+  std::fprintf(
+      pipe, "set terminal %s size %d,%d %s\nset output %s\n", ending == ".svg" ? "svg" : "pngcairo", width,
+      height_each * static_cast<int>(panels.size()),
+      ending == ".svg" ? "background rgb 'white' font 'sans,13'" : "background rgb 'white' font 'sans,11'",
+      quoted(partial).c_str());
+  std::fprintf(pipe, "set encoding utf8\nset grid lc rgb '#dddddd'\nset multiplot layout %zu,1\n",
+               panels.size());
   int block = 0;
   for (const Panel& panel : panels) {
-    std::fprintf(pipe, "unset logscale\nset autoscale\nunset label\nset key top right\nset title %s noenhanced\nset xlabel %s noenhanced\nset ylabel %s noenhanced\n",
+    std::fprintf(pipe,
+                 "unset logscale\nset autoscale\nunset label\nset key top right\nset title %s "
+                 "noenhanced\nset xlabel %s noenhanced\nset ylabel %s noenhanced\n",
                  quoted(panel.title).c_str(), quoted(panel.x_label).c_str(), quoted(panel.y_label).c_str());
-    if (panel.log_x) std::fputs("set logscale x\nset format x '10^{%L}'\n", pipe);
-    else std::fputs("set format x '%g'\n", pipe);
-    if (panel.log_y) std::fputs("set logscale y\nset format y '10^{%L}'\n", pipe);
-    else std::fputs("set format y '%g'\n", pipe);
+    if (panel.log_x)
+      std::fputs("set logscale x\nset format x '10^{%L}'\n", pipe);
+    else
+      std::fputs("set format x '%g'\n", pipe);
+    if (panel.log_y)
+      std::fputs("set logscale y\nset format y '10^{%L}'\n", pipe);
+    else
+      std::fputs("set format y '%g'\n", pipe);
     for (const std::string& line : panel.extra) std::fprintf(pipe, "%s\n", line.c_str());
     std::string command;
     for (const Curve& curve : panel.curves) {
@@ -66,7 +74,8 @@ void plot(const std::string& path, const std::vector<Panel>& panels, int width, 
       const std::string color = curve.color.empty() ? "" : " lc rgb '" + curve.color + "'";
       if (!command.empty()) command += ", ";
       if (!curve.low.empty())
-        command += name + " using 1:3:4 with filledcurves fs transparent solid 0.2 noborder" + color + " notitle, ";
+        command +=
+            name + " using 1:3:4 with filledcurves fs transparent solid 0.2 noborder" + color + " notitle, ";
       command += name + " using 1:2 with " + curve.style + color +
                  (curve.title.empty() ? " notitle" : " title " + quoted(curve.title) + " noenhanced");
     }

@@ -21,7 +21,8 @@ struct Panel {
   std::vector<std::string> extra;  // gnuplot commands before this panel's plot: labels, ranges
 };
 
-// One panel below the other. Throws std::runtime_error: unknown ending, gnuplot missing or failed (with its message).
+// One panel below the other. Throws std::runtime_error: unknown ending, gnuplot missing or failed (with its
+// message).
 void plot(const std::string& path, const std::vector<Panel>& panels, int width = 1000, int height_each = 420);
 
 }  // namespace ifog::tools

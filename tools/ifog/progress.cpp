@@ -30,7 +30,8 @@ void Progress::at(std::size_t done) {
   const std::size_t filled = std::min(kWidth, done * kWidth / total_);
   std::string bar(filled, '#');
   bar.resize(kWidth, '.');
-  std::fprintf(stderr, "\r%s [%s] %3zu %%", what_.c_str(), bar.c_str(), std::min<std::size_t>(100, done * 100 / total_));
+  std::fprintf(stderr, "\r%s [%s] %3zu %%", what_.c_str(), bar.c_str(),
+               std::min<std::size_t>(100, done * 100 / total_));
   std::fflush(stderr);
 }
 
