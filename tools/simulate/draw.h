@@ -1,0 +1,42 @@
+// Random numbers for simulation, the same bits on every machine: philox for the integers, and the normal
+// distribution by its inverse (Wichura, "Algorithm AS 241: the percentage points of the normal distribution",
+// Applied Statistics 37(3), 1988, PPND16), which needs nothing but + − × ÷ and square roots here. The
+// standard library's distributions and libm's logarithm promise no such thing.
+#pragma once
+
+#include <cstdint>
+
+#include "filters/random/philox.h"
+
+namespace ifog::simulate {
+
+// Natural logarithm by a series in plain arithmetic; x > 0 and normal. Relative error below 4e-16.
+[[nodiscard]] double plain_log(double x) noexcept;
+
+// Quantile of the standard normal distribution, 0 < p < 1; relative error about 1e-15.
+[[nodiscard]] double normal_quantile(double p) noexcept;
+
+// One sequence of draws. (seed, stream) name it: streams of one seed are independent of each other, so adding
+// a noise term or a channel to a scenario leaves all others as they were.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed, std::uint32_t stream = 0) noexcept;
+
+  [[nodiscard]] double uniform() noexcept;  // open interval (0, 1), 53 bits
+  [[nodiscard]] double uniform(double low, double high) noexcept;
+  [[nodiscard]] double log_uniform(double low, double high) noexcept;  // 0 < low <= high
+  [[nodiscard]] double normal() noexcept;                              // mean 0, variance 1
+  [[nodiscard]] std::uint64_t below(std::uint64_t n) noexcept;         // 0 … n − 1; n > 0
+  [[nodiscard]] bool chance(double p) noexcept { return uniform() < p; }
+
+ private:
+  [[nodiscard]] std::uint64_t bits() noexcept;
+
+  std::uint64_t block_ = 0;
+  std::uint32_t stream_;
+  std::array<std::uint32_t, 2> key_;
+  std::uint64_t spare_ = 0;
+  bool has_spare_ = false;
+};
+
+}  // namespace ifog::simulate
