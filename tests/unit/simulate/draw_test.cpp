@@ -18,7 +18,9 @@ TEST(Draw, QuantileInvertsTheErrorFunction) {
   for (double p = 1e-15; p < 0.5; p *= 1.9) {
     const double z = ifog::simulate::normal_quantile(p);
     EXPECT_NEAR(0.5 * std::erfc(-z / std::numbers::sqrt2) / p, 1.0, 5e-14) << p;
-    if (p > 1e-6) EXPECT_NEAR(ifog::simulate::normal_quantile(1.0 - p), -z, 1e-9) << p;  // 1 − p is rounded
+    if (p > 1e-6) {  // 1 − p is rounded
+      EXPECT_NEAR(ifog::simulate::normal_quantile(1.0 - p), -z, 1e-9) << p;
+    }
   }
   EXPECT_EQ(ifog::simulate::normal_quantile(0.5), 0.0);
 }
