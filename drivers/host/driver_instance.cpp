@@ -1,0 +1,126 @@
+#include "drivers/host/driver_instance.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kErrorLength = 512;
+using ErrorText = std::array<char, kErrorLength>;
+
+// The settings in the plugin's own order, defaults filled in.
+std::vector<ifog_setting> complete(const ifog_driver& table, const DriverSettings& settings) {
+  const std::string who = std::string("driver ") + table.name + ": ";
+  std::string known;
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option)
+    known += (known.empty() ? "" : ", ") + std::string(option->key);
+  for (const auto& [key, value] : settings) {
+    const ifog_option* option = table.options;
+    while (option->key != nullptr && key != option->key) ++option;
+    if (option->key == nullptr)
+      throw std::runtime_error(who + "unknown option '" + key + "' (value '" + value +
+                               "'), expected one of: " + (known.empty() ? "(it has none)" : known));
+  }
+  std::vector<ifog_setting> all;
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
+    const auto given = settings.find(option->key);
+    if (given != settings.end())
+      all.push_back({option->key, given->second.c_str()});
+    else if (option->default_value != nullptr)
+      all.push_back({option->key, option->default_value});
+    else
+      throw std::runtime_error(who + "option '" + option->key + "' is missing, expected " + option->values +
+                               " (" + option->help + ")");
+  }
+  return all;
+}
+
+template <std::size_t N>
+bool ended(const char (&name)[N]) {
+  return std::memchr(name, '\0', N) != nullptr;
+}
+
+// What the host will use as sizes and indices must hold for any plugin, ours or not.
+const char* impossible(const ifog_description& d) {
+  if (d.kind > IFOG_ANGLE) return "a kind that is none of rate, delta angle, angle";
+  if (d.axes < 1 || d.axes > IFOG_MAX_AXES) return "a number of axes outside 1 … 3";
+  for (std::uint32_t i = 0; i < d.axes; ++i)
+    if (!ended(d.axis[i])) return "an axis name without end";
+  if (d.environments > IFOG_MAX_ENVIRONMENT) return "more environment channels than the interface holds";
+  for (std::uint32_t i = 0; i < d.environments; ++i)
+    if (!ended(d.environment[i]) || d.environment[i][0] == '\0')
+      return "an environment channel without a proper name";
+  if (d.can_ids > IFOG_MAX_CAN_IDS) return "more CAN ids than the interface holds";
+  if (!std::isfinite(d.nominal_rate_hz) || d.nominal_rate_hz < 0.0) return "a nominal rate that is no rate";
+  if (!std::isfinite(d.angle_wrap_rad) || d.angle_wrap_rad < 0.0) return "an angle wrap that is no angle";
+  if (d.opening_length > sizeof d.opening) return "more opening bytes than the interface holds";
+  return nullptr;
+}
+
+}  // namespace
+
+DriverInstance::DriverInstance(std::shared_ptr<const Plugin> plugin, const DriverSettings& settings)
+    : plugin_(std::move(plugin)) {
+  const std::vector<ifog_setting> all = complete(table(), settings);
+  ErrorText error{};
+  instance_ = table().create(all.data(), all.size(), error.data(), error.size());
+  if (instance_ == nullptr) {
+    error.back() = '\0';
+    throw std::runtime_error(std::string("driver ") + table().name + ": " +
+                             (error[0] == '\0' ? "was not created and gave no reason" : error.data()));
+  }
+  table().describe(instance_, &description_);
+  if (const char* what = impossible(description_)) {
+    table().destroy(instance_);
+    throw std::runtime_error(std::string("driver ") + table().name + ": describes " + what);
+  }
+}
+
+DriverInstance::~DriverInstance() {
+  if (instance_ != nullptr) table().destroy(instance_);
+}
+
+DriverInstance::DriverInstance(DriverInstance&& other) noexcept
+    : plugin_(std::move(other.plugin_)),
+      instance_(std::exchange(other.instance_, nullptr)),
+      description_(other.description_) {}
+
+ifog_driver_counters DriverInstance::counters() const {
+  ifog_driver_counters out{};
+  table().counters(instance_, &out);
+  return out;
+}
+
+void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::uint8_t>& out) {
+  if (table().encode_bytes == nullptr)
+    throw std::runtime_error(std::string("driver ") + table().name + ": cannot encode to bytes");
+  ErrorText error{};
+  const auto emit = [](void* sink, const std::uint8_t* bytes, std::size_t length) {
+    auto& target = *static_cast<std::vector<std::uint8_t>*>(sink);
+    target.insert(target.end(), bytes, bytes + length);
+  };
+  if (table().encode_bytes(instance_, &sample, emit, &out, error.data(), error.size()) != 0)
+    throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
+}
+
+void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out) {
+  if (table().encode_can == nullptr)
+    throw std::runtime_error(std::string("driver ") + table().name + ": cannot encode to CAN frames");
+  ErrorText error{};
+  const auto emit = [](void* sink, const ifog_can_frame* frame) {
+    static_cast<std::vector<ifog_can_frame>*>(sink)->push_back(*frame);
+  };
+  if (table().encode_can(instance_, &sample, emit, &out, error.data(), error.size()) != 0)
+    throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
+}
+
+DriverInstance make_driver(const std::string& name, const DriverSettings& settings,
+                           const std::vector<std::string>& folders) {
+  return DriverInstance(find_plugin(name, folders), settings);
+}
+
+}  // namespace ifog

@@ -1,0 +1,77 @@
+// One configured driver of one sensor: the C table of a plugin with its instance, owned.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "drivers/host/plugin.h"
+#include "drivers/ifog/driver.h"
+
+namespace ifog {
+
+// Option key to its value as text: the sensor's [sensor.options] table, or `--option key=value`.
+using DriverSettings = std::map<std::string, std::string>;
+
+class DriverInstance {
+ public:
+  // Checks the keys against the plugin's list, fills in the defaults, creates. Throws std::runtime_error with
+  // one line that names the driver, the key, its value and what was expected: an unknown key, a missing one,
+  // a value the plugin refuses, a description out of the interface's bounds.
+  DriverInstance(std::shared_ptr<const Plugin> plugin, const DriverSettings& settings);
+  ~DriverInstance();
+  DriverInstance(DriverInstance&& other) noexcept;
+  DriverInstance& operator=(DriverInstance&&) = delete;
+  DriverInstance(const DriverInstance&) = delete;
+  DriverInstance& operator=(const DriverInstance&) = delete;
+
+  [[nodiscard]] const ifog_driver& table() const { return plugin_->table(); }
+  [[nodiscard]] const Plugin& plugin() const { return *plugin_; }
+  [[nodiscard]] const ifog_description& description() const { return description_; }
+  [[nodiscard]] bool takes_bytes() const { return (table().transports & IFOG_TRANSPORT_BYTES) != 0; }
+  [[nodiscard]] bool takes_can() const { return (table().transports & IFOG_TRANSPORT_CAN) != 0; }
+  [[nodiscard]] ifog_driver_counters counters() const;
+
+  // Hot path. `sink` is called with each const ifog_sample& as its last byte is seen; it must not throw. Only
+  // for a driver that takes_bytes() / takes_can().
+  template <typename Sink>
+  void decode_bytes(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, Sink&& sink) {
+    table().decode_bytes(instance_, bytes.data(), bytes.size(), arrival_ns, &emit_sample<Sink>,
+                         address(sink));
+  }
+  template <typename Sink>
+  void decode_can(const ifog_can_frame& frame, Sink&& sink) {
+    table().decode_can(instance_, &frame, &emit_sample<Sink>, address(sink));
+  }
+  void reset() { table().reset(instance_); }
+
+  // The inverse: the sample as the device would have sent it. Throw std::runtime_error: the plugin has no
+  // encoder for that transport, or the sample cannot be expressed in the format.
+  void encode_bytes(const ifog_sample& sample, std::vector<std::uint8_t>& out);
+  void encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out);
+
+ private:
+  template <typename Sink>
+  static void* address(Sink& sink) {
+    return const_cast<void*>(static_cast<const void*>(std::addressof(sink)));
+  }
+  template <typename Sink>
+  static void emit_sample(void* sink, const ifog_sample* sample) {
+    (*static_cast<std::remove_reference_t<Sink>*>(sink))(*sample);
+  }
+
+  std::shared_ptr<const Plugin> plugin_;
+  void* instance_ = nullptr;
+  ifog_description description_{};
+};
+
+// Finds, loads and creates in one go.
+DriverInstance make_driver(const std::string& name, const DriverSettings& settings,
+                           const std::vector<std::string>& folders = plugin_folders());
+
+}  // namespace ifog

@@ -1,0 +1,142 @@
+#include "drivers/host/plugin.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+
+namespace ifog {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The first required function the table lacks, or null.
+const char* missing_function(const ifog_driver& table) {
+  if (table.options == nullptr) return "options";
+  if (table.create == nullptr) return "create";
+  if (table.destroy == nullptr) return "destroy";
+  if (table.describe == nullptr) return "describe";
+  if (table.reset == nullptr) return "reset";
+  if (table.counters == nullptr) return "counters";
+  if ((table.transports & IFOG_TRANSPORT_BYTES) != 0 && table.decode_bytes == nullptr) return "decode_bytes";
+  if ((table.transports & IFOG_TRANSPORT_CAN) != 0 && table.decode_can == nullptr) return "decode_can";
+  if ((table.transports & (IFOG_TRANSPORT_BYTES | IFOG_TRANSPORT_CAN)) == 0) return "transports";
+  return nullptr;
+}
+
+std::vector<fs::path> objects_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".so") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// The folder `plugins` of the build tree that the running program was built in, known by its CMakeCache.txt;
+// empty for an installed program. So no path of the building machine ends up in what is installed.
+fs::path build_tree_folder(const fs::path& program) {
+  constexpr int kDeepest = 5;
+  fs::path folder = program.parent_path();
+  std::error_code ignored;
+  for (int up = 0; up < kDeepest && folder.has_relative_path(); ++up, folder = folder.parent_path())
+    if (fs::exists(folder / "CMakeCache.txt", ignored)) return folder / "plugins";
+  return {};
+}
+
+}  // namespace
+
+std::shared_ptr<const Plugin> Plugin::load(const std::string& path) {
+  const auto refuse = [&](const std::string& why) -> void { throw std::runtime_error(path + ": " + why); };
+  // A path without a slash would be searched for in the library path instead.
+  void* handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) refuse(std::string("cannot load: ") + dlerror());
+  const std::shared_ptr<Plugin> plugin(new Plugin(path, handle));
+  using Entry = const ifog_driver* (*)();
+  const Entry entry = reinterpret_cast<Entry>(dlsym(handle, "ifog_driver_entry"));
+  if (entry == nullptr) refuse("is no ifogd plugin: it has no function ifog_driver_entry");
+  const ifog_driver* table = entry();
+  if (table == nullptr) refuse("ifog_driver_entry returned no table");
+  // First of all: with another version no other field can be trusted to be where it is looked for.
+  if (table->abi != IFOG_DRIVER_ABI)
+    refuse("built for interface version " + std::to_string(table->abi) + ", this program has version " +
+           std::to_string(IFOG_DRIVER_ABI) + "; build the plugin against this version");
+  if (table->name == nullptr || fs::path(path).stem() != table->name)
+    refuse("calls itself '" + std::string(table->name == nullptr ? "" : table->name) +
+           "', expected the name of its file");
+  if (const char* missing = missing_function(*table))
+    refuse(std::string("its table lacks '") + missing + "'");
+  plugin->table_ = table;
+  return plugin;
+}
+
+Plugin::~Plugin() { dlclose(handle_); }
+
+std::vector<std::string> plugin_folders(const std::vector<std::string>& first) {
+  std::vector<std::string> folders = first;
+  std::error_code ignored;
+  const auto add = [&](const fs::path& folder) {
+    if (!folder.empty() && fs::is_directory(folder, ignored) &&
+        std::find(folders.begin(), folders.end(), folder.string()) == folders.end())
+      folders.push_back(folder.string());
+  };
+  if (const char* path = secure_getenv("IFOG_PLUGIN_PATH")) {
+    std::string_view rest(path);
+    while (!rest.empty()) {
+      const std::size_t colon = rest.find(':');
+      add(rest.substr(0, colon));
+      rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
+    }
+  }
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  if (!program.empty()) {
+    add(build_tree_folder(program));
+    add(program.parent_path().parent_path() / IFOG_PLUGIN_FOLDER_IN_PREFIX);
+  }
+  add(IFOG_PLUGIN_FOLDER);
+  return folders;
+}
+
+std::shared_ptr<const Plugin> find_plugin(const std::string& name, const std::vector<std::string>& folders) {
+  std::error_code ignored;
+  std::set<std::string> known;
+  std::string searched;
+  for (const std::string& folder : folders) {
+    // A name with a slash would leave the folder.
+    const fs::path file = fs::path(folder) / (name + ".so");
+    if (name.find('/') == std::string::npos && fs::exists(file, ignored)) return Plugin::load(file.string());
+    for (const fs::path& object : objects_in(folder)) known.insert(object.stem().string());
+    searched += (searched.empty() ? "" : ", ") + folder;
+  }
+  std::string there;
+  for (const std::string& each : known) there += (there.empty() ? "" : ", ") + each;
+  throw std::runtime_error("driver is '" + name +
+                           "', expected one of: " + (there.empty() ? "(none found)" : there) +
+                           " (looked in " + (searched.empty() ? "no folder: none exists" : searched) + ")");
+}
+
+std::vector<FoundPlugin> list_plugins(const std::vector<std::string>& folders) {
+  std::vector<FoundPlugin> found;
+  std::set<std::string> names;
+  for (const std::string& folder : folders) {
+    for (const fs::path& object : objects_in(folder)) {
+      FoundPlugin entry;
+      entry.path = object.string();
+      entry.hidden = !names.insert(object.stem().string()).second;
+      try {
+        entry.plugin = Plugin::load(entry.path);
+      } catch (const std::runtime_error& error) {
+        entry.refusal = error.what();
+      }
+      found.push_back(std::move(entry));
+    }
+  }
+  return found;
+}
+
+}  // namespace ifog

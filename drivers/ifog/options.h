@@ -1,0 +1,91 @@
+// Reading a plugin's settings, for plugins written in C++. Header only, so that a plugin needs nothing but
+// this folder.
+//
+// The host passes every option the plugin lists, the default where the user gave no value, so a plugin only
+// has to check values. What these throw is the line the user reads; `create_or_explain` carries it over the C
+// interface.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <initializer_list>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "driver.h"
+
+namespace ifog::plugin {
+
+class Options {
+ public:
+  explicit Options(std::span<const ifog_setting> settings) : settings_(settings) {}
+
+  // "" where the host passed no such key.
+  [[nodiscard]] std::string_view text(std::string_view key) const {
+    for (const ifog_setting& setting : settings_)
+      if (key == setting.key) return setting.value;
+    return {};
+  }
+
+  [[nodiscard]] bool given(std::string_view key) const { return !text(key).empty(); }
+
+  // The value that goes with the word the user chose.
+  template <typename T>
+  [[nodiscard]] T choice(std::string_view key,
+                         std::initializer_list<std::pair<std::string_view, T>> words) const {
+    const std::string_view value = text(key);
+    std::string expected;
+    for (const auto& [word, meaning] : words) {
+      if (word == value) return meaning;
+      expected += (expected.empty() ? "" : ", ") + std::string(word);
+    }
+    fail(key, "one of " + expected);
+  }
+
+  // A finite number in [low, high]; `expected` says so in words.
+  [[nodiscard]] double number(std::string_view key, double low, double high,
+                              const std::string& expected) const {
+    const std::string_view value = text(key);
+    double result = 0.0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
+    if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(result) ||
+        result < low || result > high)
+      fail(key, expected);
+    return result;
+  }
+
+  [[noreturn]] void fail(std::string_view key, const std::string& expected) const {
+    throw std::invalid_argument(std::string(key) + " is '" + std::string(text(key)) + "', expected " +
+                                expected);
+  }
+
+ private:
+  std::span<const ifog_setting> settings_;
+};
+
+// For `create`: runs `make`, which returns a new instance, and turns an exception into the interface's NULL
+// and line.
+template <typename Make>
+void* create_or_explain(const ifog_setting* settings, std::size_t count, char* error, std::size_t error_size,
+                        Make&& make) noexcept {
+  try {
+    return std::forward<Make>(make)(Options({settings, count}));
+  } catch (const std::exception& problem) {
+    if (error_size != 0) std::snprintf(error, error_size, "%s", problem.what());
+  } catch (...) {
+    if (error_size != 0) std::snprintf(error, error_size, "unknown failure while creating the driver");
+  }
+  return nullptr;
+}
+
+// Copies into a name field of ifog_description; a longer text is cut, the end is always marked.
+inline void set_name(char (&field)[IFOG_NAME_LENGTH], std::string_view name) {
+  std::snprintf(field, IFOG_NAME_LENGTH, "%.*s", static_cast<int>(name.size()), name.data());
+}
+
+}  // namespace ifog::plugin

@@ -1,0 +1,64 @@
+// One message of a KVH 1725/1750/1775 IMU or DSP-1760, in the units it is sent in. Source: KVH 1750 IMU
+// technical manual, output message formats A, B and C. Everything is big-endian.
+//
+//   A, 36 bytes: FE 81 FF 55 | 3 gyro floats | 3 accelerometer floats | status | sequence | temperature,
+//   int16 | CRC B, 40 bytes: FE 81 FF 56 | 3 gyro floats | 3 accelerometer floats | time stamp, uint32 |
+//   status | sequence |
+//                temperature, int16 | CRC
+//   C, 38 bytes: FE 81 FF 57 | 3 gyro floats | 3 accelerometer floats | float that is, by sequence modulo
+//   four, the
+//                temperature or the magnetic field along x, y or z in gauss | status | sequence | CRC
+//
+// The CRC is CRC-32/MPEG-2 over all bytes before it, the header included.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace ifog::kvh {
+
+enum class Format : std::uint8_t { kA = 0x55, kB = 0x56, kC = 0x57 };  // the header's last byte
+
+inline constexpr std::size_t kHeaderLength = 4;
+inline constexpr std::size_t kShortestFrame = 36;
+inline constexpr std::size_t kLongestFrame = 40;
+inline constexpr std::uint32_t kSequenceModulus = 128;
+
+// Status byte: 1 is valid. Bits 3 and 7 are reserved.
+inline constexpr std::uint8_t kGyroValid = 0x01;           // x; y and z are the next two bits
+inline constexpr std::uint8_t kAccelerometerValid = 0x10;  // x; y and z are the next two bits
+
+struct Frame {
+  Format format = Format::kA;
+  std::array<float, 3> gyro{};           // rate or delta angle, rad or deg as the device is set up
+  std::array<float, 3> accelerometer{};  // specific force in g, or delta velocity in m/s
+  std::uint32_t time_stamp_us = 0;       // B only
+  std::uint8_t status = 0;
+  std::uint8_t sequence = 0;     // 0 … 127
+  std::int16_t temperature = 0;  // A and B only; the scale is the device's set-up
+  float slow = 0.0F;             // C only: see slow_quantity
+};
+
+// What `slow` of a format C frame holds: 0 the temperature, 1, 2, 3 the magnetic field along x, y, z.
+constexpr std::size_t slow_quantity(std::uint8_t sequence) { return sequence % 4U; }
+
+constexpr std::size_t length_of(Format format) {
+  return format == Format::kA ? 36 : format == Format::kB ? 40 : 38;
+}
+
+// The format announced by the first four bytes, nothing if they are no header. At least kHeaderLength bytes.
+std::optional<Format> header_at(std::span<const std::uint8_t> bytes) noexcept;
+
+// True if the last four of the frame's bytes are the CRC of those before.
+bool crc_fits(std::span<const std::uint8_t> frame) noexcept;
+
+// Reads the fields of length_of(format) bytes whose header and CRC have been checked.
+Frame unpack(Format format, std::span<const std::uint8_t> frame) noexcept;
+
+// Writes the frame, CRC included; returns its length.
+std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> out) noexcept;
+
+}  // namespace ifog::kvh

@@ -1,0 +1,323 @@
+// The driver `kvh1750`: KVH 1725, 1750 and 1775 IMU and DSP-1760, message formats A, B and C.
+//
+// The bytes carry numbers without their meaning: radians or degrees, rate or delta angle, the temperature's
+// scale are set in the device and must be said to the driver. The defaults are the device's own as delivered.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "drivers/plugins/kvh1750/frame.h"
+#include "drivers/plugins/kvh1750/frame_finder.h"
+#include "ifog/driver.h"
+#include "ifog/options.h"
+
+namespace ifog::kvh {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStandardGravity = 9.80665;  // m/s² per g
+constexpr double kMicroteslaPerGauss = 100.0;
+
+// Environment channels: accelerometers, temperature, then (format C) the magnetic field.
+constexpr std::size_t kAcceleration = 0;
+constexpr std::size_t kTemperature = 3;
+constexpr std::size_t kMagneticField = 4;
+constexpr std::size_t kEnvironments = 7;
+constexpr std::array<const char*, kEnvironments> kEnvironmentNames{
+    "accel_x_mps2",  "accel_y_mps2",  "accel_z_mps2", "temperature_degC",
+    "magnetic_x_uT", "magnetic_y_uT", "magnetic_z_uT"};
+
+enum class Acceleration { kSpecificForce, kDeltaVelocity };
+
+struct SetUp {
+  std::optional<Format> format;  // nothing: whatever arrives
+  double rad_per_unit = 1.0;
+  bool delta_angle = false;
+  Acceleration acceleration = Acceleration::kSpecificForce;
+  bool fahrenheit = false;
+  double degrees_per_count = 1.0;
+  std::int64_t stamp_modulus_us = 0;
+  double rate_hz = 1000.0;
+
+  [[nodiscard]] double celsius(double sent) const {
+    const double degrees = sent * degrees_per_count;
+    return fahrenheit ? (degrees - 32.0) / 1.8 : degrees;
+  }
+  [[nodiscard]] double as_sent(double celsius) const {
+    return (fahrenheit ? celsius * 1.8 + 32.0 : celsius) / degrees_per_count;
+  }
+  // m/s² per unit sent
+  [[nodiscard]] double acceleration_scale() const {
+    return acceleration == Acceleration::kSpecificForce ? kStandardGravity : rate_hz;
+  }
+};
+
+constexpr std::array kOptions{
+    ifog_option{"format", "auto | a | b | c", "auto", "message format; auto takes whichever arrives"},
+    ifog_option{"angle_unit", "radians | degrees", "radians",
+                "unit of the gyro values, as set in the device"},
+    ifog_option{"output", "rate | delta", "rate",
+                "gyro values are rates or delta angles, as set in the device"},
+    ifog_option{"acceleration", "specific_force | delta_velocity", "specific_force",
+                "accelerometer values are g, or m/s since the sample before"},
+    ifog_option{"temperature", "degC | centi_degC | degF | centi_degF", "degC",
+                "temperature counts: degrees or hundredths of a degree"},
+    ifog_option{"time_stamp", "free | pps", "free",
+                "format B's stamp runs on through 32 bits, or restarts at each pulse per second"},
+    ifog_option{"rate_hz", "a number > 0, at most 100000", "1000", "data rate set in the device"},
+    ifog_option{nullptr, nullptr, nullptr, nullptr}};
+
+SetUp read_set_up(const plugin::Options& options) {
+  SetUp s;
+  s.format = options.choice<std::optional<Format>>(
+      "format", {{"auto", std::nullopt}, {"a", Format::kA}, {"b", Format::kB}, {"c", Format::kC}});
+  s.rad_per_unit =
+      options.choice<double>("angle_unit", {{"radians", 1.0}, {"degrees", std::numbers::pi / 180.0}});
+  s.delta_angle = options.choice<bool>("output", {{"rate", false}, {"delta", true}});
+  s.acceleration = options.choice<Acceleration>(
+      "acceleration",
+      {{"specific_force", Acceleration::kSpecificForce}, {"delta_velocity", Acceleration::kDeltaVelocity}});
+  struct Scale {
+    bool fahrenheit;
+    double degrees_per_count;
+  };
+  const Scale scale = options.choice<Scale>("temperature", {{"degC", {false, 1.0}},
+                                                            {"centi_degC", {false, 0.01}},
+                                                            {"degF", {true, 1.0}},
+                                                            {"centi_degF", {true, 0.01}}});
+  s.fahrenheit = scale.fahrenheit;
+  s.degrees_per_count = scale.degrees_per_count;
+  s.stamp_modulus_us =
+      options.choice<std::int64_t>("time_stamp", {{"free", std::int64_t{1} << 32U}, {"pps", 1'000'000}});
+  s.rate_hz = options.number("rate_hz", 1e-3, 1e5, "a number > 0, at most 100000");
+  return s;
+}
+
+// Format B's stamp, carried on over its wraps. A pause longer than one wrap is bridged by the arrival times.
+class Unwrapped {
+ public:
+  std::int64_t next_ns(std::uint32_t stamp_us, std::int64_t arrival_ns, std::int64_t modulus_us) noexcept {
+    if (started_) {
+      std::int64_t step_us = static_cast<std::int64_t>(stamp_us) - last_us_;
+      if (step_us < 0) step_us += modulus_us;
+      const double missing_us =
+          static_cast<double>(arrival_ns - last_arrival_ns_) * 1e-3 - static_cast<double>(step_us);
+      const double wraps = std::round(missing_us / static_cast<double>(modulus_us));
+      if (wraps >= 1.0 && wraps < 1e6) step_us += static_cast<std::int64_t>(wraps) * modulus_us;
+      time_us_ += step_us;
+    } else {
+      time_us_ = stamp_us;
+    }
+    started_ = true;
+    last_us_ = stamp_us;
+    last_arrival_ns_ = arrival_ns;
+    return time_us_ * 1000;
+  }
+  // The device may have been switched off in between: the next stamp starts anew.
+  void restart() noexcept { started_ = false; }
+
+ private:
+  bool started_ = false;
+  std::int64_t last_us_ = 0;
+  std::int64_t last_arrival_ns_ = 0;
+  std::int64_t time_us_ = 0;
+};
+
+class Driver {
+ public:
+  explicit Driver(const SetUp& set_up) : set_up_(set_up) { environment_.fill(kMissing); }
+
+  void describe(ifog_description& out) const {
+    out = {};
+    out.kind = set_up_.delta_angle ? IFOG_DELTA_ANGLE : IFOG_RATE;
+    out.axes = 3;
+    plugin::set_name(out.axis[0], "x");
+    plugin::set_name(out.axis[1], "y");
+    plugin::set_name(out.axis[2], "z");
+    out.sequence_modulus = kSequenceModulus;
+    out.has_device_time = set_up_.format == Format::kB ? 1 : 0;
+    out.nominal_rate_hz = set_up_.rate_hz;
+    const bool magnetic = !set_up_.format || set_up_.format == Format::kC;
+    out.environments = magnetic ? kEnvironments : kMagneticField;
+    for (std::size_t i = 0; i < out.environments; ++i)
+      plugin::set_name(out.environment[i], kEnvironmentNames[i]);
+    out.baud = 921600;
+  }
+
+  void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
+              void* sink) noexcept {
+    finder_.feed(bytes, [&](const Frame& frame) {
+      if (set_up_.format && frame.format != *set_up_.format) {
+        ++other_format_;
+        return;
+      }
+      const ifog_sample sample = sample_of(frame, arrival_ns);
+      emit(sink, &sample);
+    });
+  }
+
+  void reset() noexcept {
+    finder_.reset();
+    time_.restart();
+  }
+
+  void counters(ifog_driver_counters& out) const {
+    const FrameFinder::Counters& found = finder_.counters();
+    out = {found.intact - other_format_, found.crc_failed, other_format_, found.bytes_skipped};
+  }
+
+  // Throws std::invalid_argument: a value the format has no room for.
+  void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
+    const Frame frame = frame_of(sample);
+    std::array<std::uint8_t, kLongestFrame> bytes{};
+    const std::size_t length = pack(frame, bytes);
+    emit(sink, bytes.data(), length);
+  }
+
+ private:
+  void set(ifog_sample& sample, std::size_t channel, double value) noexcept {
+    if (!std::isfinite(value)) return;
+    environment_[channel] = value;
+    sample.environment_fresh |= 1U << channel;
+  }
+
+  ifog_sample sample_of(const Frame& frame, std::int64_t arrival_ns) noexcept {
+    ifog_sample sample{};
+    sample.arrival_ns = arrival_ns;
+    sample.sequence = frame.sequence % kSequenceModulus;
+    sample.status = frame.status;
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    if (frame.format == Format::kB) {
+      sample.device_time_ns = time_.next_ns(frame.time_stamp_us, arrival_ns, set_up_.stamp_modulus_us);
+      sample.flags |= IFOG_SAMPLE_DEVICE_TIME;
+    }
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const double value = static_cast<double>(frame.gyro[axis]) * set_up_.rad_per_unit;
+      sample.value[axis] = value;
+      if ((frame.status & kGyroValid << axis) != 0 && std::isfinite(value)) sample.valid_axes |= 1U << axis;
+      if ((frame.status & kAccelerometerValid << axis) != 0)
+        set(sample, kAcceleration + axis,
+            static_cast<double>(frame.accelerometer[axis]) * set_up_.acceleration_scale());
+    }
+    if (frame.format != Format::kC) {
+      set(sample, kTemperature, set_up_.celsius(frame.temperature));
+    } else if (const std::size_t quantity = slow_quantity(frame.sequence); quantity == 0) {
+      set(sample, kTemperature, set_up_.celsius(static_cast<double>(frame.slow)));
+    } else {
+      set(sample, kMagneticField + quantity - 1, static_cast<double>(frame.slow) * kMicroteslaPerGauss);
+    }
+    std::copy(environment_.begin(), environment_.end(), sample.environment);
+    std::fill(sample.environment + kEnvironments, std::end(sample.environment), kMissing);
+    return sample;
+  }
+
+  Frame frame_of(const ifog_sample& sample) {
+    Frame frame;
+    frame.format = set_up_.format.value_or(Format::kA);
+    frame.sequence = static_cast<std::uint8_t>(
+        ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 ? sample.sequence : sent_) % kSequenceModulus);
+    sent_ = frame.sequence + 1U;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      frame.gyro[axis] = as_float(sample.value[axis] / set_up_.rad_per_unit, "gyro value");
+      if ((sample.valid_axes & 1U << axis) != 0)
+        frame.status = static_cast<std::uint8_t>(frame.status | kGyroValid << axis);
+      const double acceleration = sample.environment[kAcceleration + axis];
+      if (!std::isfinite(acceleration)) continue;
+      frame.accelerometer[axis] = as_float(acceleration / set_up_.acceleration_scale(), "acceleration");
+      frame.status = static_cast<std::uint8_t>(frame.status | kAccelerometerValid << axis);
+    }
+    if (frame.format == Format::kB) {
+      if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) == 0)
+        throw std::invalid_argument("format b needs the device's time, and the sample has none");
+      // The remainder taken upwards, so that times before the origin stay in order.
+      const std::int64_t us = floored(sample.device_time_ns, 1000) % set_up_.stamp_modulus_us;
+      frame.time_stamp_us = static_cast<std::uint32_t>(us < 0 ? us + set_up_.stamp_modulus_us : us);
+    }
+    encode_slow(sample, frame);
+    return frame;
+  }
+
+  void encode_slow(const ifog_sample& sample, Frame& frame) const {
+    const double temperature = sample.environment[kTemperature];
+    if (frame.format == Format::kC) {
+      const std::size_t quantity = slow_quantity(frame.sequence);
+      frame.slow = quantity == 0
+                       ? as_float(set_up_.as_sent(temperature), "temperature")
+                       : as_float(sample.environment[kMagneticField + quantity - 1] / kMicroteslaPerGauss,
+                                  "magnetic field");
+      return;
+    }
+    // The format has no "no temperature"; 0 is what a device without the sensor sends.
+    const double counts = std::isfinite(temperature) ? std::round(set_up_.as_sent(temperature)) : 0.0;
+    if (counts < std::numeric_limits<std::int16_t>::min() ||
+        counts > std::numeric_limits<std::int16_t>::max())
+      throw std::invalid_argument("temperature_degC is " + std::to_string(temperature) +
+                                  ", expected what 16 bits hold in the temperature option's scale");
+    frame.temperature = static_cast<std::int16_t>(counts);
+  }
+
+  static std::int64_t floored(std::int64_t value, std::int64_t by) {
+    return value / by - (value % by < 0 ? 1 : 0);
+  }
+
+  static float as_float(double value, const char* what) {
+    if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
+      throw std::invalid_argument(std::string(what) + " is " + std::to_string(value) +
+                                  ", expected what a 32-bit float holds");
+    return static_cast<float>(value);
+  }
+
+  SetUp set_up_;
+  FrameFinder finder_;
+  Unwrapped time_;
+  std::uint64_t other_format_ = 0;
+  std::array<double, kEnvironments> environment_{};
+  std::uint32_t sent_ = 0;
+};
+
+Driver& self(void* instance) { return *static_cast<Driver*>(instance); }
+const Driver& self(const void* instance) { return *static_cast<const Driver*>(instance); }
+
+constexpr ifog_driver kTable{
+    .abi = IFOG_DRIVER_ABI,
+    .transports = IFOG_TRANSPORT_BYTES,
+    .name = "kvh1750",
+    .version = "1",
+    .summary = "KVH 1725, 1750, 1775 IMU and DSP-1760, message formats A, B and C",
+    .options = kOptions.data(),
+    .create = [](const ifog_setting* settings, size_t count, char* error, size_t error_size) -> void* {
+      return plugin::create_or_explain(
+          settings, count, error, error_size,
+          [](const plugin::Options& options) { return new Driver(read_set_up(options)); });
+    },
+    .destroy = [](void* instance) { delete static_cast<Driver*>(instance); },
+    .describe = [](const void* instance, ifog_description* out) { self(instance).describe(*out); },
+    .decode_bytes =
+        [](void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns, ifog_emit_sample emit,
+           void* sink) {
+          self(instance).decode({bytes, length}, arrival_ns, emit, sink);
+        },
+    .decode_can = nullptr,
+    .reset = [](void* instance) { self(instance).reset(); },
+    .counters = [](const void* instance, ifog_driver_counters* out) { self(instance).counters(*out); },
+    .encode_bytes = [](void* instance, const ifog_sample* sample, ifog_emit_bytes emit, void* sink,
+                       char* error, size_t error_size) -> int {
+      try {
+        self(instance).encode(*sample, emit, sink);
+        return 0;
+      } catch (const std::exception& problem) {
+        std::snprintf(error, error_size, "%s", problem.what());
+        return -1;
+      }
+    },
+    .encode_can = nullptr};
+
+}  // namespace
+}  // namespace ifog::kvh
+
+const ifog_driver* ifog_driver_entry(void) { return &ifog::kvh::kTable; }
