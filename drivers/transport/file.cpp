@@ -1,0 +1,340 @@
+#include "drivers/transport/file.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/capture/candump.h"
+#include "drivers/transport/backoff.h"
+#include "drivers/transport/byte_file.h"
+#include "drivers/transport/pace.h"
+
+namespace ifog {
+namespace {
+
+using std::chrono::nanoseconds;
+
+constexpr std::size_t kBatch = 64;  // frames a delivery
+
+class FileTransport : public Transport {
+ public:
+  explicit FileTransport(FileSettings settings)
+      : Transport(settings.path == "-" ? "standard input" : settings.path),
+        settings_(std::move(settings)),
+        pace_(settings_.speed) {}
+
+  void open(std::span<const std::uint8_t> opening) override;
+  Delivery read(nanoseconds timeout) noexcept override;
+  [[nodiscard]] bool holds_back() const override { return settings_.pace == FileSettings::Pace::free; }
+
+ protected:
+  [[nodiscard]] const FileSettings& settings() const { return settings_; }
+  [[nodiscard]] bool recorded() const { return settings_.pace == FileSettings::Pace::recorded; }
+  [[nodiscard]] std::span<const std::uint8_t> unread() const { return file_.unread(); }
+  void consume(std::size_t n) { file_.consume(n); }
+  [[nodiscard]] bool at_end() const { return at_end_; }
+
+  // Adds to unread(), waiting until `until_ns` for it. False: nothing came, or the file is at its end.
+  bool fill(std::int64_t until_ns) noexcept;
+  // Waits until the recorded time is due; false when `until_ns` or stop() comes first.
+  bool await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept;
+  [[nodiscard]] const Pace& pace() const { return pace_; }
+
+  // Takes one delivery from what is unread, empty when that is not enough for one.
+  virtual Delivery take(std::int64_t until_ns) noexcept = 0;
+  // A new file is open, nothing of it is taken yet.
+  virtual void begin() noexcept = 0;
+
+ private:
+  bool reopen(std::int64_t until_ns) noexcept;
+  void end() noexcept;
+
+  FileSettings settings_;
+  ByteFile file_;
+  Pace pace_;
+  Backoff backoff_;
+  int read_error_ = 0;
+  bool at_end_ = false;
+  bool returning_ = false;  // it was open before: what comes next is the device come back
+};
+
+void FileTransport::open(std::span<const std::uint8_t> /*nobody listens at the other end of a recording*/) {
+  try {
+    file_.open(settings_.path);
+  } catch (...) {
+    enter(TransportState::gone, errno);
+    backoff_.failed(monotonic_ns());
+    throw;
+  }
+  at_end_ = false;
+  pace_ = Pace(settings_.speed);
+  begin();
+  enter(TransportState::open);
+}
+
+// Until `until_ns`, tries to open a file that open() did not find or a FIFO that was taken away.
+bool FileTransport::reopen(std::int64_t until_ns) noexcept {
+  while (!file_.is_open()) {
+    const std::int64_t attempt = std::min(backoff_.next_ns(), until_ns);
+    short happened = 0;
+    if (wait(-1, 0, nanoseconds(attempt - monotonic_ns()), happened) == Wake::stopped) return false;
+    if (attempt < backoff_.next_ns()) return false;
+    try {
+      open({});
+    } catch (const std::exception&) {
+      if (attempt == until_ns) return false;
+    }
+  }
+  return true;
+}
+
+// The reader has taken all there was.
+void FileTransport::end() noexcept {
+  if (!file_.is_fifo() || !settings_.await_writer || read_error_ != 0) {
+    file_.close();
+    enter(TransportState::ended, read_error_);
+    return;
+  }
+  // The old descriptor would report its hang-up for ever: the next writer is awaited on a new one.
+  returning_ = true;
+  backoff_.restart(monotonic_ns());
+  try {
+    open({});
+    enter(TransportState::gone);
+  } catch (const std::exception&) {
+    file_.close();
+  }
+}
+
+bool FileTransport::fill(std::int64_t until_ns) noexcept {
+  while (!at_end_) {
+    // Asked first, because reading a FIFO that no writer has opened yet looks like its end.
+    short happened = 0;
+    if (file_.poll_fd() >= 0 &&
+        wait(file_.poll_fd(), POLLIN, nanoseconds(until_ns - monotonic_ns()), happened) != Wake::ready)
+      return false;
+    switch (file_.fill()) {
+      case ByteFile::Fill::more:
+        return true;
+      case ByteFile::Fill::none:
+        break;
+      case ByteFile::Fill::truncated:
+        report("the gzip stream ends early or is damaged", 0);
+        at_end_ = true;
+        break;
+      case ByteFile::Fill::error:
+        read_error_ = errno;
+        at_end_ = true;
+        break;
+      case ByteFile::Fill::end:
+        at_end_ = true;
+        break;
+    }
+  }
+  return false;
+}
+
+bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept {
+  if (!pace_.started()) pace_.start(recorded_ns, monotonic_ns());
+  const std::int64_t due = pace_.due_ns(recorded_ns);
+  const std::int64_t now = monotonic_ns();
+  if (due <= now) return true;
+  short happened = 0;
+  return wait(-1, 0, nanoseconds(std::min(due, until_ns) - now), happened) != Wake::stopped &&
+         due <= until_ns;
+}
+
+Delivery FileTransport::read(nanoseconds timeout) noexcept {
+  const std::int64_t until = monotonic_ns() + timeout.count();
+  if (stopped() || state() == TransportState::ended || !reopen(until)) return {};
+  Delivery delivery = take(until);
+  if (delivery.empty()) {
+    if (at_end_ && unread().empty()) end();
+    return {};
+  }
+  if (returning_) {
+    returning_ = false;
+    delivery.restarted = true;
+    enter(TransportState::open);
+    add(reopened_, 1);
+  }
+  add(bytes_, delivery.bytes.size());
+  add(frames_, delivery.frames.size());
+  return delivery;
+}
+
+// Raw bytes.
+class BytesFile final : public FileTransport {
+ public:
+  explicit BytesFile(FileSettings settings) : FileTransport(std::move(settings)) {
+    const double rate = this->settings().bytes_per_second * this->settings().speed;
+    block_ = this->settings().block_bytes;
+    if (block_ == 0)
+      block_ = static_cast<std::size_t>(std::max(1.0, std::min(rate / 1000.0, ByteFile::kCapacity / 2.0)));
+  }
+
+ private:
+  void begin() noexcept override {
+    opened_ns_ = realtime_ns();
+    delivered_ = held_ = 0;
+  }
+  Delivery take(std::int64_t until_ns) noexcept override;
+  // Recorded time of the end of the first n bytes.
+  [[nodiscard]] std::int64_t recorded_ns(std::uint64_t n) const {
+    return std::llround(static_cast<double>(n) / settings().bytes_per_second * 1e9);
+  }
+
+  std::size_t block_;
+  std::size_t held_ = 0;  // of unread(), given out by the delivery before
+  std::int64_t opened_ns_ = 0;
+  std::uint64_t delivered_ = 0;
+};
+
+Delivery BytesFile::take(std::int64_t until_ns) noexcept {
+  consume(std::exchange(held_, 0));
+  const std::size_t wanted = recorded() ? block_ : 1;
+  while (unread().size() < wanted && fill(until_ns)) {
+  }
+  std::size_t n = unread().size();
+  if (n == 0 || (n < wanted && !at_end())) return {};
+  if (recorded()) {
+    n = std::min(n, block_);
+    if (!await(recorded_ns(delivered_ + n), until_ns)) return {};
+  }
+  held_ = n;
+  delivered_ += n;
+  Delivery delivery;
+  delivery.bytes = unread().first(n);
+  if (recorded() || settings().bytes_per_second <= 0.0)
+    delivery.arrival_ns = realtime_ns();
+  else
+    delivery.arrival_ns = opened_ns_ + recorded_ns(delivered_);
+  return delivery;
+}
+
+// A candump log.
+class CandumpFile final : public FileTransport {
+ public:
+  using FileTransport::FileTransport;
+
+ private:
+  void begin() noexcept override {
+    line_ = 0;
+    pending_ = false;
+    overlong_ = false;
+    shift_ns_ = 0;
+  }
+  Delivery take(std::int64_t until_ns) noexcept override;
+  bool next_frame(std::int64_t until_ns) noexcept;
+  bool wanted(const CandumpEntry& entry) const noexcept;
+  bool next_line(std::string_view& line, std::int64_t until_ns) noexcept;
+
+  CandumpEntry entry_;
+  bool pending_ = false;   // entry_ is read and not yet delivered
+  bool overlong_ = false;  // in a line longer than the buffer, reported already
+  std::uint64_t line_ = 0;
+  std::int64_t shift_ns_ = 0;  // from the clock of deadlines to that of arrival times
+  std::array<ifog_can_frame, kBatch> batch_{};
+};
+
+bool CandumpFile::wanted(const CandumpEntry& entry) const noexcept {
+  if (!settings().interface.empty() && entry.interface != settings().interface) return false;
+  if (settings().ids.empty()) return true;
+  const bool extended = (entry.frame.flags & IFOG_CAN_EXTENDED) != 0;
+  return std::any_of(settings().ids.begin(), settings().ids.end(),
+                     [&](const CanId& id) { return id.id == entry.frame.id && id.extended == extended; });
+}
+
+// The line's bytes stay where they are until the next fill().
+bool CandumpFile::next_line(std::string_view& line, std::int64_t until_ns) noexcept {
+  for (;;) {
+    const std::span<const std::uint8_t> bytes = unread();
+    const auto* text = reinterpret_cast<const char*>(bytes.data());
+    const auto* newline =
+        bytes.empty() ? nullptr : static_cast<const char*>(std::memchr(text, '\n', bytes.size()));
+    if (newline == nullptr && bytes.size() == ByteFile::kCapacity) {
+      if (!std::exchange(overlong_, true))
+        report("a line of more than 64 KiB, this is no candump log", line_ + 1);
+      consume(bytes.size());
+    } else if (newline != nullptr || (at_end() && !bytes.empty())) {
+      const std::size_t length = newline != nullptr ? static_cast<std::size_t>(newline - text) : bytes.size();
+      ++line_;
+      consume(newline != nullptr ? length + 1 : length);
+      if (std::exchange(overlong_, false)) continue;
+      line = {text, length};
+      return true;
+    } else if (!fill(until_ns) && !(at_end() && !unread().empty())) {
+      return false;
+    }
+  }
+}
+
+bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
+  std::string_view line;
+  while (!pending_ && next_line(line, until_ns)) {
+    switch (parse_candump_line(line, entry_)) {
+      case CandumpLine::frame:
+        pending_ = wanted(entry_);
+        break;
+      case CandumpLine::error:
+        add(error_frames_, 1);
+        break;
+      case CandumpLine::malformed:
+        report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_);
+        break;
+      case CandumpLine::remote:
+      case CandumpLine::blank:
+        break;
+    }
+  }
+  return pending_;
+}
+
+Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
+  std::size_t n = 0;
+  while (n < batch_.size()) {
+    // With something in hand, only what is there already is added to it.
+    const std::int64_t until = n == 0 ? until_ns : monotonic_ns();
+    if (!next_frame(until)) break;
+    if (recorded()) {
+      if (!pace().started()) shift_ns_ = realtime_ns() - monotonic_ns();
+      if (!await(entry_.frame.arrival_ns, until)) break;
+    }
+    batch_[n] = entry_.frame;
+    if (recorded()) batch_[n].arrival_ns = pace().due_ns(entry_.frame.arrival_ns) + shift_ns_;
+    ++n;
+    pending_ = false;
+  }
+  Delivery delivery;
+  delivery.frames = std::span<const ifog_can_frame>(batch_).first(n);
+  return delivery;
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_file_transport(FileSettings settings) {
+  const auto refuse = [&](const std::string& what) {
+    throw std::runtime_error((settings.path.empty() ? "file transport" : settings.path) + ": " + what);
+  };
+  const bool bytes = settings.format == FileSettings::Format::bytes;
+  if (settings.path.empty()) refuse("no path, expected a file, a FIFO or '-'");
+  if (!(settings.speed > 0.0) || !std::isfinite(settings.speed))
+    refuse("speed is " + std::to_string(settings.speed) + ", expected a number above 0");
+  if (!(settings.bytes_per_second >= 0.0) || !std::isfinite(settings.bytes_per_second))
+    refuse("bytes_per_second is " + std::to_string(settings.bytes_per_second) + ", expected 0 or more");
+  if (bytes && settings.pace == FileSettings::Pace::recorded && settings.bytes_per_second == 0.0)
+    refuse("raw bytes carry no times: recorded pace needs bytes_per_second");
+  if (settings.block_bytes > ByteFile::kCapacity)
+    refuse("block_bytes is " + std::to_string(settings.block_bytes) + ", expected at most " +
+           std::to_string(ByteFile::kCapacity));
+  if (bytes) return std::make_unique<BytesFile>(std::move(settings));
+  return std::make_unique<CandumpFile>(std::move(settings));
+}
+
+}  // namespace ifog

@@ -1,0 +1,89 @@
+#include "drivers/transport/transport.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+std::int64_t clock_ns(clockid_t clock) noexcept {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+
+}  // namespace
+
+std::int64_t realtime_ns() noexcept { return clock_ns(CLOCK_REALTIME); }
+std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
+
+Transport::Transport(std::string name)
+    : name_(std::move(name)), stop_event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (stop_event_ < 0)
+    throw std::runtime_error(name_ + ": cannot make an eventfd: " + std::generic_category().message(errno));
+}
+
+Transport::~Transport() { close(stop_event_); }
+
+void Transport::stop() noexcept {
+  const int before = errno;  // a signal handler leaves errno as it was
+  stopped_.store(true, std::memory_order_relaxed);
+  // Never read again, so the event stays set and every later wait returns at once.
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = write(stop_event_, &one, sizeof one);
+  errno = before;
+}
+
+Transport::Wake Transport::wait(int fd, short events, std::chrono::nanoseconds timeout,
+                                short& happened) noexcept {
+  happened = 0;
+  const std::int64_t end = monotonic_ns() + timeout.count();
+  for (;;) {
+    std::array<pollfd, 2> fds{{{stop_event_, POLLIN, 0}, {fd, events, 0}}};
+    const std::int64_t left = std::max<std::int64_t>(0, end - monotonic_ns());
+    const timespec span{left / 1'000'000'000, left % 1'000'000'000};
+    const int n = ppoll(fds.data(), fd < 0 ? 1 : 2, &span, nullptr);
+    if (n < 0 && errno == EINTR) {
+      if (stopped()) return Wake::stopped;
+      continue;
+    }
+    if (fds[0].revents != 0 || stopped()) return Wake::stopped;
+    if (n > 0) {
+      happened = fds[1].revents;
+      return Wake::ready;
+    }
+    return Wake::timeout;
+  }
+}
+
+void Transport::enter(TransportState state, int reason) noexcept {
+  reason_.store(reason, std::memory_order_relaxed);
+  state_.store(state, std::memory_order_relaxed);
+}
+
+void Transport::report(const char* what, std::uint64_t line) noexcept {
+  fault_line_.store(line, std::memory_order_relaxed);
+  fault_.store(what, std::memory_order_release);
+  add(malformed_, 1);
+}
+
+TransportCounters Transport::counters() const {
+  const auto value = [](const Counter& counter) { return counter.load(std::memory_order_relaxed); };
+  return {value(bytes_),        value(frames_),   value(kernel_drops_),
+          value(error_frames_), value(reopened_), value(malformed_)};
+}
+
+TransportFault Transport::fault() const {
+  const char* what = fault_.load(std::memory_order_acquire);
+  return {what, fault_line_.load(std::memory_order_relaxed)};
+}
+
+}  // namespace ifog

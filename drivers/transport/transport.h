@@ -1,0 +1,118 @@
+// What a sensor's reader thread reads from: a serial line, a CAN interface or a file, behind one interface.
+//
+// Threads: open() and read() belong to the reader thread. stop(), stopped(), state(), reason(), counters()
+// and fault() may be called from any thread, stop() also from a signal handler.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "drivers/ifog/driver.h"
+
+namespace ifog {
+
+// What one read() brought. Points into the transport: valid until the next read().
+struct Delivery {
+  std::span<const std::uint8_t> bytes;     // a byte transport
+  std::int64_t arrival_ns = 0;             // of the last of `bytes`: CLOCK_REALTIME, ns
+  std::span<const ifog_can_frame> frames;  // a CAN transport; each frame has its own time
+  bool restarted = false;  // the first since the device was opened again: forget half-read frames
+
+  [[nodiscard]] bool empty() const { return bytes.empty() && frames.empty(); }
+};
+
+enum class TransportState {
+  open,
+  gone,   // the device went away, or open() failed: read() keeps trying to get it back
+  ended,  // a file is at its end, or cannot be read any further (reason() is not 0): nothing more will come
+};
+
+// Counters only grow.
+struct TransportCounters {
+  std::uint64_t bytes = 0;         // delivered
+  std::uint64_t frames = 0;        // delivered, CAN
+  std::uint64_t kernel_drops = 0;  // frames or bytes the kernel had no room for
+  std::uint64_t error_frames = 0;  // CAN error frames; serial framing, parity and overrun errors
+  std::uint64_t reopened = 0;      // times the device came back
+  std::uint64_t malformed = 0;  // lines of a log that are no frame, a file cut off in the middle; see fault()
+};
+
+// The latest fault in a file's content, for one line in the log: "PATH:LINE: WHAT".
+struct TransportFault {
+  const char* what = nullptr;  // static text; nullptr: none so far
+  std::uint64_t line = 0;      // 0: not a matter of lines
+};
+
+class Transport {
+ public:
+  // Throws std::runtime_error when the system has no eventfd left.
+  explicit Transport(std::string name);
+  virtual ~Transport();
+  Transport(const Transport&) = delete;
+  Transport& operator=(const Transport&) = delete;
+
+  // `opening` is sent each time the device opens. Throws std::runtime_error with one line: the device, the
+  // system's reason, what was expected. The transport is then `gone`: whoever wants to wait for a device that
+  // is not there yet goes on to read().
+  virtual void open(std::span<const std::uint8_t> opening) = 0;
+
+  // Waits until something arrives, `timeout` has passed or stop() is called, and returns what is there, empty
+  // for nothing. Never throws and, while the device is open, never allocates.
+  virtual Delivery read(std::chrono::nanoseconds timeout) noexcept = 0;
+
+  // True: the source keeps until it is read, so a reader whose ring is full stops reading rather than lose
+  // samples.
+  [[nodiscard]] virtual bool holds_back() const { return false; }
+
+  // Ends a waiting read() at once and every later one immediately.
+  void stop() noexcept;
+  [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] TransportState state() const { return state_.load(std::memory_order_relaxed); }
+  [[nodiscard]] int reason() const {
+    return reason_.load(std::memory_order_relaxed);
+  }  // errno of the latest failure
+  [[nodiscard]] TransportCounters counters() const;
+  [[nodiscard]] TransportFault fault() const;
+  // What open() could not get and can do without ("" for nothing). Only the thread that called open() may
+  // ask.
+  [[nodiscard]] const std::string& warning() const { return warning_; }
+
+ protected:
+  enum class Wake { ready, timeout, stopped };
+  // Waits for `events` on fd (or for nothing but time and stop() when fd is −1). `happened` gets poll's
+  // answer.
+  Wake wait(int fd, short events, std::chrono::nanoseconds timeout, short& happened) noexcept;
+
+  // One writer, so that a plain load and store do and no locked instruction is needed.
+  using Counter = std::atomic<std::uint64_t>;
+  static void add(Counter& counter, std::uint64_t n) noexcept {
+    counter.store(counter.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
+  }
+  void enter(TransportState state, int reason = 0) noexcept;
+  void report(const char* what, std::uint64_t line) noexcept;  // counts it as malformed, too
+
+  Counter bytes_{0}, frames_{0}, kernel_drops_{0}, error_frames_{0}, reopened_{0};
+  std::string warning_;
+
+ private:
+  std::string name_;
+  int stop_event_;
+  std::atomic<bool> stopped_{false};
+  std::atomic<TransportState> state_{TransportState::gone};
+  std::atomic<int> reason_{0};
+  std::atomic<const char*> fault_{nullptr};
+  std::atomic<std::uint64_t> fault_line_{0};
+  Counter malformed_{0};
+};
+
+// CLOCK_REALTIME and CLOCK_MONOTONIC in ns.
+std::int64_t realtime_ns() noexcept;
+std::int64_t monotonic_ns() noexcept;
+
+}  // namespace ifog

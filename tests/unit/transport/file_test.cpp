@@ -1,0 +1,308 @@
+#include "drivers/transport/file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "drivers/capture/text_file.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using ifog::FileSettings;
+using ifog::TransportState;
+
+// Long enough that a test which waits for it has failed.
+constexpr auto kForever = 60s;
+
+class FileTransport : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ifog-transport-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    settings_.path = (folder_ / "source").string();
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  void content(const std::string& text) const { std::ofstream(settings_.path, std::ios::binary) << text; }
+  void fifo() const { ASSERT_EQ(mkfifo(settings_.path.c_str(), 0600), 0); }
+  void candump(const std::string& text) {
+    content(text);
+    settings_.format = FileSettings::Format::candump;
+  }
+  std::unique_ptr<ifog::Transport> opened() const {
+    auto transport = ifog::make_file_transport(settings_);
+    transport->open({});
+    return transport;
+  }
+  std::string refusal() const {
+    try {
+      ifog::make_file_transport(settings_)->open({});
+    } catch (const std::runtime_error& error) {
+      const std::string what = error.what();
+      return what.starts_with(folder_.string()) ? what.substr(folder_.string().size() + 1) : what;
+    }
+    return "accepted";
+  }
+  static std::string all_bytes(ifog::Transport& transport) {
+    std::string text;
+    while (transport.state() == TransportState::open) {
+      const ifog::Delivery d = transport.read(kForever);
+      text.append(d.bytes.begin(), d.bytes.end());
+    }
+    return text;
+  }
+  static std::vector<ifog_can_frame> all_frames(ifog::Transport& transport) {
+    std::vector<ifog_can_frame> frames;
+    while (transport.state() == TransportState::open) {
+      const ifog::Delivery d = transport.read(kForever);
+      frames.insert(frames.end(), d.frames.begin(), d.frames.end());
+    }
+    return frames;
+  }
+
+  fs::path folder_;
+  FileSettings settings_;
+};
+
+std::string pattern(std::size_t n) {
+  std::string text(n, '\0');
+  std::uint32_t x = 1;
+  for (char& c : text) c = static_cast<char>((x = x * 1664525U + 1013904223U) >> 24U);
+  return text;
+}
+
+TEST_F(FileTransport, DeliversEveryByteOfAFileLongerThanItsBuffer) {
+  const std::string text = pattern(300'001);
+  content(text);
+  const auto transport = opened();
+  EXPECT_TRUE(transport->holds_back());
+  EXPECT_EQ(all_bytes(*transport), text);
+  EXPECT_EQ(transport->state(), TransportState::ended);
+  EXPECT_EQ(transport->reason(), 0);
+  EXPECT_EQ(transport->counters().bytes, text.size());
+  EXPECT_TRUE(transport->read(kForever).empty());
+}
+
+TEST_F(FileTransport, ReadsGzipAndSaysWhenItIsCutOff) {
+  settings_.path += ".gz";
+  const std::string text = pattern(200'000);
+  ifog::write_text_file(settings_.path, text);
+  EXPECT_EQ(all_bytes(*opened()), text);
+  fs::resize_file(settings_.path, fs::file_size(settings_.path) / 2);
+  const auto transport = opened();
+  const std::string some = all_bytes(*transport);
+  EXPECT_TRUE(text.starts_with(some));
+  EXPECT_EQ(transport->counters().malformed, 1U);
+  ASSERT_NE(transport->fault().what, nullptr);
+  EXPECT_STREQ(transport->fault().what, "the gzip stream ends early or is damaged");
+}
+
+TEST_F(FileTransport, RecordedBytesComeInBlocksNeverEarly) {
+  const std::string text = pattern(100);
+  content(text);
+  settings_.pace = FileSettings::Pace::recorded;
+  settings_.bytes_per_second = 1000;
+  settings_.block_bytes = 30;
+  const std::int64_t before = ifog::monotonic_ns();
+  const auto transport = opened();
+  EXPECT_FALSE(transport->holds_back());
+  std::vector<std::size_t> sizes;
+  std::string seen;
+  while (transport->state() == TransportState::open) {
+    const ifog::Delivery d = transport->read(kForever);
+    if (d.empty()) continue;
+    sizes.push_back(d.bytes.size());
+    seen.append(d.bytes.begin(), d.bytes.end());
+  }
+  EXPECT_EQ(seen, text);
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{30, 30, 30, 10}));
+  EXPECT_GE(ifog::monotonic_ns() - before, 70'000'000);  // 70 bytes after the first block
+}
+
+TEST_F(FileTransport, ReadReturnsEmptyAtItsTimeoutAndGoesOnWhereItWas) {
+  candump("(10.0) can0 001#01\n(10.2) can0 001#02\n");
+  settings_.pace = FileSettings::Pace::recorded;
+  const auto transport = opened();
+  ASSERT_EQ(transport->read(kForever).frames.size(), 1U);
+  int empty = 0;
+  for (;;) {
+    const ifog::Delivery d = transport->read(1ms);
+    if (d.empty()) {
+      ++empty;
+      continue;
+    }
+    ASSERT_EQ(d.frames.size(), 1U);
+    EXPECT_EQ(d.frames[0].data[0], 2);
+    break;
+  }
+  EXPECT_GT(empty, 0);
+}
+
+TEST_F(FileTransport, RecordedFramesKeepTheirSpacingAndStartNow) {
+  candump(
+      "(1000.000000) can0 001#01\n(1000.010000) can0 001#02\n(1000.010001) can0 001#03\n(1000.050000) can0 "
+      "001#04\n");
+  settings_.pace = FileSettings::Pace::recorded;
+  settings_.speed = 2.0;
+  const std::int64_t before = ifog::realtime_ns();
+  const auto transport = opened();
+  const std::vector<ifog_can_frame> frames = all_frames(*transport);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_GE(frames[0].arrival_ns, before);
+  EXPECT_EQ(frames[1].arrival_ns - frames[0].arrival_ns, 5'000'000);
+  EXPECT_EQ(frames[2].arrival_ns - frames[0].arrival_ns, 5'000'500);
+  EXPECT_EQ(frames[3].arrival_ns - frames[0].arrival_ns, 25'000'000);
+  EXPECT_GE(ifog::realtime_ns(), frames[3].arrival_ns);
+}
+
+TEST_F(FileTransport, FreeFramesKeepTheLogsTimes) {
+  std::string text;
+  for (int i = 0; i < 5000; ++i)
+    text += "(1700000000." + std::to_string(100'000 + i) + ") can0 123#" + (i % 2 == 0 ? "00" : "01") + "\n";
+  candump(text);
+  const auto transport = opened();
+  const std::vector<ifog_can_frame> frames = all_frames(*transport);
+  ASSERT_EQ(frames.size(), 5000U);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ASSERT_EQ(frames[i].arrival_ns, 1'700'000'000'100'000'000 + static_cast<std::int64_t>(i) * 1000);
+    ASSERT_EQ(frames[i].data[0], i % 2);
+  }
+  EXPECT_EQ(transport->counters().frames, 5000U);
+}
+
+TEST_F(FileTransport, PassesOnlyWantedFramesAndCountsTheRest) {
+  candump(
+      "(1.0) can0 123#01\n(1.1) can1 123#02\n(1.2) can0 124#03\n(1.3) can0 00000123#04\n(1.4) can0 "
+      "20000004#00\n"
+      "(1.5) can0 123#R\nrubbish\n\n(1.6) can0 123#05\n(1.7) can0 123#0");
+  settings_.interface = "can0";
+  settings_.ids = {{0x123, false}};
+  const auto transport = opened();
+  const std::vector<ifog_can_frame> frames = all_frames(*transport);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].data[0], 1);
+  EXPECT_EQ(frames[1].data[0], 5);
+  EXPECT_EQ(transport->counters().error_frames, 1U);
+  EXPECT_EQ(transport->counters().malformed, 2U);
+  EXPECT_EQ(transport->fault().line, 10U);
+  EXPECT_STREQ(transport->fault().what, "the log is cut off here");
+}
+
+TEST_F(FileTransport, ALineThatNeverEndsIsReportedOnceAndPassedOver) {
+  candump("(1.0) can0 123#01\n" + std::string(200'000, 'x') + "\n(1.1) can0 123#02\n");
+  const auto transport = opened();
+  EXPECT_EQ(all_frames(*transport).size(), 2U);
+  EXPECT_EQ(transport->counters().malformed, 1U);
+  EXPECT_EQ(transport->fault().line, 2U);
+}
+
+TEST_F(FileTransport, AFifoWaitsForItsFirstWriterAndEndsWithIt) {
+  fifo();
+  settings_.await_writer = false;
+  const auto transport = opened();
+  EXPECT_TRUE(transport->read(1ms).empty());
+  EXPECT_EQ(transport->state(), TransportState::open);
+  std::thread writer([&] { std::ofstream(settings_.path) << "hello"; });
+  EXPECT_EQ(all_bytes(*transport), "hello");
+  EXPECT_EQ(transport->state(), TransportState::ended);
+  writer.join();
+}
+
+TEST_F(FileTransport, AFifoWhoseWriterReturnsStartsAnew) {
+  fifo();
+  const auto transport = opened();
+  for (int round = 0; round < 20; ++round) {
+    const std::string text = "round " + std::to_string(round);
+    std::thread writer([&] { std::ofstream(settings_.path) << text; });
+    std::string seen;
+    bool restarted = false;
+    while (seen.size() < text.size()) {
+      const ifog::Delivery d = transport->read(kForever);
+      restarted = restarted || d.restarted;
+      seen.append(d.bytes.begin(), d.bytes.end());
+    }
+    writer.join();
+    EXPECT_EQ(seen, text);
+    EXPECT_EQ(restarted, round > 0);
+    while (transport->state() == TransportState::open) transport->read(kForever);
+    EXPECT_EQ(transport->state(), TransportState::gone);
+  }
+  EXPECT_EQ(transport->counters().reopened, 19U);
+}
+
+TEST_F(FileTransport, AFileThatIsMissingIsAwaited) {
+  EXPECT_EQ(refusal(), "source: cannot open: No such file or directory, expected a readable file or FIFO");
+  const auto transport = ifog::make_file_transport(settings_);
+  EXPECT_THROW(transport->open({}), std::runtime_error);
+  EXPECT_EQ(transport->state(), TransportState::gone);
+  EXPECT_EQ(transport->reason(), ENOENT);
+  EXPECT_TRUE(transport->read(1ms).empty());
+  content("late");
+  ifog::Delivery d;
+  while (d.empty()) d = transport->read(kForever);
+  EXPECT_EQ(std::string(d.bytes.begin(), d.bytes.end()), "late");
+}
+
+TEST_F(FileTransport, RefusesAFolderAndSettingsThatContradict) {
+  fs::create_directory(settings_.path);
+  EXPECT_EQ(refusal(), "source: cannot open: Is a directory, expected a readable file or FIFO");
+  settings_.pace = FileSettings::Pace::recorded;
+  EXPECT_EQ(refusal(), "source: raw bytes carry no times: recorded pace needs bytes_per_second");
+  settings_.bytes_per_second = -1;
+  EXPECT_EQ(refusal(), "source: bytes_per_second is -1.000000, expected 0 or more");
+  settings_.speed = 0;
+  EXPECT_EQ(refusal(), "source: speed is 0.000000, expected a number above 0");
+  settings_.path.clear();
+  EXPECT_EQ(refusal(), "file transport: no path, expected a file, a FIFO or '-'");
+}
+
+TEST_F(FileTransport, StopEndsAReadThatWaitsForBytes) {
+  fifo();
+  const auto transport = opened();
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(20ms);
+    transport->stop();
+  });
+  EXPECT_TRUE(transport->read(kForever).empty());
+  EXPECT_TRUE(transport->stopped());
+  EXPECT_TRUE(transport->read(kForever).empty());
+  stopper.join();
+}
+
+TEST_F(FileTransport, StopEndsAReadThatWaitsForARecordedTime) {
+  candump("(1.0) can0 001#01\n(3600.0) can0 001#02\n");
+  settings_.pace = FileSettings::Pace::recorded;
+  const auto transport = opened();
+  EXPECT_EQ(transport->read(kForever).frames.size(), 1U);
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(20ms);
+    transport->stop();
+  });
+  EXPECT_TRUE(transport->read(kForever).empty());
+  stopper.join();
+}
+
+TEST_F(FileTransport, CountersMayBeReadWhileTheReaderWorks) {
+  content(pattern(3'000'000));
+  const auto transport = opened();
+  std::thread reader([&] { all_bytes(*transport); });
+  std::uint64_t before = 0;
+  while (transport->state() == TransportState::open) {
+    const std::uint64_t now = transport->counters().bytes;
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  reader.join();
+  EXPECT_EQ(transport->counters().bytes, 3'000'000U);
+}
+
+}  // namespace
