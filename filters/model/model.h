@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "filters/estimator/settings.h"
@@ -29,9 +30,14 @@ struct Effect {
   std::string with_form, with_channel;
   std::string axis;        // "" for a single-axis sensor
   double reference = 0.0;  // the channel's value at which the effect is zero (25 degC, 12 V, 0 elsewhere)
+  double with_reference = 0.0;  // "product": likewise of with_channel
   std::vector<ModelParameter> parameters;
   std::vector<double> table_x, table_y;  // "lookup": knots in the channel's unit, values in rad/s
   double period = 0.0;                   // "lookup": > 0 when periodic
+  // "lookup": the table is an angle in rad and the effect its difference from sample to sample over dt. A
+  // bounded angle cannot swallow rotation, so this is the only kind allowed on channels that themselves
+  // follow the rate.
+  bool angle = false;
   std::string meaning;
 };
 
@@ -43,7 +49,7 @@ struct ChannelRange {
 // IEEE Std 952 coefficients, SI: Q rad, N rad/s/sqrt(Hz), B rad/s, K rad/s^2/sqrt(Hz), R rad/s^2; absent: not
 // seen.
 struct NoiseTerms {
-  std::optional<double> Q, N, B, K, R;
+  std::optional<double> Q{}, N{}, B{}, K{}, R{};
 };
 
 struct ModelSource {
@@ -68,6 +74,8 @@ struct Model {
 // Both throw std::runtime_error with one line: file, line or key, value, what was expected.
 // write_model writes to a temporary file, fsyncs and renames.
 Model read_model(const std::string& path);
+Model parse_model(std::string_view text, const std::string& name);  // `name` stands for the file in messages
+std::string model_text(const Model& model);
 void write_model(const Model& model, const std::string& path);
 
 }  // namespace ifog

@@ -1,0 +1,237 @@
+#include "filters/effects/compensator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+
+// Scale factor errors are below a tenth, so each round gains a digit or more; twelve reach the last bit.
+constexpr int kRounds = 12;
+
+}  // namespace
+
+Compensator::Compensator(const Model& model, const std::vector<std::string>& axes, double stale_after_s)
+    : rate_range_{"", -kEverywhere, kEverywhere}, axes_(axes.size()), stale_after_s_(stale_after_s) {
+  if (axes.empty() || axes.size() > kMaxAxes) {
+    throw std::invalid_argument("a compensator has 1 to 3 axes, not " + std::to_string(axes.size()));
+  }
+  for (const Effect& effect : model.effects) parameters_ += effect.parameters.size();
+  if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
+  for (const ChannelRange& range : model.ranges) {
+    if (is_reference_rate(range.channel)) rate_range_ = range;
+  }
+
+  std::size_t row = 0;
+  for (const Effect& effect : model.effects) {
+    const std::size_t first_row = row;
+    row += effect.parameters.size();
+    const auto form = form_named(effect.form);
+    if (!form) throw std::invalid_argument("effect form '" + effect.form + "' is unknown");
+    const std::string label = effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+    if (describes_noise(*form) || !carries_over(*form)) {
+      left_out_.push_back(label);
+      continue;
+    }
+    if (has_channel(*form) && effect.channel.empty()) {
+      throw std::invalid_argument("effect '" + effect.form + "' names no channel");
+    }
+    Term term;
+    term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
+    term.parameter = kNone;
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (effect.parameters[i].name == "coefficient" && *form != Form::kLookup)
+        term.parameter = first_row + i;
+    }
+    const auto add = [&](ShapeSettings settings, const std::string& channel) {
+      const bool rate = is_reference_rate(channel);
+      if (rate && (has_memory(settings.form) || settings.angle)) {
+        throw std::invalid_argument(label + ": a form with memory cannot be a function of the rate");
+      }
+      const bool timed = settings.form == Form::kWarmUp;
+      term.factors.push_back(
+          {Shape(std::move(settings)), rate || timed ? kNone : channel_index(channel), rate});
+    };
+    try {
+      add(shape_settings(effect), effect.channel);
+      if (*form == Form::kProduct) add(with_shape_settings(effect), effect.with_channel);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("effect " + label + ": " + error.what());
+    }
+    bool placed = false;
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
+      term.axis = axis;
+      terms_.push_back(term);
+      placed = true;
+    }
+    if (!placed)
+      throw std::invalid_argument("effect " + label + ": the sensor has no axis '" + effect.axis + "'");
+  }
+
+  held_.resize(channels_.size());
+  for (const std::string& name : channels_) {
+    ChannelRange range{name, -kEverywhere, kEverywhere};
+    for (const ChannelRange& known : model.ranges) {
+      if (known.channel == name) range = known;
+    }
+    ranges_.push_back(range);
+  }
+}
+
+std::size_t Compensator::channel_index(const std::string& name) {
+  const auto found = std::find(channels_.begin(), channels_.end(), name);
+  if (found != channels_.end()) return static_cast<std::size_t>(found - channels_.begin());
+  channels_.push_back(name);
+  return channels_.size() - 1;
+}
+
+void Compensator::hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept {
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    Held& held = held_[i];
+    const double value = i < in.channels.size() ? in.channels[i] : std::numeric_limits<double>::quiet_NaN();
+    const double age = i < in.age_s.size() ? in.age_s[i] : 0.0;
+    held.stale = !std::isfinite(value) || age > stale_after_s_;
+    if (std::isfinite(value)) {
+      held.seen = true;
+      held.value = std::clamp(value, ranges_[i].low, ranges_[i].high);
+      held.excess = value - held.value;
+    }
+    if (held.stale) out.flags |= kStaleChannel;
+    if (!held.seen) out.flags |= kNoChannelYet;
+    if (held.seen && held.excess != 0.0) out.flags |= kOutOfRange;
+  }
+}
+
+void Compensator::evaluate(Term& term, double dt_s, CompensatorOutput& out) noexcept {
+  term.value = 1.0;
+  term.moved = 0.0;
+  term.usable = true;
+  for (Factor& factor : term.factors) {
+    if (factor.of_rate) continue;
+    if (factor.channel == kNone) {
+      term.value *= factor.shape.step(0.0, dt_s);
+      continue;
+    }
+    const Held& held = held_[factor.channel];
+    if (held.stale || held.excess != 0.0) out.axis_touched[term.axis] = true;
+    if (!held.seen) {
+      term.usable = false;
+      return;
+    }
+    const double value = factor.shape.step(held.value, dt_s);
+    if (held.excess != 0.0) {
+      term.moved = std::abs(term.moved * value) +
+                   std::abs(term.value * factor.shape.moves_by(held.value, held.excess));
+    } else {
+      term.moved *= value;
+    }
+    term.value *= value;
+  }
+}
+
+double Compensator::of_rate(const Term& term, double rate, bool* outside) const noexcept {
+  double value = 1.0;
+  for (const Factor& factor : term.factors) {
+    if (!factor.of_rate) continue;
+    const double inside = std::clamp(rate, rate_range_.low, rate_range_.high);
+    if (outside && inside != rate) *outside = true;
+    value *= factor.shape.at(inside);
+  }
+  return value;
+}
+
+double Compensator::parameter_variance(std::size_t axis, double rate) const noexcept {
+  if (covariance_.empty()) return 0.0;
+  double variance = 0.0;
+  for (const Term& a : terms_) {
+    if (a.axis != axis || !a.usable || a.parameter == kNone) continue;
+    const double ga = a.value * of_rate(a, rate, nullptr);
+    for (const Term& b : terms_) {
+      if (b.axis != axis || !b.usable || b.parameter == kNone) continue;
+      variance +=
+          ga * covariance_[a.parameter * parameters_ + b.parameter] * b.value * of_rate(b, rate, nullptr);
+    }
+  }
+  return std::max(variance, 0.0);
+}
+
+void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexcept {
+  out.flags = 0;
+  out.axis_touched = {};
+  hold_channels(in, out);
+  for (Term& term : terms_) evaluate(term, in.dt_s, out);
+
+  for (std::size_t axis = 0; axis < axes_; ++axis) {
+    const double measured = in.rate_radps[axis];
+    double rate = measured;
+    double correction = 0.0;
+    bool of_the_rate = false;
+    for (const Term& term : terms_) {
+      for (const Factor& factor : term.factors) of_the_rate |= term.axis == axis && factor.of_rate;
+    }
+    for (int round = 0; round < (of_the_rate ? kRounds : 1); ++round) {
+      correction = 0.0;
+      for (const Term& term : terms_) {
+        if (term.axis == axis && term.usable)
+          correction += term.coefficient * term.value * of_rate(term, rate, nullptr);
+      }
+      rate = measured - correction;
+    }
+    bool outside = false;
+    double inflation = 0.0;
+    for (const Term& term : terms_) {
+      if (term.axis != axis || !term.usable) continue;
+      const double moved = term.coefficient * term.moved * of_rate(term, rate, &outside);
+      inflation += moved * moved;
+    }
+    if (outside) {
+      out.flags |= kOutOfRange;
+      out.axis_touched[axis] = true;
+      // Beyond the rates it was fitted on the scale factor is a guess: as uncertain as the correction is
+      // large.
+      inflation += correction * correction;
+    }
+    out.correction_radps[axis] = correction;
+    out.compensated_radps[axis] = rate;
+    out.variance_rad2ps2[axis] = parameter_variance(axis, rate) + inflation;
+  }
+}
+
+void Compensator::restart() noexcept {
+  for (Held& held : held_) held = {};
+  for (Term& term : terms_) {
+    for (Factor& factor : term.factors) factor.shape.restart();
+  }
+}
+
+void Compensator::take_over(const Compensator& previous) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    for (std::size_t j = 0; j < previous.channels_.size(); ++j) {
+      if (channels_[i] != previous.channels_[j] || !previous.held_[j].seen) continue;
+      const double value = previous.held_[j].value + previous.held_[j].excess;
+      held_[i].seen = true;
+      held_[i].value = std::clamp(value, ranges_[i].low, ranges_[i].high);
+      held_[i].excess = value - held_[i].value;
+    }
+  }
+  for (Term& term : terms_) {
+    for (Factor& factor : term.factors) {
+      for (const Term& old : previous.terms_) {
+        for (const Factor& other : old.factors) {
+          const bool same_channel =
+              factor.channel == other.channel
+                  ? factor.channel == kNone || channels_[factor.channel] == previous.channels_[other.channel]
+                  : factor.channel != kNone && other.channel != kNone &&
+                        channels_[factor.channel] == previous.channels_[other.channel];
+          if (same_channel) factor.shape.take_over(other.shape);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace ifog

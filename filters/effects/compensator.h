@@ -1,0 +1,106 @@
+// The correction that runs before the filter: subtracts a model's effects from the measured rate, for all
+// axes of one sensor. step() is the daemon's hot path: no allocation, no lock, no exception; the same code
+// serves `ifog denoise`.
+//
+// With b the effects of the environment and s the scale factor error, itself a function of temperature and
+// rate, the true rate solves z = w + b + s(T, w) w. The reference rate of the fit is not there online; w
+// takes its place.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filters/effects/shape.h"
+#include "filters/estimator/estimator.h"
+#include "filters/model/model.h"
+
+namespace ifog {
+
+enum CompensatorFlags : std::uint32_t {
+  kStaleChannel = 1,  // a channel is missing or older than allowed: held at its last value
+  kOutOfRange =
+      2,  // a channel is outside the range the model was fitted on: held at the edge, variance inflated
+  kNoChannelYet = 4,  // a channel has never had a value: its effects are left out
+};
+
+struct CompensatorInput {
+  double dt_s = 0.0;  // time covered by this sample; after a gap, the whole gap
+  std::array<double, kMaxAxes> rate_radps{};
+  std::span<const double> channels{};  // in the order of Compensator::channels(); NaN: missing now
+  std::span<const double> age_s{};     // of each channel's value; empty: all are as old as the sample
+};
+
+struct CompensatorOutput {
+  std::array<double, kMaxAxes> compensated_radps{};
+  std::array<double, kMaxAxes> correction_radps{};  // what was subtracted
+  std::array<double, kMaxAxes>
+      variance_rad2ps2{};   // of the correction: parameter covariance, and leaving the range
+  std::uint32_t flags = 0;  // CompensatorFlags
+  std::array<bool, kMaxAxes> axis_touched{};  // a flag concerns this axis
+};
+
+class Compensator {
+ public:
+  // `axes` as in the capture: "x", "y", "z", or one "". An effect without an axis applies to every axis.
+  // Throws std::invalid_argument naming the effect and what is wrong with it.
+  Compensator(const Model& model, const std::vector<std::string>& axes,
+              double stale_after_s = std::numeric_limits<double>::infinity());
+
+  // The environment channels step() wants, in this order. Reference rates are not among them.
+  [[nodiscard]] const std::vector<std::string>& channels() const noexcept { return channels_; }
+  [[nodiscard]] std::size_t effects() const noexcept { return terms_.size(); }
+  // Effects of the model that are not corrected online, see carries_over().
+  [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
+
+  void step(const CompensatorInput& in, CompensatorOutput& out) noexcept;
+  void restart() noexcept;
+
+  // After a reload: channels and the shapes that both models share go on where the previous compensator is,
+  // so that a new model makes no transient of its own.
+  void take_over(const Compensator& previous) noexcept;
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  struct Factor {
+    Shape shape;
+    std::size_t channel;  // kNone: the rate itself, or time
+    bool of_rate;
+  };
+  struct Term {
+    std::size_t axis;
+    double coefficient;
+    std::size_t parameter;  // row of the coefficient in the covariance, kNone without
+    std::vector<Factor> factors;
+    double value = 0.0;  // of the factors that do not depend on the rate, per unit coefficient
+    double moved = 0.0;  // by how much leaving the range would have changed it
+    bool usable = false;
+  };
+  struct Held {
+    double value = 0.0;
+    double excess = 0.0;  // beyond the range the model was fitted on
+    bool seen = false;
+    bool stale = false;
+  };
+
+  void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
+  void evaluate(Term& term, double dt_s, CompensatorOutput& out) noexcept;
+  [[nodiscard]] double of_rate(const Term& term, double rate, bool* outside) const noexcept;
+  [[nodiscard]] double parameter_variance(std::size_t axis, double rate) const noexcept;
+  std::size_t channel_index(const std::string& name);
+
+  std::vector<std::string> channels_, left_out_;
+  std::vector<ChannelRange> ranges_;  // of channels_, infinite where the model gives none
+  ChannelRange rate_range_;
+  std::vector<Held> held_;
+  std::vector<Term> terms_;
+  std::vector<double> covariance_;
+  std::size_t parameters_ = 0;
+  std::size_t axes_;
+  double stale_after_s_;
+};
+
+}  // namespace ifog

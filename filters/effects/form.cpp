@@ -1,0 +1,86 @@
+#include "filters/effects/form.h"
+
+#include <array>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr std::array<std::pair<Form, std::string_view>, 20> kNames = {{
+    {Form::kLinear, "linear"},
+    {Form::kQuadratic, "quadratic"},
+    {Form::kCubic, "cubic"},
+    {Form::kQuintic, "quintic"},
+    {Form::kSeptic, "septic"},
+    {Form::kRate, "rate"},
+    {Form::kSecondRate, "second_rate"},
+    {Form::kLagged, "lagged"},
+    {Form::kLookup, "lookup"},
+    {Form::kProduct, "product"},
+    {Form::kBandPower, "band_power"},
+    {Form::kLine, "line"},
+    {Form::kStep, "step"},
+    {Form::kRateRamp, "rate_ramp"},
+    {Form::kWarmUp, "warm_up"},
+    {Form::kEarthRate, "earth_rate"},
+    {Form::kGaussMarkov, "gauss_markov"},
+    {Form::kOutliers, "outliers"},
+    {Form::kNoiseChange, "noise_change"},
+    {Form::kQuantisation, "quantisation"},
+}};
+
+}  // namespace
+
+std::optional<Form> form_named(std::string_view name) {
+  for (const auto& [form, text] : kNames) {
+    if (text == name) return form;
+  }
+  return std::nullopt;
+}
+
+std::string_view name_of(Form form) {
+  for (const auto& [each, text] : kNames) {
+    if (each == form) return text;
+  }
+  return "";
+}
+
+bool has_channel(Form form) { return form < Form::kLine || form == Form::kEarthRate; }
+
+bool has_memory(Form form) {
+  return form == Form::kRate || form == Form::kSecondRate || form == Form::kLagged ||
+         form == Form::kBandPower;
+}
+
+bool describes_noise(Form form) { return form >= Form::kGaussMarkov; }
+
+bool carries_over(Form form) { return has_channel(form) || form == Form::kWarmUp; }
+
+int power_of(Form form) {
+  switch (form) {
+    case Form::kLinear:
+    case Form::kEarthRate:
+      return 1;
+    case Form::kQuadratic:
+      return 2;
+    case Form::kCubic:
+      return 3;
+    case Form::kQuintic:
+      return 5;
+    case Form::kSeptic:
+      return 7;
+    default:
+      return 0;
+  }
+}
+
+double parameter(const Effect& effect, std::string_view name) {
+  for (const ModelParameter& each : effect.parameters) {
+    if (each.name == name) return each.value;
+  }
+  return 0.0;
+}
+
+bool is_reference_rate(std::string_view channel) { return channel.starts_with("reference_rate"); }
+
+}  // namespace ifog

@@ -1,0 +1,67 @@
+// The forms an effect can take: how a channel, or time alone, turns into an error of the rate.
+//
+// With c the channel less its reference, tau time constants, LP the first-order low-pass:
+//   linear c            quadratic c^2         cubic c^3        quintic c^5       septic c^7
+//   rate d/dt LP(c)     second_rate d2/dt2 LP(LP(c))           lagged LP(c) or LP(LP(c)) with two time
+//   constants lookup f(c), piecewise linear; with `angle` the table is an angle and the effect its difference
+//   over dt product c * with_form(with_channel) band_power mean square of c - LP(c)
+// and of the time t since the record's start (or the daemon's):
+//   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
+// earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
+// acceleration. gauss_markov, outliers, noise_change, quantisation say what the noise is; there is nothing to
+// subtract.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "filters/model/model.h"
+
+namespace ifog {
+
+enum class Form {
+  kLinear,
+  kQuadratic,
+  kCubic,
+  kQuintic,
+  kSeptic,
+  kRate,
+  kSecondRate,
+  kLagged,
+  kLookup,
+  kProduct,
+  kBandPower,
+  kLine,
+  kStep,
+  kRateRamp,
+  kWarmUp,
+  kEarthRate,
+  kGaussMarkov,
+  kOutliers,
+  kNoiseChange,
+  kQuantisation,
+};
+
+std::optional<Form> form_named(std::string_view name);
+std::string_view name_of(Form form);
+
+[[nodiscard]] bool has_channel(Form form);
+[[nodiscard]] bool has_memory(
+    Form form);  // depends on the channel's past, so it cannot be a function of the rate
+[[nodiscard]] bool describes_noise(Form form);  // nothing to subtract
+
+// False for what happened once in a record, or has a phase or an origin that the next record does not share:
+// it is reported and removed from that record, and left out online.
+[[nodiscard]] bool carries_over(Form form);
+
+// The power of a polynomial form, 0 for others.
+[[nodiscard]] int power_of(Form form);
+
+// 0 when the effect has no parameter of that name.
+[[nodiscard]] double parameter(const Effect& effect, std::string_view name);
+
+// The reference rate, known on a rate table; online its place is taken by the rate itself.
+[[nodiscard]] bool is_reference_rate(std::string_view channel);
+
+}  // namespace ifog

@@ -1,0 +1,216 @@
+#include "filters/effects/meaning.h"
+
+#include <algorithm>
+
+namespace ifog {
+namespace {
+
+bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+std::string power_unit(const std::string& unit, int power) {
+  return power == 1 ? unit : unit + "^" + std::to_string(power);
+}
+
+// Unit of a form's value, given the channel's.
+std::string form_unit(Form form, const std::string& unit) {
+  switch (form) {
+    case Form::kRate:
+      return "(" + unit + "/s)";
+    case Form::kSecondRate:
+      return "(" + unit + "/s^2)";
+    case Form::kBandPower:
+      return unit + "^2";
+    case Form::kLagged:
+      return unit;
+    default:
+      return power_unit(unit, std::max(1, power_of(form)));
+  }
+}
+
+std::string order_of(Form form) {
+  switch (form) {
+    case Form::kQuadratic:
+      return "quadratic ";
+    case Form::kCubic:
+      return "cubic ";
+    case Form::kQuintic:
+      return "fifth-order ";
+    case Form::kSeptic:
+      return "seventh-order ";
+    default:
+      return "";
+  }
+}
+
+std::string of_temperature(Form form) {
+  switch (form) {
+    case Form::kLinear:
+      return "bias follows the temperature";
+    case Form::kRate:
+      return "Shupe effect: bias follows the rate of change of the temperature";
+    case Form::kSecondRate:
+      return "bias follows the second time derivative of the temperature (temperature gradient across the "
+             "coil settling)";
+    case Form::kLagged:
+      return "bias follows the temperature with a lag: the sensing coil is warmer or cooler than the "
+             "thermometer";
+    case Form::kLookup:
+      return "bias is a curve in temperature";
+    default:
+      return order_of(form) + "temperature dependence of the bias";
+  }
+}
+
+std::string of_acceleration(Form form) {
+  switch (form) {
+    case Form::kLinear:
+      return "g-sensitivity: bias follows the specific force (or the Earth's rate turning into a tilting "
+             "axis)";
+    case Form::kEarthRate:
+      return "the Earth's rate turning into the axis as the sensor tilts";
+    case Form::kQuadratic:
+      return "g-squared sensitivity";
+    case Form::kBandPower:
+      return "vibration rectification: bias follows the mean square of the vibration";
+    default:
+      return order_of(form) + "dependence on the specific force";
+  }
+}
+
+std::string of_reference(Form form) {
+  if (form == Form::kLinear) return "scale factor error";
+  if (power_of(form) % 2 == 1) return "scale factor nonlinearity, " + order_of(form) + "in the rate";
+  return "scale factor asymmetry between the directions, " + order_of(form) + "in the rate";
+}
+
+std::string of_channel(ChannelKind kind, Form form, const std::string& name) {
+  switch (kind) {
+    case ChannelKind::kTemperature:
+      return of_temperature(form);
+    case ChannelKind::kAcceleration:
+      return of_acceleration(form);
+    case ChannelKind::kReferenceRate:
+      return of_reference(form);
+    case ChannelKind::kMagneticField:
+      if (form == Form::kLinear)
+        return "Faraday effect: bias follows the magnetic field along the coil's axis";
+      break;
+    case ChannelKind::kRamp:
+      if (form == Form::kLookup)
+        return "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset)";
+      break;
+    case ChannelKind::kSupply:
+      if (form == Form::kLinear) return "bias follows the supply";
+      break;
+    default:
+      break;
+  }
+  switch (form) {
+    case Form::kLinear:
+      return "bias follows " + name;
+    case Form::kRate:
+      return "bias follows the rate of change of " + name;
+    case Form::kSecondRate:
+      return "bias follows the second derivative of " + name;
+    case Form::kLagged:
+      return "bias follows " + name + " with a lag";
+    case Form::kLookup:
+      return "bias is a curve in " + name;
+    case Form::kBandPower:
+      return "bias follows the mean square of the fast part of " + name;
+    default:
+      return order_of(form) + "dependence of the bias on " + name;
+  }
+}
+
+std::string of_product(const Effect& effect, Form with_form) {
+  const bool first = is_reference_rate(effect.channel);
+  const bool second = is_reference_rate(effect.with_channel);
+  if (first || second) {
+    const std::string& other = first ? effect.with_channel : effect.channel;
+    const Form order = second ? with_form : Form::kLinear;
+    const std::string what =
+        order == Form::kLinear ? "scale factor" : order_of(order) + "scale factor nonlinearity";
+    const std::string how = first ? order_of(with_form) : "";
+    if (kind_of(other) == ChannelKind::kTemperature)
+      return what + " changes with temperature (" + how + "product with the rate)";
+    return what + " changes with " + other;
+  }
+  return "product of " + effect.channel + " and " + effect.with_channel;
+}
+
+}  // namespace
+
+ChannelKind kind_of(std::string_view channel) {
+  if (is_reference_rate(channel)) return ChannelKind::kReferenceRate;
+  if (has(channel, "ramp")) return ChannelKind::kRamp;
+  if (has(channel, "temp") || channel.ends_with("_degC") || channel.ends_with("_K"))
+    return ChannelKind::kTemperature;
+  if (has(channel, "accel") || channel.ends_with("_mps2") || channel.ends_with("_g"))
+    return ChannelKind::kAcceleration;
+  if (has(channel, "mag") || channel.ends_with("_T") || channel.ends_with("_uT") || channel.ends_with("_G")) {
+    return ChannelKind::kMagneticField;
+  }
+  if (has(channel, "supply") || channel.ends_with("_V")) return ChannelKind::kSupply;
+  if (has(channel, "pressure") || channel.ends_with("_Pa") || channel.ends_with("_hPa"))
+    return ChannelKind::kPressure;
+  return ChannelKind::kOther;
+}
+
+double reference_of(std::string_view channel) {
+  if (channel.ends_with("_degC")) return 25.0;
+  if (channel.ends_with("_V")) return 12.0;
+  return 0.0;
+}
+
+std::string unit_of(std::string_view channel) {
+  const auto at = channel.rfind('_');
+  if (at == std::string_view::npos || at + 1 == channel.size()) return "";
+  const std::string_view unit = channel.substr(at + 1);
+  if (unit == "mps2") return "(m/s^2)";
+  if (unit == "radps") return "(rad/s)";
+  return std::string(unit);
+}
+
+std::string meaning_of(const Effect& effect) {
+  const auto form = form_named(effect.form);
+  if (!form) return "";
+  switch (*form) {
+    case Form::kProduct:
+      return of_product(effect, form_named(effect.with_form).value_or(Form::kLinear));
+    case Form::kLine:
+      return "a line: vibration, mains, or a structure's own frequency, or a beat inside the sensor";
+    case Form::kStep:
+      return "the bias jumped once";
+    case Form::kRateRamp:
+      return "the bias drifts steadily with time";
+    case Form::kWarmUp:
+      return "warm-up: the bias settles exponentially after the start of the record";
+    case Form::kGaussMarkov:
+      return "slow noise with a correlation time";
+    case Form::kOutliers:
+      return "single samples far outside the noise";
+    case Form::kNoiseChange:
+      return "the noise level changed during the record";
+    case Form::kQuantisation:
+      return "the rate comes in steps";
+    default:
+      return of_channel(kind_of(effect.channel), *form, effect.channel);
+  }
+}
+
+std::string coefficient_unit(const Effect& effect) {
+  const auto form = form_named(effect.form);
+  if (!form) return "rad/s";
+  if (*form == Form::kProduct) {
+    const Form with = form_named(effect.with_form).value_or(Form::kLinear);
+    return "rad/s/" + form_unit(Form::kLinear, unit_of(effect.channel)) + "/" +
+           form_unit(with, unit_of(effect.with_channel));
+  }
+  if (*form == Form::kRateRamp) return "rad/s^2";
+  if (!has_channel(*form) || *form == Form::kLookup) return "rad/s";
+  const std::string unit = unit_of(effect.channel);
+  return "rad/s/" + form_unit(*form, unit.empty() ? "unit" : unit);
+}
+
+}  // namespace ifog

@@ -1,0 +1,178 @@
+#include "filters/effects/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+// Share of the way a first-order low-pass goes in dt: exact for an input held over dt.
+double share(double dt, double time_constant) {
+  return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
+}
+
+// Mean square is an average; a second is short against what the filter behind it follows and long against
+// vibration.
+constexpr double kPowerAverage_s = 1.0;
+
+double power(double c, Form form) noexcept {
+  const double c2 = c * c;
+  switch (form) {
+    case Form::kQuadratic:
+      return c2;
+    case Form::kCubic:
+      return c2 * c;
+    case Form::kQuintic:
+      return c2 * c2 * c;
+    case Form::kSeptic:
+      return c2 * c2 * c2 * c;
+    default:
+      return c;
+  }
+}
+
+}  // namespace
+
+ShapeSettings shape_settings(const Effect& effect) {
+  const auto form = form_named(effect.form);
+  if (!form) throw std::invalid_argument("effect form '" + effect.form + "' is unknown");
+  ShapeSettings settings;
+  settings.form = *form == Form::kProduct || *form == Form::kEarthRate ? Form::kLinear : *form;
+  settings.reference = effect.reference;
+  if (*form == Form::kProduct) return settings;
+  settings.time_constant_s = parameter(effect, "time_constant_s");
+  settings.second_time_constant_s = parameter(effect, "second_time_constant_s");
+  settings.table_x = effect.table_x;
+  settings.table_y = effect.table_y;
+  settings.period = effect.period;
+  settings.angle = effect.angle;
+  return settings;
+}
+
+ShapeSettings with_shape_settings(const Effect& effect) {
+  const auto form = form_named(effect.with_form);
+  if (!form || *form == Form::kProduct || *form == Form::kLookup || !has_channel(*form)) {
+    throw std::invalid_argument("product with form '" + effect.with_form +
+                                "', expected a form of a channel other than product and lookup");
+  }
+  ShapeSettings settings;
+  settings.form = *form;
+  settings.reference = effect.with_reference;
+  settings.time_constant_s = parameter(effect, "time_constant_s");
+  settings.second_time_constant_s = parameter(effect, "second_time_constant_s");
+  return settings;
+}
+
+Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
+  const bool lookup = settings_.form == Form::kLookup;
+  if (lookup && (settings_.table_x.size() < 2 || settings_.table_x.size() != settings_.table_y.size())) {
+    throw std::invalid_argument("a lookup needs a table of at least two knots");
+  }
+  if (settings_.time_constant_s < 0.0 || settings_.second_time_constant_s < 0.0) {
+    throw std::invalid_argument("a time constant is negative");
+  }
+  if (!has_channel(settings_.form) && settings_.form != Form::kWarmUp) {
+    throw std::invalid_argument("form '" + std::string(name_of(settings_.form)) +
+                                "' has no channel to be a shape of");
+  }
+}
+
+double Shape::table(double value) const noexcept {
+  const auto& x = settings_.table_x;
+  const auto& y = settings_.table_y;
+  if (settings_.period > 0.0) value -= settings_.period * std::floor((value - x.front()) / settings_.period);
+  if (value <= x.front()) return y.front();
+  if (value >= x.back()) return y.back();
+  const auto above = std::upper_bound(x.begin(), x.end(), value);
+  const auto i = static_cast<std::size_t>(above - x.begin());
+  return y[i - 1] + (y[i] - y[i - 1]) * (value - x[i - 1]) / (x[i] - x[i - 1]);
+}
+
+double Shape::at(double value) const noexcept {
+  if (settings_.form == Form::kLookup) return table(value);
+  return power(value - settings_.reference, settings_.form);
+}
+
+double Shape::step(double value, double dt_s) noexcept {
+  if (!has_memory(settings_.form) && settings_.form != Form::kWarmUp && !settings_.angle) return at(value);
+  if (dt_s != dt_) {
+    dt_ = dt_s;
+    alpha_ = share(dt_s, settings_.time_constant_s);
+    beta_ = share(dt_s, settings_.form == Form::kSecondRate  ? settings_.time_constant_s
+                        : settings_.form == Form::kBandPower ? kPowerAverage_s
+                                                             : settings_.second_time_constant_s);
+  }
+  const bool fresh = !started_;
+  started_ = true;
+  switch (settings_.form) {
+    case Form::kWarmUp:
+      elapsed_ = fresh ? 0.0 : elapsed_ + dt_s;
+      return std::exp(-elapsed_ / settings_.time_constant_s);
+    case Form::kLookup: {
+      const double angle = table(value);
+      const double change = fresh || dt_s <= 0.0 ? 0.0 : (angle - first_) / dt_s;
+      first_ = angle;
+      return change;
+    }
+    default:
+      break;
+  }
+  const double c = value - settings_.reference;
+  if (fresh) {
+    first_ = c;
+    second_ = settings_.form == Form::kLagged ? c : 0.0;
+  }
+  const double step1 = alpha_ * (c - first_);
+  first_ += step1;
+  switch (settings_.form) {
+    case Form::kRate:
+      return dt_s > 0.0 ? step1 / dt_s : 0.0;
+    case Form::kSecondRate: {
+      const double slope = dt_s > 0.0 ? step1 / dt_s : 0.0;
+      const double step2 = beta_ * (slope - second_);
+      second_ += step2;
+      return dt_s > 0.0 ? step2 / dt_s : 0.0;
+    }
+    case Form::kLagged:
+      second_ += beta_ * (first_ - second_);
+      return second_;
+    default: {  // band power
+      const double high = c - first_;
+      second_ += beta_ * (high * high - second_);
+      return second_;
+    }
+  }
+}
+
+double Shape::moves_by(double value, double excess) const noexcept {
+  if (settings_.angle) return 0.0;  // periodic: every value is inside
+  if (!has_memory(settings_.form)) return at(value + excess) - at(value);
+  const double tau = std::max(settings_.time_constant_s, 1e-3);
+  switch (settings_.form) {
+    case Form::kRate:
+      return excess / tau;
+    case Form::kSecondRate:
+      return excess / (tau * tau);
+    case Form::kBandPower:
+      return excess * excess;
+    default:
+      return excess;
+  }
+}
+
+bool Shape::take_over(const Shape& previous) noexcept {
+  const ShapeSettings& a = settings_;
+  const ShapeSettings& b = previous.settings_;
+  if (a.form != b.form || a.reference != b.reference || a.time_constant_s != b.time_constant_s ||
+      a.second_time_constant_s != b.second_time_constant_s || a.angle) {
+    return false;
+  }
+  first_ = previous.first_;
+  second_ = previous.second_;
+  elapsed_ = previous.elapsed_;
+  started_ = previous.started_;
+  return true;
+}
+
+}  // namespace ifog

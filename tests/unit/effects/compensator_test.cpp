@@ -1,0 +1,161 @@
+#include "filters/effects/compensator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+const double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+Effect linear(double coefficient) {
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "temperature_degC";
+  effect.reference = 25.0;
+  effect.parameters = {{"coefficient", coefficient, 0.0, "rad/s/degC"}};
+  return effect;
+}
+
+Effect of_rate(const char* form, double coefficient) {
+  Effect effect;
+  effect.form = form;
+  effect.channel = "reference_rate_radps";
+  effect.parameters = {{"coefficient", coefficient, 0.0, ""}};
+  return effect;
+}
+
+CompensatorOutput step(Compensator& compensator, double rate, std::vector<double> channels,
+                       double age = 0.0) {
+  CompensatorInput in;
+  in.dt_s = 0.01;
+  in.rate_radps = {rate, rate, rate};
+  in.channels = channels;
+  const std::vector<double> ages(channels.size(), age);
+  in.age_s = ages;
+  CompensatorOutput out;
+  compensator.step(in, out);
+  return out;
+}
+
+TEST(Compensator, SubtractsTheEffectOfTheChannel) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  Compensator compensator(model, {""});
+  ASSERT_EQ(compensator.channels(), std::vector<std::string>{"temperature_degC"});
+  EXPECT_NEAR(step(compensator, 1e-3, {30.0}).compensated_radps[0], 1e-3 - 5e-6, 1e-18);
+}
+
+// z made from a known rate by the model's own statement, solved back.
+TEST(Compensator, InvertsAScaleFactorThatDependsOnTemperatureAndRate) {
+  Model model;
+  Effect drift;
+  drift.form = "product";
+  drift.channel = "temperature_degC";
+  drift.reference = 25.0;
+  drift.with_form = "linear";
+  drift.with_channel = "reference_rate_radps";
+  drift.parameters = {{"coefficient", -4.7e-4, 0.0, ""}};
+  model.effects = {linear(2e-5), of_rate("linear", 0.01), of_rate("cubic", -3e-3), drift};
+  Compensator compensator(model, {"z"});
+  for (const double w : {-2.0, -0.3, 0.0, 1e-4, 0.7, 2.5}) {
+    const double t = 55.0;
+    const double z = w + 2e-5 * (t - 25.0) + 0.01 * w - 3e-3 * w * w * w - 4.7e-4 * (t - 25.0) * w;
+    EXPECT_NEAR(step(compensator, z, {t}).compensated_radps[0], w, 1e-11) << w;
+  }
+}
+
+TEST(Compensator, HoldsAStaleChannelAndSaysSo) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  Compensator compensator(model, {""}, 2.0);
+  const auto before = step(compensator, 0.0, {kMissing});
+  EXPECT_EQ(before.flags, kStaleChannel | kNoChannelYet);
+  EXPECT_EQ(before.compensated_radps[0], 0.0);
+  EXPECT_EQ(step(compensator, 0.0, {35.0}).flags, 0U);
+  const auto held = step(compensator, 0.0, {kMissing});
+  EXPECT_EQ(held.flags, static_cast<std::uint32_t>(kStaleChannel));
+  EXPECT_NEAR(held.compensated_radps[0], -1e-5, 1e-20);
+  EXPECT_EQ(step(compensator, 0.0, {35.0}, 2.5).flags, static_cast<std::uint32_t>(kStaleChannel));
+}
+
+TEST(Compensator, HoldsAtTheEdgeOfItsRangeAndInflatesTheVariance) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  model.ranges = {{"temperature_degC", 10.0, 40.0}};
+  Compensator compensator(model, {""});
+  const auto out = step(compensator, 0.0, {60.0});
+  EXPECT_EQ(out.flags, static_cast<std::uint32_t>(kOutOfRange));
+  EXPECT_NEAR(out.correction_radps[0], 15e-6, 1e-18);
+  EXPECT_NEAR(out.variance_rad2ps2[0], 20e-6 * 20e-6, 1e-18);
+  EXPECT_EQ(step(compensator, 0.0, {39.0}).variance_rad2ps2[0], 0.0);
+}
+
+TEST(Compensator, VarianceIsThatOfTheParameters) {
+  Model model;
+  Effect quadratic = linear(1e-8);
+  quadratic.form = "quadratic";
+  model.effects = {linear(1e-6), quadratic};
+  model.covariance = {4e-16, -1e-17, -1e-17, 9e-18};
+  Compensator compensator(model, {""});
+  const double c = 3.0;
+  EXPECT_NEAR(step(compensator, 0.0, {28.0}).variance_rad2ps2[0],
+              4e-16 * c * c - 2e-17 * c * c * c + 9e-18 * c * c * c * c, 1e-26);
+}
+
+TEST(Compensator, AxesAreTheirOwn) {
+  Model model;
+  Effect only_y = linear(1e-6);
+  only_y.axis = "y";
+  model.effects = {only_y};
+  Compensator compensator(model, {"x", "y", "z"});
+  const auto out = step(compensator, 0.0, {26.0});
+  EXPECT_EQ(out.compensated_radps[0], 0.0);
+  EXPECT_NEAR(out.compensated_radps[1], -1e-6, 1e-20);
+  EXPECT_EQ(out.compensated_radps[2], 0.0);
+}
+
+TEST(Compensator, TakesOverTheStateOfTheModelBefore) {
+  Model model;
+  Effect lagged = linear(1e-6);
+  lagged.form = "lagged";
+  lagged.parameters.push_back({"time_constant_s", 100.0, 0.0, "s"});
+  model.effects = {lagged};
+  Compensator first(model, {""});
+  step(first, 0.0, {25.0});
+  for (int i = 0; i < 500; ++i) step(first, 0.0, {35.0});
+  model.effects[0].parameters[0].value = 2e-6;
+  Compensator second(model, {""});
+  second.take_over(first);
+  const double before = step(first, 0.0, {35.0}).correction_radps[0];
+  EXPECT_NEAR(step(second, 0.0, {35.0}).correction_radps[0], 2.0 * before, 1e-18);
+}
+
+TEST(Compensator, LeavesOutWhatDoesNotCarryOver) {
+  Model model;
+  Effect step_effect;
+  step_effect.form = "step";
+  step_effect.parameters = {{"coefficient", 1.0, 0.0, "rad/s"}, {"time_s", 3.0, 0.0, "s"}};
+  model.effects = {step_effect};
+  Compensator compensator(model, {""});
+  EXPECT_EQ(compensator.left_out(), std::vector<std::string>{"step"});
+  EXPECT_EQ(step(compensator, 0.5, {}).compensated_radps[0], 0.5);
+}
+
+TEST(Compensator, RefusesAModelItCannotRun) {
+  Model model;
+  model.effects = {linear(1.0)};
+  model.effects[0].form = "linaer";
+  EXPECT_THROW(Compensator(model, {""}), std::invalid_argument);
+  model.effects = {of_rate("rate", 1.0)};
+  EXPECT_THROW(Compensator(model, {""}), std::invalid_argument);
+  model.effects = {linear(1.0)};
+  model.effects[0].axis = "y";
+  EXPECT_THROW(Compensator(model, {""}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ifog

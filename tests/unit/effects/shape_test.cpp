@@ -1,0 +1,102 @@
+#include "filters/effects/shape.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+ShapeSettings of(Form form, double tau = 0.0, double tau2 = 0.0) {
+  ShapeSettings settings;
+  settings.form = form;
+  settings.reference = 25.0;
+  settings.time_constant_s = tau;
+  settings.second_time_constant_s = tau2;
+  return settings;
+}
+
+TEST(Shape, PowersAreAboutTheReference) {
+  EXPECT_DOUBLE_EQ(Shape(of(Form::kLinear)).step(27.0, 1.0), 2.0);
+  EXPECT_DOUBLE_EQ(Shape(of(Form::kQuadratic)).step(22.0, 1.0), 9.0);
+  EXPECT_DOUBLE_EQ(Shape(of(Form::kCubic)).step(23.0, 1.0), -8.0);
+  EXPECT_DOUBLE_EQ(Shape(of(Form::kQuintic)).step(27.0, 1.0), 32.0);
+  EXPECT_DOUBLE_EQ(Shape(of(Form::kSeptic)).step(27.0, 1.0), 128.0);
+}
+
+// The response of a first-order lag to a step is 1 - exp(-t/tau), exactly at the sample times.
+TEST(Shape, LagAnswersAStepExponentially) {
+  Shape lag(of(Form::kLagged, 40.0));
+  lag.step(25.0, 0.5);
+  for (int k = 1; k <= 400; ++k) {
+    EXPECT_NEAR(lag.step(35.0, 0.5), 10.0 * (1.0 - std::exp(-0.5 * k / 40.0)), 1e-12);
+  }
+}
+
+TEST(Shape, DerivativeOfASlopeIsTheSlopeAtAnyBandwidth) {
+  for (const double tau : {0.0, 0.3, 20.0}) {
+    Shape rate(of(Form::kRate, tau));
+    Shape second(of(Form::kSecondRate, tau));
+    double slope = 0.0;
+    double curve = 0.0;
+    for (int k = 0; k < 20000; ++k) {
+      const double t = 0.1 * k;
+      slope = rate.step(20.0 + 0.003 * t, 0.1);
+      curve = second.step(20.0 + 0.5 * 0.002 * t * t, 0.1);
+    }
+    EXPECT_NEAR(slope, 0.003, 1e-12) << tau;
+    EXPECT_NEAR(curve, 0.002, 1e-9) << tau;
+  }
+}
+
+// High-pass gain at a frequency far above the corner is one, so the mean square is a^2 / 2.
+TEST(Shape, BandPowerIsTheMeanSquareOfTheFastPart) {
+  Shape power(of(Form::kBandPower, 5.0));
+  double sum = 0.0;
+  for (int k = 0; k < 40000; ++k) {
+    const double value = power.step(30.0 + 0.2 * std::sin(2.0 * std::numbers::pi * 12.5 * 0.001 * k), 0.001);
+    if (k >= 30000) sum += value;
+  }
+  EXPECT_NEAR(sum / 10000.0, 0.02, 2e-4);
+}
+
+TEST(Shape, LookupIsLinearBetweenKnotsAndPeriodic) {
+  ShapeSettings settings = of(Form::kLookup);
+  settings.table_x = {0.0, 10.0, 30.0, 40.0};
+  settings.table_y = {1.0, 2.0, -2.0, 0.0};
+  Shape flat(settings);
+  EXPECT_DOUBLE_EQ(flat.step(20.0, 1.0), 0.0);
+  EXPECT_DOUBLE_EQ(flat.step(-5.0, 1.0), 1.0);
+  EXPECT_DOUBLE_EQ(flat.step(55.0, 1.0), 0.0);
+  settings.period = 40.0;
+  Shape periodic(settings);
+  EXPECT_DOUBLE_EQ(periodic.step(45.0, 1.0), 1.5);
+  EXPECT_DOUBLE_EQ(periodic.step(-35.0, 1.0), 1.5);
+}
+
+// The sum of an angle's differences is bounded by the table whatever the channel does: it cannot swallow
+// rotation.
+TEST(Shape, AngleLookupIntegratesToItsTable) {
+  ShapeSettings settings = of(Form::kLookup);
+  settings.table_x = {0.0, 16384.0, 32768.0};
+  settings.table_y = {0.0, 4e-9, 1e-9};
+  settings.period = 32768.0;
+  settings.angle = true;
+  Shape shape(settings);
+  double angle = 0.0;
+  for (int k = 0; k < 100000; ++k) {
+    angle += shape.step(std::fmod(70001.0 * k, 32768.0), 0.005) * 0.005;
+    ASSERT_LE(std::abs(angle), 4e-9 * (1.0 + 1e-9));
+  }
+}
+
+TEST(Shape, RefusesWhatItCannotBe) {
+  EXPECT_THROW(Shape(of(Form::kLookup)), std::invalid_argument);
+  EXPECT_THROW(Shape(of(Form::kRate, -1.0)), std::invalid_argument);
+  EXPECT_THROW(Shape(of(Form::kLine)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,106 @@
+#include "filters/model/model.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+
+#include "filters/model/sha256.h"
+
+namespace ifog {
+namespace {
+
+Model full_model() {
+  Model model;
+  model.sensor = "left \"gyro\"";
+  model.noise["x"] = {.N = 2.9e-7, .K = 1.25e-10};
+  model.noise["z"] = {.Q = 0.1, .B = 1.0 / 3.0};
+  FilterSettings filter;
+  filter.rule = "vb";
+  filter.state_parameters = {0.97, -0.2};
+  filter.process_noise = 1e-17;
+  filter.seed = 7;
+  model.filter = filter;
+  Effect linear;
+  linear.form = "linear";
+  linear.channel = "temperature_degC";
+  linear.axis = "x";
+  linear.reference = 25.0;
+  linear.parameters = {{"coefficient", 1.23456789012345e-8, 2e-10, "rad/s/degC"}};
+  Effect lookup;
+  lookup.form = "lookup";
+  lookup.channel = "ramp_counts";
+  lookup.axis = "x";
+  lookup.table_x = {0.0, 16384.0, 32768.0};
+  lookup.table_y = {0.0, 3e-9, 1e-9};
+  lookup.period = 32768.0;
+  lookup.angle = true;
+  lookup.parameters = {{"rms_angle", 1e-9, 1e-11, "rad"}};
+  model.effects = {linear, lookup};
+  model.covariance = {1.0, 0.5, 0.5, 2.0};
+  model.ranges = {{"temperature_degC", -10.5, 41.0}};
+  model.source = {
+      "a b.csv", "ff", "2026-01-01", {{"std_radps", 2.0}}, {{"std_radps", 1.0}, {"adev_10", 0.125}}};
+  return model;
+}
+
+TEST(ModelFile, EverythingComesBackAsWritten) {
+  const std::string text = model_text(full_model());
+  const Model back = parse_model(text, "m.toml");
+  EXPECT_EQ(model_text(back), text);
+  EXPECT_EQ(back.effects[0].parameters[0].value, 1.23456789012345e-8);
+  EXPECT_EQ(back.noise.at("z").B, 1.0 / 3.0);
+  EXPECT_FALSE(back.noise.at("z").K.has_value());
+  EXPECT_EQ(back.source.after.at("adev_10"), 0.125);
+  EXPECT_EQ(back.identity(), sha256_hex(text).substr(0, 12));
+  EXPECT_TRUE(back.effects[1].angle);
+}
+
+TEST(ModelFile, IsWrittenWholeAndReadAgain) {
+  const std::string path = ::testing::TempDir() + "model_test.toml";
+  write_model(full_model(), path);
+  EXPECT_EQ(model_text(read_model(path)), model_text(full_model()));
+  std::remove(path.c_str());
+  EXPECT_THROW(write_model(full_model(), "/nonexistent/folder/m.toml"), std::runtime_error);
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_model(text, "m.toml");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ModelFile, BadInputIsNamedByLineAndKey) {
+  EXPECT_EQ(complaint("sensor = \"a\"\n"),
+            "m.toml:1: version: expected version = 1, the only one this program knows");
+  EXPECT_EQ(complaint("version = 2\n"),
+            "m.toml:1: version = 2: expected version = 1, the only one this program knows");
+  EXPECT_EQ(complaint("version = 1\ncolour = 3\n"), "m.toml:2: colour = 3: unknown key");
+  EXPECT_EQ(complaint("version = 1\n[[effect]]\nform = \"linear\"\nchanel = \"t\"\n"),
+            "m.toml:4: effect[1].chanel = 't': unknown key");
+  EXPECT_EQ(complaint("version = 1\n[[noise]]\nN = -1.0\n"),
+            "m.toml:3: noise[1].N = -1.0: expected at least 0");
+  EXPECT_NE(
+      complaint("version = 1\n[[effect]]\nform = \"lookup\"\ntable_x = [1.0, 0.0]\ntable_y = [0.0, 0.0]\n")
+          .find("knots that increase"),
+      std::string::npos);
+  EXPECT_NE(complaint("version = 1\ncovariance = [1.0]\n").find("expected 0 numbers"), std::string::npos);
+  EXPECT_NE(complaint("version = \n").find("m.toml:1: "), std::string::npos);
+}
+
+// FIPS 180-4 example values, and the million-a test.
+TEST(Sha256, MatchesThePublishedValues) {
+  EXPECT_EQ(sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256_hex(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+}  // namespace
+}  // namespace ifog
