@@ -1,0 +1,65 @@
+#include "filters/estimator/estimator.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "filters/estimator/engine.h"
+
+namespace ifog {
+namespace {
+
+template <class Value>
+void require(bool good, const char* setting, Value value, const char* expected) {
+  if (good) return;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
+  throw std::invalid_argument(std::string(setting) + ": " + text + ", expected " + expected);
+}
+
+void check(const FilterSettings& settings, int axes, double nominal_period_s) {
+  require(axes >= 1 && axes <= kMaxAxes, "axes", axes, "1 to 3");
+  require(std::isfinite(nominal_period_s) && nominal_period_s > 0, "nominal period", nominal_period_s,
+          "a positive time in s");
+  require(std::isfinite(settings.process_noise) && settings.process_noise > 0, "process_noise",
+          settings.process_noise, "a positive spectral density in (rad/s)^2/s");
+  require(std::isfinite(settings.measurement_noise) && settings.measurement_noise > 0, "measurement_noise",
+          settings.measurement_noise, "a positive variance in (rad/s)^2");
+  require(settings.window >= 2 && settings.window <= 100000, "window", settings.window,
+          "2 to 100000 samples");
+  require(settings.draws >= 1 && settings.draws <= 1000, "draws", settings.draws, "1 to 1000");
+  require(settings.floor >= 0 && settings.floor < 1, "floor", settings.floor, "0 (off) or below 1");
+  if (settings.weights != "kept" && settings.weights != "fresh" && settings.weights != "uniform") {
+    throw std::invalid_argument("weights: '" + settings.weights + "', expected kept, fresh or uniform");
+  }
+}
+
+}  // namespace
+
+struct Estimator::Impl {
+  std::unique_ptr<Engine> engine;
+};
+
+Estimator::Estimator(const FilterSettings& settings, int axes, double nominal_period_s) {
+  check(settings, axes, nominal_period_s);
+  EngineParts parts;
+  parts.settings = settings;
+  parts.model = make_state_model(settings.state, settings.state_parameters, nominal_period_s);
+  parts.rule = make_rule(settings);
+  parts.axes = axes;
+  parts.period_s = nominal_period_s;
+  impl_ = std::make_unique<Impl>(Impl{make_engine(std::move(parts))});
+}
+
+Estimator::~Estimator() = default;
+Estimator::Estimator(Estimator&&) noexcept = default;
+Estimator& Estimator::operator=(Estimator&&) noexcept = default;
+
+void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
+  impl_->engine->step(in, out);
+}
+void Estimator::restart() noexcept { impl_->engine->restart(); }
+const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine->health(); }
+
+}  // namespace ifog

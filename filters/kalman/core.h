@@ -1,0 +1,59 @@
+// The Kalman filter of up to three axes that share model, noise and gain: one covariance, one gain vector, a
+// state vector per axis. One gain for all axes because different gains turn coning into drift: the axes would
+// see the same cone with different lags.
+//
+// Gauge of the equations: Narasimhappa et al., "An innovation based random weighting estimation mechanism for
+// denoising fiber optic gyro drift signal", eqs. (9)-(13). The innovation covariance C comes from the
+// adaptation rule; with C = h'P h + R this is the conventional filter.
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace ifog {
+
+template <int n>
+struct KalmanCore {
+  static constexpr int kAxes = 3;
+  using Vector = Eigen::Matrix<double, n, 1>;
+  using Matrix = Eigen::Matrix<double, n, n>;
+
+  Eigen::Matrix<double, n, kAxes> x = Eigen::Matrix<double, n, kAxes>::Zero();  // one column an axis
+  Matrix p = Matrix::Zero();                                                    // of every axis, (rad/s)^2
+  Vector h = Vector::Zero();
+  Vector gain = Vector::Zero();
+
+  // Eqs. (9), (10).
+  void predict(const Matrix& transition, const Matrix& driving) noexcept {
+    if constexpr (n == 1) {
+      x *= transition(0, 0);
+      p(0, 0) = transition(0, 0) * transition(0, 0) * p(0, 0) + driving(0, 0);
+    } else {
+      x = transition * x;
+      p = transition * p * transition.transpose() + driving;
+    }
+  }
+
+  [[nodiscard]] double rate(int axis) const noexcept { return h.dot(x.col(axis)); }
+  [[nodiscard]] double variance() const noexcept { return h.dot(p * h); }
+
+  // Gain and covariance for innovation covariance c >= h'P h. In Joseph's form, in which R = c - h'P h enters
+  // as a square: it equals (13) exactly and stays positive where (13) loses digits.
+  void correct(double c) noexcept {
+    if constexpr (n == 1) {
+      const double projected = p(0, 0) * h(0) * h(0);
+      gain(0) = p(0, 0) * h(0) / c;
+      p(0, 0) *= (c - projected) / c;
+    } else {
+      const Vector ph = p * h;
+      gain = ph / c;
+      const Matrix keep = Matrix::Identity() - gain * h.transpose();
+      const Matrix joseph = keep * p * keep.transpose() + (c - h.dot(ph)) * gain * gain.transpose();
+      p = 0.5 * (joseph + joseph.transpose());
+    }
+  }
+
+  // Eq. (12), for one axis.
+  void update(int axis, double innovation) noexcept { x.col(axis) += gain * innovation; }
+};
+
+}  // namespace ifog

@@ -1,0 +1,142 @@
+// Innovation-based random weighting estimation with adaptive Kalman filter gain correction: C is the average
+// of the last N squared innovations, the current one included, under random weights. Narasimhappa et al.,
+// section 3.2; the form of the gain follows Yang et al., Sensors 2015 15(10):26940 and Song et al., Appl.
+// Opt. 2019 58(35):9505.
+//
+// Weights e_i / sum e, e_i ~ Exp(1), are Dirichlet(1, …, 1): mean 1/N, var (N-1)/(N^2 (N+1)). The average of
+// one draw has the plain window's mean and 2N/(N+1) times its variance. `fresh` draws all N at every step.
+// `kept` lets each innovation keep its e_i while it stays in the window: the same law at each step, one draw
+// a step, and a covariance that moves smoothly instead of jumping. `uniform` takes e_i ~ U(0, 1), the other
+// reading of "randomly generated in the range [0, 1]".
+#include <array>
+#include <cmath>
+
+#include "filters/random/exponential.h"
+#include "filters/rules/rule.h"
+
+namespace ifog {
+namespace {
+
+class IrweAkfg final : public Rule {
+ public:
+  explicit IrweAkfg(const FilterSettings& settings)
+      : noise_(settings.measurement_noise),
+        epsilon_(settings.floor),
+        window_(static_cast<std::size_t>(settings.window)),
+        draws_(static_cast<std::size_t>(settings.draws)),
+        fresh_(settings.weights != "kept"),
+        deviates_(
+            settings.seed, 0,
+            settings.weights == "uniform" ? DeviateStream::Law::kUniform : DeviateStream::Law::kExponential),
+        squares_(window_),
+        kept_(window_ * draws_),
+        scratch_(window_),
+        weight_sums_(draws_),
+        weighted_sums_(draws_),
+        estimate_(noise_) {}
+
+  double innovation_covariance(const RuleInput& in) noexcept override {
+    double square = 0.0;
+    for (const double v : in.innovations) square += v * v;
+    square /= static_cast<double>(in.innovations.size()) * in.noise_scale;
+    insert(square, in.sequence);
+    const double least = epsilon_ * noise_ * in.noise_scale;
+    if (filled_ < window_) {
+      const double c = in.projected + noise_ * in.noise_scale;
+      estimate_ = noise_;
+      return c;
+    }
+    const double c =
+        floored((fresh_ ? fresh_average(in.sequence) : kept_average()) * in.noise_scale, in.projected, least);
+    estimate_ = (c - in.projected) / in.noise_scale;
+    return c;
+  }
+
+  double measurement_noise() const noexcept override { return estimate_; }
+
+  void restart() noexcept override {
+    filled_ = 0;
+    next_ = 0;
+    estimate_ = noise_;
+    for (double& sum : weight_sums_) sum = 0.0;
+    for (double& sum : weighted_sums_) sum = 0.0;
+  }
+
+ private:
+  void insert(double square, std::uint64_t sequence) noexcept {
+    const double leaving = squares_[next_];
+    squares_[next_] = square;
+    if (!fresh_) {
+      for (std::size_t b = 0; b < draws_; ++b) {
+        double& weight = kept_[b * window_ + next_];
+        if (filled_ == window_) {
+          weight_sums_[b] -= weight;
+          weighted_sums_[b] -= weight * leaving;
+        }
+        weight = deviates_.at(sequence, static_cast<std::uint32_t>(b));
+        weight_sums_[b] += weight;
+        weighted_sums_[b] += weight * square;
+      }
+    }
+    if (filled_ < window_) ++filled_;
+    if (++next_ == window_) {
+      next_ = 0;
+      resum();
+    }
+  }
+
+  // Once a window the running sums are taken afresh, so that rounding cannot gather in them.
+  void resum() noexcept {
+    if (fresh_) return;
+    for (std::size_t b = 0; b < draws_; ++b) {
+      double weights = 0.0;
+      double weighted = 0.0;
+      for (std::size_t i = 0; i < window_; ++i) {
+        weights += kept_[b * window_ + i];
+        weighted += kept_[b * window_ + i] * squares_[i];
+      }
+      weight_sums_[b] = weights;
+      weighted_sums_[b] = weighted;
+    }
+  }
+
+  double kept_average() const noexcept {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < draws_; ++b) sum += weighted_sums_[b] / weight_sums_[b];
+    return sum / static_cast<double>(draws_);
+  }
+
+  double fresh_average(std::uint64_t sequence) noexcept {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < draws_; ++b) {
+      deviates_.fill(sequence, static_cast<std::uint32_t>(b), scratch_);
+      double weights = 0.0;
+      double weighted = 0.0;
+      for (std::size_t i = 0; i < window_; ++i) {
+        weights += scratch_[i];
+        weighted += scratch_[i] * squares_[i];
+      }
+      sum += weighted / weights;
+    }
+    return sum / static_cast<double>(draws_);
+  }
+
+  double noise_, epsilon_;
+  std::size_t window_, draws_;
+  bool fresh_;
+  DeviateStream deviates_;
+  std::vector<double> squares_;  // ring of the mean squared innovation over axes, at the nominal period
+  std::vector<double> kept_;     // [draw][place in the ring]
+  std::vector<double> scratch_;
+  std::vector<double> weight_sums_, weighted_sums_;
+  std::size_t next_ = 0, filled_ = 0;
+  double estimate_;
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_irwe_akfg(const FilterSettings& settings) {
+  return std::make_unique<IrweAkfg>(settings);
+}
+
+}  // namespace ifog

@@ -1,0 +1,27 @@
+#include <array>
+#include <stdexcept>
+
+#include "filters/rules/rule.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::array kRules{
+    RuleEntry{"ckf", make_ckf},
+    RuleEntry{"irwe-akfg", make_irwe_akfg},
+};
+
+}  // namespace
+
+std::span<const RuleEntry> rules() { return kRules; }
+
+std::unique_ptr<Rule> make_rule(const FilterSettings& settings) {
+  std::string names;
+  for (const RuleEntry& entry : kRules) {
+    if (settings.rule == entry.name) return entry.make(settings);
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw std::invalid_argument("rule: '" + settings.rule + "', expected one of " + names);
+}
+
+}  // namespace ifog

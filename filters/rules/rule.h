@@ -1,0 +1,67 @@
+// An adaptation rule: from innovations, the innovation covariance that sets the gain. It sees scalars only,
+// so it works with every state model. To add one: a file with a class derived from Rule and a line in
+// list.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filters/estimator/settings.h"
+
+namespace ifog {
+
+struct RuleInput {
+  double projected = 0.0;               // h'P-h, (rad/s)^2
+  double noise_scale = 1.0;             // R of this sample over R at the nominal period
+  std::span<const double> innovations;  // of the valid axes, one to three
+  std::uint64_t sequence = 0;
+};
+
+class Rule {
+ public:
+  virtual ~Rule() = default;
+
+  // Innovation covariance to be used with this measurement, the measurement included where the rule says so.
+  // Always above `projected` unless the floor is switched off. Called once per accepted measurement; kept-out
+  // ones never come.
+  [[nodiscard]] virtual double innovation_covariance(const RuleInput& in) noexcept = 0;
+
+  // Measurement noise the rule now believes in, at the nominal period, (rad/s)^2.
+  [[nodiscard]] virtual double measurement_noise() const noexcept = 0;
+
+  virtual void restart() noexcept = 0;
+
+  [[nodiscard]] std::uint64_t floor_hits() const noexcept { return floor_hits_; }
+
+ protected:
+  // C >= h'P h + epsilon R0: below it the gain exceeds one and the covariance turns negative. Ours, not the
+  // paper's.
+  [[nodiscard]] double floored(double c, double projected, double least_noise) noexcept {
+    const double least = projected + least_noise;
+    if (c >= least || least_noise <= 0.0) return c;
+    ++floor_hits_;
+    return least;
+  }
+
+ private:
+  std::uint64_t floor_hits_ = 0;
+};
+
+struct RuleEntry {
+  const char* name;
+  std::unique_ptr<Rule> (*make)(const FilterSettings& settings);
+};
+
+// Every rule, in the order the command line shows them.
+std::span<const RuleEntry> rules();
+
+// Throws std::invalid_argument naming the setting, its value and what was expected.
+std::unique_ptr<Rule> make_rule(const FilterSettings& settings);
+
+std::unique_ptr<Rule> make_ckf(const FilterSettings& settings);
+std::unique_ptr<Rule> make_irwe_akfg(const FilterSettings& settings);
+
+}  // namespace ifog

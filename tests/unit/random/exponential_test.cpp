@@ -1,0 +1,86 @@
+// Our logarithm and exponential against the C library's in extended precision; the deviates against the
+// moments of their laws.
+#include "filters/random/exponential.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "filters/random/logarithm.h"
+
+namespace {
+
+using ifog::DeviateStream;
+
+// Error in units of the last place of the exact value.
+double ulps(double got, long double exact) {
+  const auto rounded = static_cast<double>(exact);
+  const double unit = std::nextafter(std::abs(rounded), INFINITY) - std::abs(rounded);
+  return static_cast<double>(std::abs(static_cast<long double>(got) - exact)) / unit;
+}
+
+TEST(Logarithm, AgreesWithExtendedPrecision) {
+  double worst = 0.0;
+  for (int i = 1; i < 2'000'000; ++i) {
+    const double x = (i + 0.5) / 2'000'000.0;
+    worst = std::max(worst, ulps(ifog::logarithm(x), std::log(static_cast<long double>(x))));
+  }
+  for (int k = -1000; k < 1000; ++k) {
+    const double x = std::ldexp(1.2345, k);
+    worst = std::max(worst, ulps(ifog::logarithm(x), std::log(static_cast<long double>(x))));
+  }
+  EXPECT_LT(worst, 2.0);
+  EXPECT_EQ(ifog::logarithm(1.0), 0.0);
+}
+
+TEST(Exponential, AgreesWithExtendedPrecision) {
+  double worst = 0.0;
+  for (double x = -650.0; x < 650.0; x += 0.0137) {
+    const long double exact = std::exp(static_cast<long double>(x));
+    worst = std::max(worst, static_cast<double>(std::abs((ifog::exponential(x) - exact) / exact)));
+  }
+  EXPECT_LT(worst, 1e-15);
+}
+
+// Mean 1 and variance 1 of Exp(1); mean 1/2, variance 1/12 of U(0,1). Bounds: five standard errors.
+TEST(Deviates, HaveTheMomentsOfTheirLaws) {
+  constexpr int kCount = 1'000'000;
+  DeviateStream exponential(7, 0, DeviateStream::Law::kExponential);
+  DeviateStream uniform(7, 0, DeviateStream::Law::kUniform);
+  double e1 = 0, e2 = 0, u1 = 0, u2 = 0, lag = 0, before = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const double e = exponential.at(static_cast<std::uint64_t>(i), 0);
+    const double u = uniform.at(static_cast<std::uint64_t>(i), 0);
+    e1 += e;
+    e2 += e * e;
+    lag += (e - 1) * before;
+    before = e - 1;
+    u1 += u;
+    u2 += (u - 0.5) * (u - 0.5);
+  }
+  const double root = std::sqrt(kCount);
+  EXPECT_NEAR(e1 / kCount, 1.0, 5 * 1.0 / root);
+  EXPECT_NEAR(e2 / kCount, 2.0, 5 * std::sqrt(20.0) / root);
+  EXPECT_NEAR(lag / kCount, 0.0, 5 * 1.0 / root);
+  EXPECT_NEAR(u1 / kCount, 0.5, 5 * std::sqrt(1.0 / 12) / root);
+  EXPECT_NEAR(u2 / kCount, 1.0 / 12, 5 * std::sqrt(1.0 / 180) / root);
+}
+
+TEST(Deviates, DependOnSeedStreamRowAndIndexOnly) {
+  DeviateStream forward(3, 1, DeviateStream::Law::kExponential);
+  DeviateStream backward(3, 1, DeviateStream::Law::kExponential);
+  std::vector<double> drawn;
+  for (std::uint64_t i = 0; i < 100; ++i) drawn.push_back(forward.at(i, 2));
+  for (std::uint64_t i = 100; i-- > 0;) EXPECT_EQ(backward.at(i, 2), drawn[i]);
+  EXPECT_NE(DeviateStream(4, 1, DeviateStream::Law::kExponential).at(0, 2), drawn[0]);
+  EXPECT_NE(DeviateStream(3, 2, DeviateStream::Law::kExponential).at(0, 2), drawn[0]);
+  EXPECT_NE(forward.at(0, 3), drawn[0]);
+  std::vector<double> row(50), shorter(7);
+  forward.fill(9, 0, row);
+  backward.fill(9, 0, row);
+  DeviateStream(3, 1, DeviateStream::Law::kExponential).fill(9, 0, shorter);
+  for (std::size_t i = 0; i < shorter.size(); ++i) EXPECT_EQ(shorter[i], row[i]);
+}
+
+}  // namespace
