@@ -7,15 +7,14 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <stdexcept>
-#include <system_error>
+
+#include "drivers/transport/transport.h"
 
 namespace ifog {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const char* what, const char* expected) {
-  throw std::runtime_error(path + ": " + what + ": " + std::generic_category().message(errno) +
-                           ", expected " + expected);
+[[noreturn]] void fail(const std::string& path) {
+  throw OpenError(path, "cannot open", errno, "a readable file or FIFO");
 }
 
 bool is_gzip(int fd) {
@@ -26,24 +25,24 @@ bool is_gzip(int fd) {
 }  // namespace
 
 void ByteFile::open(const std::string& path) {
-  constexpr const char* kExpected = "a readable file or FIFO";
   const bool standard_input = path == "-";
   // Without O_NONBLOCK the opening of a FIFO would wait for its writer, and nothing could end that wait.
   const int fd =
       standard_input ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (fd < 0) fail(path, "cannot open", kExpected);
+  if (fd < 0) fail(path);
   struct stat info {};
   if (fstat(fd, &info) != 0 || S_ISDIR(info.st_mode)) {
+    const int error = S_ISDIR(info.st_mode) ? EISDIR : errno;
     if (!standard_input) ::close(fd);
-    if (S_ISDIR(info.st_mode)) errno = EISDIR;
-    fail(path, "cannot open", kExpected);
+    errno = error;
+    fail(path);
   }
   gzFile_s* gz = nullptr;
   if (S_ISREG(info.st_mode) && !standard_input && is_gzip(fd)) {
     gz = gzdopen(fd, "rb");
     if (gz == nullptr) {
       ::close(fd);
-      fail(path, "cannot open", kExpected);
+      fail(path);
     }
     gzdirect(gz);  // reads the header now: zlib's buffers are then there before the first fill()
   }

@@ -25,7 +25,7 @@ class ByteFile {
   ByteFile(const ByteFile&) = delete;
   ByteFile& operator=(const ByteFile&) = delete;
 
-  // Throws std::runtime_error with one line. A file open already stays open until the new one is: a FIFO so
+  // Throws OpenError. A file open already stays open until the new one is: a FIFO so
   // opened again loses nothing that a new writer has put in.
   void open(const std::string& path);
   void close() noexcept;

@@ -11,14 +11,11 @@
 #include <utility>
 
 #include "drivers/capture/candump.h"
-#include "drivers/transport/backoff.h"
 #include "drivers/transport/byte_file.h"
 #include "drivers/transport/pace.h"
 
 namespace ifog {
 namespace {
-
-using std::chrono::nanoseconds;
 
 constexpr std::size_t kBatch = 64;  // frames a delivery
 
@@ -29,86 +26,71 @@ class FileTransport : public Transport {
         settings_(std::move(settings)),
         pace_(settings_.speed) {}
 
-  void open(std::span<const std::uint8_t> opening) override;
-  Delivery read(nanoseconds timeout) noexcept override;
   [[nodiscard]] bool holds_back() const override { return settings_.pace == FileSettings::Pace::free; }
 
  protected:
+  void connect(std::string& warning) override;
+  Delivery receive(std::int64_t until_ns) noexcept override;
+
   [[nodiscard]] const FileSettings& settings() const { return settings_; }
   [[nodiscard]] bool recorded() const { return settings_.pace == FileSettings::Pace::recorded; }
   [[nodiscard]] std::span<const std::uint8_t> unread() const { return file_.unread(); }
   void consume(std::size_t n) { file_.consume(n); }
   [[nodiscard]] bool at_end() const { return at_end_; }
+  [[nodiscard]] const Pace& pace() const { return pace_; }
 
   // Adds to unread(), waiting until `until_ns` for it. False: nothing came, or the file is at its end.
   bool fill(std::int64_t until_ns) noexcept;
   // Waits until the recorded time is due; false when `until_ns` or stop() comes first.
   bool await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept;
-  [[nodiscard]] const Pace& pace() const { return pace_; }
 
-  // Takes one delivery from what is unread, empty when that is not enough for one.
-  virtual Delivery take(std::int64_t until_ns) noexcept = 0;
   // A new file is open, nothing of it is taken yet.
   virtual void begin() noexcept = 0;
+  // Takes one delivery from what is unread, empty when that is not enough for one.
+  virtual Delivery take(std::int64_t until_ns) noexcept = 0;
 
  private:
-  bool reopen(std::int64_t until_ns) noexcept;
-  void end() noexcept;
+  void finish() noexcept;
 
   FileSettings settings_;
   ByteFile file_;
   Pace pace_;
-  Backoff backoff_;
   int read_error_ = 0;
   bool at_end_ = false;
-  bool returning_ = false;  // it was open before: what comes next is the device come back
 };
 
-void FileTransport::open(std::span<const std::uint8_t> /*nobody listens at the other end of a recording*/) {
-  try {
-    file_.open(settings_.path);
-  } catch (...) {
-    enter(TransportState::gone, errno);
-    backoff_.failed(monotonic_ns());
-    throw;
-  }
+// Nobody listens at the other end of a recording: opening() is not sent.
+void FileTransport::connect(std::string& /*warning*/) {
+  file_.open(settings_.path);
   at_end_ = false;
   pace_ = Pace(settings_.speed);
   begin();
-  enter(TransportState::open);
 }
 
-// Until `until_ns`, tries to open a file that open() did not find or a FIFO that was taken away.
-bool FileTransport::reopen(std::int64_t until_ns) noexcept {
-  while (!file_.is_open()) {
-    const std::int64_t attempt = std::min(backoff_.next_ns(), until_ns);
-    short happened = 0;
-    if (wait(-1, 0, nanoseconds(attempt - monotonic_ns()), happened) == Wake::stopped) return false;
-    if (attempt < backoff_.next_ns()) return false;
-    try {
-      open({});
-    } catch (const std::exception&) {
-      if (attempt == until_ns) return false;
-    }
-  }
-  return true;
+Delivery FileTransport::receive(std::int64_t until_ns) noexcept {
+  const Delivery delivery = take(until_ns);
+  if (delivery.empty() && at_end_ && unread().empty()) finish();
+  return delivery;
 }
 
 // The reader has taken all there was.
-void FileTransport::end() noexcept {
+void FileTransport::finish() noexcept {
   if (!file_.is_fifo() || !settings_.await_writer || read_error_ != 0) {
     file_.close();
-    enter(TransportState::ended, read_error_);
+    end(read_error_);
     return;
   }
   // The old descriptor would report its hang-up for ever: the next writer is awaited on a new one.
-  returning_ = true;
-  backoff_.restart(monotonic_ns());
+  std::string warning;
   try {
-    open({});
-    enter(TransportState::gone);
+    connect(warning);
+    left();
+  } catch (const OpenError& error) {
+    file_.close();
+    lost(error.reason);
   } catch (const std::exception&) {
     file_.close();
+    lost(ENOMEM);
   }
 }
 
@@ -116,8 +98,7 @@ bool FileTransport::fill(std::int64_t until_ns) noexcept {
   while (!at_end_) {
     // Asked first, because reading a FIFO that no writer has opened yet looks like its end.
     short happened = 0;
-    if (file_.poll_fd() >= 0 &&
-        wait(file_.poll_fd(), POLLIN, nanoseconds(until_ns - monotonic_ns()), happened) != Wake::ready)
+    if (file_.poll_fd() >= 0 && wait(file_.poll_fd(), POLLIN, until_ns, happened) != Wake::ready)
       return false;
     switch (file_.fill()) {
       case ByteFile::Fill::more:
@@ -143,30 +124,9 @@ bool FileTransport::fill(std::int64_t until_ns) noexcept {
 bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept {
   if (!pace_.started()) pace_.start(recorded_ns, monotonic_ns());
   const std::int64_t due = pace_.due_ns(recorded_ns);
-  const std::int64_t now = monotonic_ns();
-  if (due <= now) return true;
+  if (due <= monotonic_ns()) return true;
   short happened = 0;
-  return wait(-1, 0, nanoseconds(std::min(due, until_ns) - now), happened) != Wake::stopped &&
-         due <= until_ns;
-}
-
-Delivery FileTransport::read(nanoseconds timeout) noexcept {
-  const std::int64_t until = monotonic_ns() + timeout.count();
-  if (stopped() || state() == TransportState::ended || !reopen(until)) return {};
-  Delivery delivery = take(until);
-  if (delivery.empty()) {
-    if (at_end_ && unread().empty()) end();
-    return {};
-  }
-  if (returning_) {
-    returning_ = false;
-    delivery.restarted = true;
-    enter(TransportState::open);
-    add(reopened_, 1);
-  }
-  add(bytes_, delivery.bytes.size());
-  add(frames_, delivery.frames.size());
-  return delivery;
+  return wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
 }
 
 // Raw bytes.

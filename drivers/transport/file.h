@@ -11,11 +11,6 @@
 
 namespace ifog {
 
-struct CanId {
-  std::uint32_t id = 0;
-  bool extended = false;
-};
-
 struct FileSettings {
   enum class Format { bytes, candump };
   // free: as fast as the reader takes it, nothing is lost when it pauses.

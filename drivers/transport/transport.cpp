@@ -25,6 +25,12 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
 std::int64_t realtime_ns() noexcept { return clock_ns(CLOCK_REALTIME); }
 std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
 
+OpenError::OpenError(const std::string& device, const std::string& what, int error,
+                     const std::string& expected)
+    : std::runtime_error(device + ": " + what + ": " + std::generic_category().message(error) +
+                         ", expected " + expected),
+      reason(error) {}
+
 Transport::Transport(std::string name)
     : name_(std::move(name)), stop_event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (stop_event_ < 0)
@@ -42,25 +48,86 @@ void Transport::stop() noexcept {
   errno = before;
 }
 
-Transport::Wake Transport::wait(int fd, short events, std::chrono::nanoseconds timeout,
-                                short& happened) noexcept {
-  happened = 0;
-  const std::int64_t end = monotonic_ns() + timeout.count();
+void Transport::open(std::span<const std::uint8_t> opening) {
+  opening_.assign(opening.begin(), opening.end());
+  warning_.clear();
+  try {
+    connect(warning_);
+  } catch (const OpenError& error) {
+    enter(TransportState::gone, error.reason);
+    backoff_.failed(monotonic_ns());
+    throw;
+  }
+  connected_ = once_ = true;
+  enter(TransportState::open, 0);
+}
+
+Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
+  const std::int64_t until = monotonic_ns() + timeout.count();
+  if (stopped() || state() == TransportState::ended) return {};
+  if (!connected_ && !regain(until)) return {};
+  Delivery delivery = receive(until);
+  if (delivery.empty()) return {};
+  delivery.restarted = std::exchange(returning_, false);
+  if (state() == TransportState::gone) {
+    enter(TransportState::open, 0);
+    add(reopened_, 1);
+  }
+  add(bytes_, delivery.bytes.size());
+  add(frames_, delivery.frames.size());
+  return delivery;
+}
+
+bool Transport::regain(std::int64_t until_ns) noexcept {
   for (;;) {
-    std::array<pollfd, 2> fds{{{stop_event_, POLLIN, 0}, {fd, events, 0}}};
-    const std::int64_t left = std::max<std::int64_t>(0, end - monotonic_ns());
-    const timespec span{left / 1'000'000'000, left % 1'000'000'000};
-    const int n = ppoll(fds.data(), fd < 0 ? 1 : 2, &span, nullptr);
-    if (n < 0 && errno == EINTR) {
-      if (stopped()) return Wake::stopped;
+    const std::int64_t attempt = std::min(backoff_.next_ns(), until_ns);
+    short happened = 0;
+    if (wait(-1, 0, attempt, happened) == Wake::stopped) return false;
+    if (attempt < backoff_.next_ns()) return false;
+    std::string warned_before;  // by open(), and not worth repeating
+    try {
+      connect(warned_before);
+    } catch (const std::exception& error) {
+      const auto* refused = dynamic_cast<const OpenError*>(&error);
+      enter(TransportState::gone, refused != nullptr ? refused->reason : ENOMEM);
+      backoff_.failed(monotonic_ns());
       continue;
     }
-    if (fds[0].revents != 0 || stopped()) return Wake::stopped;
+    connected_ = true;
+    enter(TransportState::open, 0);
+    if (std::exchange(once_, true)) {
+      returning_ = true;
+      add(reopened_, 1);
+    }
+    return true;
+  }
+}
+
+void Transport::lost(int reason) noexcept {
+  connected_ = false;
+  enter(TransportState::gone, reason);
+  backoff_.restart(monotonic_ns());
+}
+
+void Transport::left() noexcept {
+  returning_ = true;
+  enter(TransportState::gone, 0);
+}
+
+Transport::Wake Transport::wait(int fd, short events, std::int64_t until_ns, short& happened) noexcept {
+  happened = 0;
+  for (;;) {
+    std::array<pollfd, 2> fds{{{stop_event_, POLLIN, 0}, {fd, events, 0}}};
+    const std::int64_t left = std::max<std::int64_t>(0, until_ns - monotonic_ns());
+    const timespec span{left / 1'000'000'000, left % 1'000'000'000};
+    const int n = ppoll(fds.data(), fd < 0 ? 1 : 2, &span, nullptr);
+    if (stopped() || (n > 0 && fds[0].revents != 0)) return Wake::stopped;
+    if (n == 0) return Wake::timeout;
     if (n > 0) {
       happened = fds[1].revents;
       return Wake::ready;
     }
-    return Wake::timeout;
+    // Interrupted by a signal: wait for the rest.
   }
 }
 

@@ -9,9 +9,12 @@
 #include <chrono>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "drivers/ifog/driver.h"
+#include "drivers/transport/backoff.h"
 
 namespace ifog {
 
@@ -23,6 +26,18 @@ struct Delivery {
   bool restarted = false;  // the first since the device was opened again: forget half-read frames
 
   [[nodiscard]] bool empty() const { return bytes.empty() && frames.empty(); }
+};
+
+// A CAN frame that a sensor wants.
+struct CanId {
+  std::uint32_t id = 0;
+  bool extended = false;
+};
+
+// A device that cannot be opened: one line with the device, the system's reason and what was expected.
+struct OpenError : std::runtime_error {
+  OpenError(const std::string& device, const std::string& what, int error, const std::string& expected);
+  int reason;  // errno
 };
 
 enum class TransportState {
@@ -55,14 +70,13 @@ class Transport {
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
 
-  // `opening` is sent each time the device opens. Throws std::runtime_error with one line: the device, the
-  // system's reason, what was expected. The transport is then `gone`: whoever wants to wait for a device that
-  // is not there yet goes on to read().
-  virtual void open(std::span<const std::uint8_t> opening) = 0;
+  // `opening` is sent each time the device opens. Throws OpenError. The transport is then `gone`: whoever
+  // wants to wait for a device that is not there yet goes on to read().
+  void open(std::span<const std::uint8_t> opening);
 
   // Waits until something arrives, `timeout` has passed or stop() is called, and returns what is there, empty
   // for nothing. Never throws and, while the device is open, never allocates.
-  virtual Delivery read(std::chrono::nanoseconds timeout) noexcept = 0;
+  Delivery read(std::chrono::nanoseconds timeout) noexcept;
 
   // True: the source keeps until it is read, so a reader whose ring is full stops reading rather than lose
   // samples.
@@ -84,31 +98,50 @@ class Transport {
   [[nodiscard]] const std::string& warning() const { return warning_; }
 
  protected:
+  // Opens the device, again if need be, and sends opening(). Throws OpenError.
+  virtual void connect(std::string& warning) = 0;
+  // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
+  // is no more.
+  virtual Delivery receive(std::int64_t until_ns) noexcept = 0;
+
   enum class Wake { ready, timeout, stopped };
   // Waits for `events` on fd (or for nothing but time and stop() when fd is −1). `happened` gets poll's
   // answer.
-  Wake wait(int fd, short events, std::chrono::nanoseconds timeout, short& happened) noexcept;
+  Wake wait(int fd, short events, std::int64_t until_ns, short& happened) noexcept;
+
+  [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
+  // The device went away: connect() will be tried again.
+  void lost(int reason) noexcept;
+  // It is open but nobody is at its other end until the next delivery.
+  void left() noexcept;
+  void end(int reason) noexcept { enter(TransportState::ended, reason); }
 
   // One writer, so that a plain load and store do and no locked instruction is needed.
   using Counter = std::atomic<std::uint64_t>;
   static void add(Counter& counter, std::uint64_t n) noexcept {
     counter.store(counter.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
   }
-  void enter(TransportState state, int reason = 0) noexcept;
   void report(const char* what, std::uint64_t line) noexcept;  // counts it as malformed, too
 
-  Counter bytes_{0}, frames_{0}, kernel_drops_{0}, error_frames_{0}, reopened_{0};
-  std::string warning_;
+  Counter kernel_drops_{0}, error_frames_{0};
 
  private:
+  bool regain(std::int64_t until_ns) noexcept;
+  void enter(TransportState state, int reason) noexcept;
+
   std::string name_;
+  std::vector<std::uint8_t> opening_;
+  std::string warning_;
+  Backoff backoff_;
+  bool connected_ = false, once_ = false;
+  bool returning_ = false;  // the next delivery is the first since the device came back
   int stop_event_;
   std::atomic<bool> stopped_{false};
   std::atomic<TransportState> state_{TransportState::gone};
   std::atomic<int> reason_{0};
   std::atomic<const char*> fault_{nullptr};
   std::atomic<std::uint64_t> fault_line_{0};
-  Counter malformed_{0};
+  Counter bytes_{0}, frames_{0}, reopened_{0}, malformed_{0};
 };
 
 // CLOCK_REALTIME and CLOCK_MONOTONIC in ns.

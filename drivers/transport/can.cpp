@@ -1,0 +1,151 @@
+#include "drivers/transport/can.h"
+
+#include <linux/errqueue.h>
+#include <linux/net_tstamp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+#include "drivers/transport/can_control.h"
+#include "drivers/transport/can_socket.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kBatch = 64;  // frames a system call
+
+class CanTransport final : public Transport {
+ public:
+  explicit CanTransport(const CanSettings& settings) : Transport(settings.interface), settings_(settings) {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      vectors_[i] = {&raw_[i], sizeof raw_[i]};
+      messages_[i].msg_hdr.msg_iov = &vectors_[i];
+      messages_[i].msg_hdr.msg_iovlen = 1;
+      messages_[i].msg_hdr.msg_control = control_[i].bytes;
+    }
+  }
+
+ private:
+  void connect(std::string& warning) override;
+  Delivery receive(std::int64_t until_ns) noexcept override;
+  void ask_for_room(std::string& warning) const;
+  void ask_for_times(std::string& warning) const;
+  std::span<const ifog_can_frame> accept(std::size_t received) noexcept;
+
+  // Room for a time stamp of either kind and the drop counter.
+  struct Control {
+    alignas(cmsghdr) unsigned char bytes[CMSG_SPACE(sizeof(scm_timestamping)) + CMSG_SPACE(sizeof(timespec)) +
+                                         CMSG_SPACE(sizeof(std::uint32_t))];
+  };
+
+  CanSettings settings_;
+  CanSocket socket_;
+  std::uint32_t drops_ = 0;
+  std::array<canfd_frame, kBatch> raw_{};
+  std::array<iovec, kBatch> vectors_{};
+  std::array<Control, kBatch> control_{};
+  std::array<mmsghdr, kBatch> messages_{};
+  std::array<ifog_can_frame, kBatch> frames_{};
+};
+
+bool set(int fd, int option, int value) {
+  return setsockopt(fd, SOL_SOCKET, option, &value, sizeof value) == 0;
+}
+
+std::string because() { return " (" + std::generic_category().message(errno) + ")"; }
+
+void warn(std::string& warning, const std::string& interface, const std::string& what) {
+  warning += (warning.empty() ? interface + ": " : "; ") + what;
+}
+
+void CanTransport::connect(std::string& warning) {
+  if (!opening().empty())
+    throw OpenError(name(), "cannot send the driver's opening bytes", EOPNOTSUPP,
+                    "a driver without them on CAN");
+  socket_.close();  // before another is opened: the interface may be a new one of the same name
+  CanSocket fresh(settings_.interface);
+  fresh.receive_only(settings_.ids, settings_.interface);
+  socket_ = std::move(fresh);
+  drops_ = 0;
+  set(socket_.fd(), SO_RXQ_OVFL, 1);
+  ask_for_room(warning);
+  ask_for_times(warning);
+}
+
+void CanTransport::ask_for_room(std::string& warning) const {
+  const auto wanted = static_cast<int>(settings_.receive_buffer_bytes);
+  if (wanted == 0 || set(socket_.fd(), SO_RCVBUFFORCE, wanted)) return;
+  set(socket_.fd(), SO_RCVBUF, wanted);
+  int got = 0;
+  socklen_t size = sizeof got;
+  // The kernel doubles what it is asked for.
+  if (getsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &got, &size) != 0 || got / 2 < wanted)
+    warn(warning, name(),
+         "receive buffer of " + std::to_string(got / 2) + " bytes instead of " + std::to_string(wanted) +
+             " (net.core.rmem_max)");
+}
+
+void CanTransport::ask_for_times(std::string& warning) const {
+  if (set(socket_.fd(), SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE)) return;
+  if (set(socket_.fd(), SO_TIMESTAMPNS, 1)) return;
+  warn(warning, name(),
+       "no time stamps from the kernel" + because() + ": arrival times are those of the reading");
+}
+
+Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
+  short happened = 0;
+  if (wait(socket_.fd(), POLLIN, until_ns, happened) != Wake::ready) return {};
+  for (mmsghdr& message : messages_) {
+    message.msg_hdr.msg_controllen = sizeof(Control);
+    message.msg_hdr.msg_flags = 0;
+  }
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
+  if (n > 0) {
+    Delivery delivery;
+    delivery.frames = accept(static_cast<std::size_t>(n));
+    return delivery;
+  }
+  const int error = n < 0 ? errno : ENODEV;
+  if (error == EINTR || error == EAGAIN) return {};
+  socket_.close();
+  lost(error);  // ENETDOWN: set down; ENODEV: taken away
+  return {};
+}
+
+std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexcept {
+  std::size_t kept = 0;
+  std::int64_t read_at = 0;
+  for (std::size_t i = 0; i < received; ++i) {
+    const CanControl said = can_control(messages_[i].msg_hdr);
+    if (said.has_drops) {
+      add(kernel_drops_, said.drops - drops_);  // modulo 2^32, as the kernel counts
+      drops_ = said.drops;
+    }
+    ifog_can_frame& frame = frames_[kept];
+    switch (from_socket(raw_[i], messages_[i].msg_len, frame)) {
+      case CanKind::data:
+        if (said.arrival_ns == 0 && read_at == 0) read_at = realtime_ns();
+        frame.arrival_ns = said.arrival_ns != 0 ? said.arrival_ns : read_at;
+        ++kept;
+        break;
+      case CanKind::error:
+        add(error_frames_, 1);
+        break;
+      case CanKind::remote:
+      case CanKind::unknown:
+        break;
+    }
+  }
+  return std::span<const ifog_can_frame>(frames_).first(kept);
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_can_transport(const CanSettings& settings) {
+  return std::make_unique<CanTransport>(settings);
+}
+
+}  // namespace ifog

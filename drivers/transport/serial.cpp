@@ -1,0 +1,124 @@
+#include "drivers/transport/serial.h"
+
+#include <linux/serial.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr std::int64_t kSendLimit_ns = 1'000'000'000, kErrorPeriod_ns = 1'000'000'000;
+
+class SerialTransport final : public Transport {
+ public:
+  SerialTransport(const SerialSettings& settings, SerialOpener open_port)
+      : Transport(settings.device), settings_(settings), open_port_(std::move(open_port)) {}
+
+ private:
+  void connect(std::string& warning) override;
+  Delivery receive(std::int64_t until_ns) noexcept override;
+  void send_opening();
+  void count_line_errors(std::int64_t now_ns) noexcept;
+
+  SerialSettings settings_;
+  SerialOpener open_port_;
+  std::unique_ptr<SerialPort> port_;
+  serial_icounter_struct errors_{};
+  bool errors_known_ = false;
+  std::int64_t next_errors_ns_ = 0;
+  std::array<std::uint8_t, 16384> buffer_{};
+};
+
+void SerialTransport::connect(std::string& warning) {
+  port_.reset();
+  port_ = open_port_(settings_, warning);
+  send_opening();
+  errors_known_ = ioctl(port_->fd(), TIOCGICOUNT, &errors_) == 0;
+  next_errors_ns_ = monotonic_ns() + kErrorPeriod_ns;
+}
+
+void SerialTransport::send_opening() {
+  std::span<const std::uint8_t> rest = opening();
+  const std::int64_t limit = monotonic_ns() + kSendLimit_ns;
+  while (!rest.empty()) {
+    const ssize_t n = write(port_->fd(), rest.data(), rest.size());
+    if (n > 0) {
+      rest = rest.subspan(static_cast<std::size_t>(n));
+      continue;
+    }
+    int error = n < 0 ? errno : EIO;
+    if (error == EINTR) continue;
+    short happened = 0;
+    if (error == EAGAIN) {
+      if (wait(port_->fd(), POLLOUT, limit, happened) == Wake::ready) continue;
+      error = ETIMEDOUT;
+    }
+    port_.reset();
+    throw OpenError(name(), "cannot send the opening bytes", error, "a device that takes them");
+  }
+}
+
+Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
+  short happened = 0;
+  const Wake wake = wait(port_->fd(), POLLIN, until_ns, happened);
+  if (wake == Wake::stopped) return {};
+  const std::int64_t now = monotonic_ns();
+  if (errors_known_ && now >= next_errors_ns_) count_line_errors(now);
+  if (wake == Wake::timeout) return {};
+
+  const ssize_t n = ::read(port_->fd(), buffer_.data(), buffer_.size());
+  if (n > 0) {
+    Delivery delivery;
+    delivery.arrival_ns = realtime_ns();
+    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(n));
+    return delivery;
+  }
+  // Nothing to read is no fault of the device (another process may have taken it), a hang-up is.
+  const int error = n < 0 ? errno : 0;
+  const bool hung_up = (happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) return {};
+  // Closed at once: while it is held open the kernel gives a returning USB adapter another name.
+  port_.reset();
+  lost(error == 0 || error == EAGAIN ? ENODEV : error);
+  return {};
+}
+
+void SerialTransport::count_line_errors(std::int64_t now_ns) noexcept {
+  next_errors_ns_ = now_ns + kErrorPeriod_ns;
+  serial_icounter_struct now{};
+  if (ioctl(port_->fd(), TIOCGICOUNT, &now) != 0) {
+    errors_known_ = false;
+    return;
+  }
+  // The kernel's counters are ints that wrap.
+  const auto more = [](int after, int before) {
+    return static_cast<std::uint64_t>(static_cast<unsigned>(after) - static_cast<unsigned>(before));
+  };
+  add(kernel_drops_, more(now.overrun, errors_.overrun) + more(now.buf_overrun, errors_.buf_overrun));
+  add(error_frames_, more(now.frame, errors_.frame) + more(now.parity, errors_.parity));
+  errors_ = now;
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_serial_transport(const SerialSettings& settings, SerialOpener open_port) {
+  const auto refuse = [&](const std::string& what) {
+    throw std::runtime_error((settings.device.empty() ? "serial transport" : settings.device) + ": " + what);
+  };
+  if (settings.device.empty()) refuse("no device, expected a serial device such as /dev/ttyUSB0");
+  if (settings.baud < 50 || settings.baud > 20'000'000)
+    refuse("baud is " + std::to_string(settings.baud) + ", expected 50 to 20000000");
+  if (settings.data_bits < 5 || settings.data_bits > 8)
+    refuse("data_bits is " + std::to_string(settings.data_bits) + ", expected 5 to 8");
+  if (settings.stop_bits < 1 || settings.stop_bits > 2)
+    refuse("stop_bits is " + std::to_string(settings.stop_bits) + ", expected 1 or 2");
+  return std::make_unique<SerialTransport>(settings, std::move(open_port));
+}
+
+}  // namespace ifog

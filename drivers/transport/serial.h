@@ -1,0 +1,19 @@
+// The serial transport. Opens the line again whenever it goes away, within a quarter of a second of its
+// return.
+#pragma once
+
+#include <memory>
+
+#include "drivers/transport/serial_port.h"
+#include "drivers/transport/transport.h"
+
+namespace ifog {
+
+// Arrival times are taken right after the read. Overruns of the UART and of the kernel's buffer are counted
+// as kernel drops, framing and parity errors as error frames, where the driver tells them (TIOCGICOUNT).
+// `open_port` is there for tests: libserialport accepts no pseudo terminal. Throws std::runtime_error on
+// settings outside what a line can be.
+std::unique_ptr<Transport> make_serial_transport(const SerialSettings& settings,
+                                                 SerialOpener open_port = open_serial_port);
+
+}  // namespace ifog

@@ -1,0 +1,238 @@
+// The serial transport over a pseudo terminal in the place of the line: libserialport itself takes none (no
+// modem lines), it is tried in tests/system on an emulated UART and a USB adapter that is pulled out.
+#include "drivers/transport/serial.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <thread>
+
+namespace {
+
+using namespace std::chrono_literals;
+using ifog::SerialSettings;
+using ifog::TransportState;
+
+constexpr auto kForever = 60s;
+
+class Terminal final : public ifog::SerialPort {
+ public:
+  explicit Terminal(const std::string& path)
+      : fd_(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    if (fd_ < 0) throw ifog::OpenError(path, "cannot open", errno, "a terminal");
+    termios raw{};
+    tcgetattr(fd_, &raw);
+    cfmakeraw(&raw);
+    raw.c_cc[VMIN] = 0;  // as libserialport sets it: a read without bytes is 0, not EAGAIN
+    tcsetattr(fd_, TCSANOW, &raw);
+  }
+  ~Terminal() override { close(fd_); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+  [[nodiscard]] int fd() const override { return fd_; }
+
+ private:
+  int fd_;
+};
+
+// The gyro's end of a line that can be pulled out and put back.
+class Gyro {
+ public:
+  Gyro() { plug(); }
+  ~Gyro() { pull(); }
+  Gyro(const Gyro&) = delete;
+  Gyro& operator=(const Gyro&) = delete;
+  void plug() {
+    fd_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    ASSERT_GE(fd_, 0);
+    ASSERT_EQ(grantpt(fd_), 0);
+    ASSERT_EQ(unlockpt(fd_), 0);
+    path_ = ptsname(fd_);
+    there_ = true;
+  }
+  void pull() {
+    there_ = false;
+    if (fd_ >= 0) close(fd_);
+    fd_ = -1;
+  }
+  void send(const std::string& text) const {
+    ASSERT_EQ(write(fd_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  std::string receive(std::size_t n) const {
+    std::string text(n, '\0');
+    std::size_t have = 0;
+    while (have < n) {
+      const ssize_t got = read(fd_, text.data() + have, n - have);
+      if (got <= 0) break;
+      have += static_cast<std::size_t>(got);
+    }
+    return text.substr(0, have);
+  }
+  ifog::SerialOpener opener() {
+    return [this](const SerialSettings&, std::string& warning) -> std::unique_ptr<ifog::SerialPort> {
+      if (!there_) throw ifog::OpenError("gyro", "cannot open", ENOENT, "a serial device");
+      warning = "no low latency";
+      return std::make_unique<Terminal>(path_);
+    };
+  }
+
+ private:
+  int fd_ = -1;
+  std::atomic<bool> there_{false};
+  std::string path_;
+};
+
+SerialSettings settings() { return {.device = "gyro", .baud = 921600}; }
+
+std::string read_some(ifog::Transport& transport, std::size_t n, bool* restarted = nullptr) {
+  std::string text;
+  while (text.size() < n && !transport.stopped()) {
+    const ifog::Delivery d = transport.read(kForever);
+    if (restarted != nullptr) *restarted = *restarted || d.restarted;
+    text.append(d.bytes.begin(), d.bytes.end());
+  }
+  return text;
+}
+
+TEST(SerialTransport, DeliversEveryByteWithItsArrival) {
+  Gyro gyro;
+  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  transport->open({});
+  EXPECT_EQ(transport->warning(), "no low latency");
+  EXPECT_FALSE(transport->holds_back());
+  std::string all;
+  for (int i = 0; i < 256; ++i) all += static_cast<char>(i);
+  const std::int64_t before = ifog::realtime_ns();
+  gyro.send(all);
+  const ifog::Delivery d = transport->read(kForever);
+  EXPECT_GE(d.arrival_ns, before);
+  EXPECT_LE(d.arrival_ns, ifog::realtime_ns());
+  std::string seen(d.bytes.begin(), d.bytes.end());
+  if (seen.size() < all.size()) seen += read_some(*transport, all.size() - seen.size());
+  EXPECT_EQ(seen, all);
+  EXPECT_EQ(transport->counters().bytes, 256U);
+  EXPECT_TRUE(transport->read(1ms).empty());
+  EXPECT_EQ(transport->state(), TransportState::open);
+}
+
+TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
+  Gyro gyro;
+  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  const std::string opening = "=rate\r";
+  transport->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+  EXPECT_EQ(gyro.receive(opening.size()), opening);
+  gyro.send("0");
+  EXPECT_EQ(read_some(*transport, 1), "0");
+  for (int pull = 1; pull <= 20; ++pull) {
+    gyro.pull();
+    while (transport->state() == TransportState::open) transport->read(kForever);
+    EXPECT_EQ(transport->state(), TransportState::gone);
+    EXPECT_NE(transport->reason(), 0);
+    EXPECT_TRUE(transport->read(1ms).empty());
+    gyro.plug();
+    while (transport->state() == TransportState::gone) transport->read(1ms);
+    EXPECT_EQ(gyro.receive(opening.size()), opening);
+    gyro.send(std::to_string(pull));
+    bool restarted = false;
+    EXPECT_EQ(read_some(*transport, std::to_string(pull).size(), &restarted), std::to_string(pull));
+    EXPECT_TRUE(restarted);
+  }
+  EXPECT_EQ(transport->counters().reopened, 20U);
+}
+
+TEST(SerialTransport, ADeviceThatIsNotThereYetIsAwaited) {
+  Gyro gyro;
+  gyro.pull();
+  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  EXPECT_THROW(transport->open({}), ifog::OpenError);
+  EXPECT_EQ(transport->reason(), ENOENT);
+  EXPECT_TRUE(transport->read(1ms).empty());
+  gyro.plug();
+  while (transport->state() == TransportState::gone) transport->read(1ms);
+  // Nothing was open before it: this is no return.
+  EXPECT_EQ(transport->counters().reopened, 0U);
+}
+
+TEST(SerialTransport, StopEndsTheWaitForBytesAndTheWaitForTheDevice) {
+  for (const bool there : {true, false}) {
+    Gyro gyro;
+    const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+    transport->open({});
+    if (!there) {
+      gyro.pull();
+      while (transport->state() == TransportState::open) transport->read(kForever);
+    }
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(20ms);
+      transport->stop();
+    });
+    EXPECT_TRUE(transport->read(kForever).empty());
+    EXPECT_TRUE(transport->stopped());
+    stopper.join();
+  }
+}
+
+TEST(SerialTransport, AnOpeningThatCannotBeSentIsAFailure) {
+  int fds[2];
+  ASSERT_EQ(pipe2(fds, O_NONBLOCK), 0);
+  close(fds[1]);
+  // A descriptor that may only be read.
+  class ReadOnly final : public ifog::SerialPort {
+   public:
+    explicit ReadOnly(int fd) : fd_(fd) {}
+    [[nodiscard]] int fd() const override { return fd_; }
+
+   private:
+    int fd_;
+  };
+  const auto transport = ifog::make_serial_transport(
+      settings(), [&](const SerialSettings&, std::string&) { return std::make_unique<ReadOnly>(fds[0]); });
+  const std::uint8_t byte = 'x';
+  try {
+    transport->open({&byte, 1});
+    ADD_FAILURE() << "accepted";
+  } catch (const ifog::OpenError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "gyro: cannot send the opening bytes: Bad file descriptor, expected a device that takes them");
+  }
+  close(fds[0]);
+}
+
+std::string refusal(const SerialSettings& s) {
+  try {
+    ifog::make_serial_transport(s)->open({});
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(SerialTransport, RefusesInOneLine) {
+  EXPECT_EQ(refusal({.device = "/dev/no-gyro", .baud = 921600}),
+            "/dev/no-gyro: cannot open: No such file or directory, expected a serial device");
+  EXPECT_EQ(refusal({.device = "/dev/null", .baud = 921600}).substr(0, 24), "/dev/null: cannot open: ");
+  EXPECT_EQ(refusal({.device = "x", .baud = 0}), "x: baud is 0, expected 50 to 20000000");
+  EXPECT_EQ(refusal({.device = "x", .baud = 9600, .data_bits = 9}), "x: data_bits is 9, expected 5 to 8");
+  EXPECT_EQ(refusal({.device = "x", .baud = 9600, .stop_bits = 3}), "x: stop_bits is 3, expected 1 or 2");
+  EXPECT_EQ(refusal({}), "serial transport: no device, expected a serial device such as /dev/ttyUSB0");
+}
+
+TEST(SerialTransport, LibserialportRefusesAPseudoTerminal) {
+  Gyro gyro;
+  const int fd = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(fd, 0);
+  ASSERT_EQ(grantpt(fd), 0);
+  ASSERT_EQ(unlockpt(fd), 0);
+  const std::string path = ptsname(fd);
+  EXPECT_EQ(refusal({.device = path, .baud = 9600}).substr(0, path.size() + 15), path + ": cannot open: ");
+  close(fd);
+}
+
+}  // namespace
