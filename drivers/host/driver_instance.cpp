@@ -103,8 +103,10 @@ void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::ui
     auto& target = *static_cast<std::vector<std::uint8_t>*>(sink);
     target.insert(target.end(), bytes, bytes + length);
   };
-  if (table().encode_bytes(instance_, &sample, emit, &out, error.data(), error.size()) != 0)
-    throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
+  const std::size_t before = out.size();
+  if (table().encode_bytes(instance_, &sample, emit, &out, error.data(), error.size()) == 0) return;
+  out.resize(before);  // a sample is encoded whole or not at all
+  throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
 }
 
 void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out) {
@@ -114,8 +116,10 @@ void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_
   const auto emit = [](void* sink, const ifog_can_frame* frame) {
     static_cast<std::vector<ifog_can_frame>*>(sink)->push_back(*frame);
   };
-  if (table().encode_can(instance_, &sample, emit, &out, error.data(), error.size()) != 0)
-    throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
+  const std::size_t before = out.size();
+  if (table().encode_can(instance_, &sample, emit, &out, error.data(), error.size()) == 0) return;
+  out.resize(before);
+  throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
 }
 
 DriverInstance make_driver(const std::string& name, const DriverSettings& settings,

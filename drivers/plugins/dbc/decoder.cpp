@@ -1,0 +1,179 @@
+#include "drivers/plugins/dbc/decoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "drivers/dbc/codec.h"
+
+namespace ifog::dbc {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNsPerSecond = 1e9;
+
+constexpr std::uint32_t bit(std::size_t i) { return 1U << i; }
+
+}  // namespace
+
+Decoder::Decoder(const Picks& picks) : picks_(picks) {
+  for (const Pick& counter : picks.counter) add(Role::kCounter, 0, counter);
+  for (std::size_t i = 0; i < picks.axes.size(); ++i)
+    add(Role::kAxis, i, picks.axes[i].pick, picks.axes[i].si_per_unit);
+  if (picks.status) add(Role::kStatus, 0, *picks.status);
+  if (picks.time) {
+    add(Role::kTime, 0, *picks.time);
+    const Signal& s = *picks.time->signal;
+    if (s.type == ValueType::kUnsigned || s.type == ValueType::kSigned)
+      time_wrap_s_ = std::ldexp(std::abs(s.scale), static_cast<int>(s.length)) * picks.seconds_per_unit;
+  }
+  for (std::size_t i = 0; i < picks.environments.size(); ++i)
+    add(Role::kEnvironment, i, picks.environments[i].pick);
+  learn_order();
+  std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
+}
+
+void Decoder::add(Role role, std::size_t index, const Pick& pick, double si_per_unit) {
+  auto at = std::find_if(wanted_.begin(), wanted_.end(), [&](const Wanted& w) {
+    return w.id == pick.message->id && w.extended == pick.message->extended;
+  });
+  if (at == wanted_.end()) at = wanted_.insert(at, {pick.message->id, pick.message->extended, {}});
+  at->entries.push_back({role, index, pick.message, pick.signal, bytes_needed(*pick.signal), si_per_unit});
+}
+
+void Decoder::learn_order() {
+  all_axes_ = bit(picks_.axes.size()) - 1;
+  const auto carries_counter = [&](const Axis& axis) {
+    return std::any_of(picks_.counter.begin(), picks_.counter.end(), [&](const Pick& counter) {
+      return counter.message == axis.pick.message && counter.signal->selector == kNone;
+    });
+  };
+  if (std::all_of(picks_.axes.begin(), picks_.axes.end(), carries_counter)) {
+    beginning_axes_ = all_axes_;  // in any order: the counter tells
+    return;
+  }
+  // By id, then by the multiplexor's value, the order in which a device sends.
+  const auto order = [](const Axis& axis) {
+    const Signal& s = *axis.pick.signal;
+    return std::pair(axis.pick.message->id,
+                     s.selected_by.empty() ? std::uint64_t{0} : s.selected_by.front().first);
+  };
+  auto first = order(picks_.axes.front());
+  for (const Axis& axis : picks_.axes) first = std::min(first, order(axis));
+  for (std::size_t i = 0; i < picks_.axes.size(); ++i)
+    if (order(picks_.axes[i]) == first) beginning_axes_ |= bit(i);
+}
+
+void Decoder::begin_sample() noexcept {
+  present_ = 0;
+  finite_ = 0;
+  counted_ = false;
+}
+
+void Decoder::reset() noexcept {
+  begin_sample();
+  sample_.environment_fresh = 0;
+  time_started_ = false;
+}
+
+void Decoder::decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept {
+  const bool extended = (frame.flags & IFOG_CAN_EXTENDED) != 0;
+  for (const Wanted& wanted : wanted_)
+    if (wanted.id == frame.id && wanted.extended == extended) {
+      take(wanted, frame, emit, sink);
+      return;
+    }
+}
+
+void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit,
+                   void* sink) noexcept {
+  const std::span<const std::uint8_t> data(frame.data,
+                                           std::min<std::size_t>(frame.length, sizeof frame.data));
+  std::uint32_t brings = 0;
+  const Entry* counter = nullptr;
+  for (const Entry& entry : wanted.entries) {
+    if (!selected(*entry.message, *entry.signal, data)) continue;
+    if (entry.bytes > data.size()) {
+      ++counters_.frames_format;
+      return;
+    }
+    if (entry.role == Role::kAxis) brings |= bit(entry.index);
+    if (entry.role == Role::kCounter) counter = &entry;
+  }
+  if (brings != 0) {
+    const bool other_count = counter != nullptr && counted_ &&
+                             raw_bits(*counter->signal, data) % picks_.counter_modulus != sample_.sequence;
+    if (present_ != 0 && (other_count || (present_ & brings) != 0)) {
+      ++counters_.frames_format;
+      begin_sample();
+    }
+    if (present_ == 0 && (brings & beginning_axes_) == 0) {
+      ++counters_.frames_format;
+      return;
+    }
+  }
+  for (const Entry& entry : wanted.entries)
+    if (selected(*entry.message, *entry.signal, data) && (entry.role != Role::kCounter || brings != 0))
+      set(entry, raw_bits(*entry.signal, data));
+  ++counters_.frames_good;
+  if (brings != 0 && present_ == all_axes_) complete(frame.arrival_ns, emit, sink);
+}
+
+void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
+  switch (entry.role) {
+    case Role::kCounter:
+      sample_.sequence = static_cast<std::uint32_t>(bits % picks_.counter_modulus);
+      counted_ = true;
+      break;
+    case Role::kAxis: {
+      const double value = physical(*entry.signal, bits) * entry.si_per_unit;
+      sample_.value[entry.index] = value;
+      if (std::isfinite(value)) finite_ |= bit(entry.index);
+      present_ |= bit(entry.index);
+      break;
+    }
+    case Role::kStatus:
+      sample_.status = static_cast<std::uint32_t>(bits);
+      break;
+    case Role::kTime: {
+      const double seconds = physical(*entry.signal, bits) * picks_.seconds_per_unit;
+      if (std::isfinite(seconds)) sample_.device_time_ns = unwrapped_ns(seconds);
+      break;
+    }
+    case Role::kEnvironment: {
+      const double value = physical(*entry.signal, bits);
+      if (!std::isfinite(value)) break;
+      sample_.environment[entry.index] = value;
+      sample_.environment_fresh |= bit(entry.index);
+      break;
+    }
+  }
+}
+
+std::int64_t Decoder::unwrapped_ns(double seconds) noexcept {
+  double step = time_started_ ? seconds - last_time_s_ : seconds;
+  if (time_started_ && step < 0.0 && time_wrap_s_ > 0.0) step += time_wrap_s_;
+  last_time_s_ = seconds;
+  // A float that holds anything may hold what no int64 of nanoseconds can.
+  constexpr double kLongest = 1e9;
+  if (std::abs(step) < kLongest)
+    time_ns_ = (time_started_ ? time_ns_ : 0) + std::llround(step * kNsPerSecond);
+  time_started_ = true;
+  return time_ns_;
+}
+
+void Decoder::complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept {
+  sample_.arrival_ns = arrival_ns;
+  sample_.flags = 0;
+  if (counted_) sample_.flags |= IFOG_SAMPLE_SEQUENCE;
+  if (time_started_) sample_.flags |= IFOG_SAMPLE_DEVICE_TIME;
+  const bool good = !picks_.status_good || (sample_.status & picks_.status_mask) == *picks_.status_good;
+  sample_.valid_axes = good ? finite_ : 0;
+  emit(sink, &sample_);
+  begin_sample();
+  sample_.environment_fresh = 0;
+}
+
+}  // namespace ifog::dbc

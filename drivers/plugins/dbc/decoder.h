@@ -1,0 +1,70 @@
+// From CAN frames to samples by a DBC file's description. No allocation after construction.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "drivers/plugins/dbc/picks.h"
+
+namespace ifog::dbc {
+
+// A sample may be spread over several frames; it is complete when every axis has arrived. The frames of one
+// sample are told from those of the next by
+//   - the counter, in each frame that carries it;
+//   - an axis that comes a second time;
+//   - where some axis's frame carries no counter: the frame of the lowest id, which begins a sample, because
+//   frames
+//     queued together leave in the order of their ids (arbitration).
+// So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. Environment,
+// status and time may be in frames of their own; they go with the next sample that completes.
+class Decoder {
+ public:
+  explicit Decoder(const Picks& picks);
+
+  void decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
+  void reset() noexcept;
+
+  // frames_format: frames too short for a signal, samples given up incomplete, frames whose sample's
+  // beginning was lost
+  [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
+
+ private:
+  enum class Role : std::uint8_t { kAxis, kCounter, kStatus, kTime, kEnvironment };
+  struct Entry {
+    Role role;
+    std::size_t index;  // of the axis or the environment channel
+    const Message* message;
+    const Signal* signal;
+    std::size_t bytes;   // the frame must have, for this signal
+    double si_per_unit;  // axes only
+  };
+  struct Wanted {
+    std::uint32_t id;
+    bool extended;
+    std::vector<Entry> entries;
+  };
+
+  void add(Role role, std::size_t index, const Pick& pick, double si_per_unit = 1.0);
+  void learn_order();
+  void take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
+  void set(const Entry& entry, std::uint64_t bits) noexcept;
+  void begin_sample() noexcept;
+  void complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept;
+  std::int64_t unwrapped_ns(double seconds) noexcept;
+
+  const Picks& picks_;
+  std::vector<Wanted> wanted_;
+  std::uint32_t all_axes_ = 0;        // bit i: axis i
+  std::uint32_t beginning_axes_ = 0;  // any of which begins a sample
+  std::uint32_t present_ = 0;         // axes of the sample being gathered
+  std::uint32_t finite_ = 0;
+  bool counted_ = false;  // its counter is known
+  ifog_sample sample_{};
+  double time_wrap_s_ = 0.0;  // the device's clock starts again at this; 0: it is a float and does not
+  double last_time_s_ = 0.0;
+  std::int64_t time_ns_ = 0;
+  bool time_started_ = false;
+  ifog_driver_counters counters_{};
+};
+
+}  // namespace ifog::dbc

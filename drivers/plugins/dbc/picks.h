@@ -1,0 +1,63 @@
+// Which signals of a DBC file the sensor is made of: the driver's options, resolved.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/dbc/database.h"
+#include "ifog/driver.h"
+#include "ifog/options.h"
+
+namespace ifog::dbc {
+
+// A signal of the database. Both are addresses inside Picks::database, which does not change after reading.
+struct Pick {
+  const Message* message = nullptr;
+  const Signal* signal = nullptr;
+
+  [[nodiscard]] std::string name() const { return message->name + "." + signal->name; }
+};
+
+struct Axis {
+  std::string name;  // "x", "y", "z", or "" for the one axis of `signal`
+  Pick pick;
+  double si_per_unit = 1.0;  // rad or rad/s per physical unit of the signal
+};
+
+struct Environment {
+  std::string column;  // as in a capture: "temperature_degC"
+  Pick pick;
+};
+
+struct Picks {
+  Picks() = default;
+  Picks(const Picks&) = delete;
+  Picks& operator=(const Picks&) = delete;
+
+  Database database;
+  ifog_kind kind = IFOG_RATE;
+  std::vector<Axis> axes;
+  double angle_wrap_rad = 0.0;
+  std::vector<Pick> counter;  // the same counter in each message that has it; empty: none
+  std::uint32_t counter_modulus = 0;
+  std::optional<Pick> status;
+  std::uint32_t status_mask = 0xFFFFFFFFU;
+  std::optional<std::uint32_t> status_good;  // valid when (status & mask) equals this; nothing: always
+  std::optional<Pick> time;
+  double seconds_per_unit = 1.0;  // of `time`
+  std::vector<Environment> environments;
+  double rate_hz = 0.0;
+};
+
+// Fills `out`. Throws std::exception with one line: the DBC file's own errors with file and line; an option
+// with key, value and what was expected.
+void read_picks(const plugin::Options& options, Picks& out);
+
+// The driver's option list, ended by an entry without key.
+const ifog_option* option_list();
+
+}  // namespace ifog::dbc

@@ -1,0 +1,299 @@
+// The driver `dbc`: signals picked by options, samples gathered from several frames, nothing made of two
+// samples.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <numbers>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kExamples = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/";
+
+ifog_can_frame frame(std::uint32_t id, std::initializer_list<int> bytes, std::int64_t arrival_ns = 0) {
+  ifog_can_frame f{};
+  f.id = id;
+  f.arrival_ns = arrival_ns;
+  for (const int byte : bytes) f.data[f.length++] = static_cast<std::uint8_t>(byte);
+  return f;
+}
+
+// A frame of ifogd_gyro.dbc, put together here byte by byte: little-endian float, 16-bit counter, status.
+ifog_can_frame axis_frame(std::uint32_t id, float rate, std::uint16_t counter, std::uint8_t status = 0) {
+  const auto bits = std::bit_cast<std::uint32_t>(rate);
+  return frame(id, {static_cast<int>(bits & 0xFF), static_cast<int>(bits >> 8 & 0xFF),
+                    static_cast<int>(bits >> 16 & 0xFF), static_cast<int>(bits >> 24), counter & 0xFF,
+                    counter >> 8, status, 0});
+}
+
+std::vector<ifog_sample> decode(ifog::DriverInstance& driver, const std::vector<ifog_can_frame>& frames) {
+  std::vector<ifog_sample> samples;
+  for (const ifog_can_frame& f : frames)
+    driver.decode_can(f, [&](const ifog_sample& sample) { samples.push_back(sample); });
+  return samples;
+}
+
+ifog::DriverInstance three_axes(const ifog::DriverSettings& more = {}) {
+  ifog::DriverSettings settings{{"dbc", kExamples + "ifogd_gyro.dbc"},
+                                {"x", "Rate_x"},
+                                {"y", "Rate_y"},
+                                {"z", "Rate_Z.Rate_z"},
+                                {"counter", "Counter"}};
+  settings.insert(more.begin(), more.end());
+  return ifog::make_driver("dbc", settings);
+}
+
+TEST(DbcDriver, GoettingFrameByHand) {
+  ifog::DriverInstance driver = ifog::make_driver("dbc", {{"dbc", kExamples + "goetting_hg_g_84300.dbc"},
+                                                          {"signal", "Angle"},
+                                                          {"kind", "angle"},
+                                                          {"counter", "Cycle"},
+                                                          {"status", "Status"},
+                                                          {"status_mask", "0x80"},
+                                                          {"status_good", "0"},
+                                                          {"environment", "temperature_degC=Temperature"},
+                                                          {"rate_hz", "100"}});
+  EXPECT_EQ(driver.description().kind, unsigned{IFOG_ANGLE});
+  EXPECT_EQ(driver.description().sequence_modulus, 256U);
+  EXPECT_EQ(driver.description().can_ids, 1U);
+  EXPECT_EQ(driver.description().can_id[0].id, 389U);
+  EXPECT_DOUBLE_EQ(driver.description().angle_wrap_rad, 2.0 * std::numbers::pi);
+  // 0x3FC00000 = 1.5; -3 °C; status 0x10; cycle 200. Then the parameter error bit.
+  const std::vector<ifog_sample> samples =
+      decode(driver, {frame(389, {0, 0, 0xC0, 0x3F, 0xFD, 0xFF, 0x10, 200}, 77),
+                      frame(389, {0, 0, 0xC0, 0x3F, 0xFD, 0xFF, 0x90, 201})});
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_EQ(samples[0].value[0], 1.5);
+  EXPECT_EQ(samples[0].arrival_ns, 77);
+  EXPECT_EQ(samples[0].sequence, 200U);
+  EXPECT_EQ(samples[0].status, 0x10U);
+  EXPECT_EQ(samples[0].valid_axes, 1U);
+  EXPECT_EQ(samples[0].environment[0], -3.0);
+  EXPECT_EQ(samples[0].environment_fresh, 1U);
+  EXPECT_EQ(samples[1].valid_axes, 0U);
+}
+
+TEST(DbcDriver, RacelogicFrameByHand) {
+  ifog::DriverInstance driver =
+      ifog::make_driver("dbc", {{"dbc", kExamples + "racelogic_yaw03.dbc"},
+                                {"z", "Yaw_Rate"},
+                                {"environment", "accel_x_mps2=X_Accel, temperature_degC = Temp"}});
+  EXPECT_EQ(driver.description().sequence_modulus, 0U);
+  EXPECT_STREQ(driver.description().axis[0], "z");
+  // 0x42340000 = 45 deg/s; 0x3F800000 = 1 g; 0x41BC0000 = 23.5 °C in the other message.
+  const std::vector<ifog_sample> samples =
+      decode(driver, {frame(0x601, {0, 0, 0, 0, 0x41, 0xBC, 0, 0}),
+                      frame(0x600, {0x42, 0x34, 0, 0, 0x3F, 0x80, 0, 0}),
+                      frame(0x600, {0x42, 0x34, 0, 0, 0x3F, 0x80, 0, 0})});
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_DOUBLE_EQ(samples[0].value[0], std::numbers::pi / 4.0);
+  EXPECT_EQ(samples[0].flags, 0U);
+  EXPECT_DOUBLE_EQ(samples[0].environment[0], 9.80665);
+  EXPECT_EQ(samples[0].environment[1], 23.5);
+  EXPECT_EQ(samples[0].environment_fresh, 3U);
+  EXPECT_EQ(samples[1].environment[1], 23.5);  // known, but not new
+  EXPECT_EQ(samples[1].environment_fresh, 1U);
+}
+
+TEST(DbcDriver, ThreeFramesMakeOneSampleInAnyOrder) {
+  ifog::DriverInstance driver = three_axes();
+  const std::vector<ifog_sample> samples =
+      decode(driver, {axis_frame(258, 3.0F, 7), axis_frame(256, 1.0F, 7), axis_frame(257, 2.0F, 7)});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].sequence, 7U);
+  EXPECT_EQ(samples[0].value[0], 1.0);
+  EXPECT_EQ(samples[0].value[1], 2.0);
+  EXPECT_EQ(samples[0].value[2], 3.0);
+  EXPECT_EQ(driver.counters().frames_good, 3U);
+}
+
+// Each frame of a run is lost in turn: the samples that come out are exactly the ones that were complete.
+TEST(DbcDriver, ALostFrameCostsItsSampleAndMixesNone) {
+  for (const bool counted : {true, false})
+    for (std::size_t lost = 0; lost < 15; ++lost) {
+      ifog::DriverInstance driver = counted ? three_axes()
+                                            : ifog::make_driver("dbc", {{"dbc", kExamples + "ifogd_gyro.dbc"},
+                                                                        {"x", "Rate_x"},
+                                                                        {"y", "Rate_y"},
+                                                                        {"z", "Rate_z"}});
+      std::vector<ifog_can_frame> frames;
+      for (int k = 0; k < 5; ++k)
+        for (int axis = 0; axis < 3; ++axis)
+          frames.push_back(axis_frame(static_cast<std::uint32_t>(256 + axis),
+                                      static_cast<float>(10 * k + axis),
+                                      static_cast<std::uint16_t>(65533 + k)));
+      frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(lost));
+      std::vector<double> seen;
+      for (const ifog_sample& s : decode(driver, frames)) {
+        EXPECT_EQ(s.value[1], s.value[0] + 1.0);
+        EXPECT_EQ(s.value[2], s.value[0] + 2.0);
+        seen.push_back(s.value[0] / 10.0);
+        if (counted) {
+          EXPECT_EQ(s.sequence, static_cast<std::uint16_t>(65533 + static_cast<int>(seen.back())));
+        }
+      }
+      std::vector<double> expected;
+      for (int k = 0; k < 5; ++k)
+        if (static_cast<std::size_t>(k) != lost / 3) expected.push_back(k);
+      EXPECT_EQ(seen, expected) << "lost " << lost << (counted ? " with" : " without") << " counter";
+      // A sample whose rest never came is only known to be incomplete when the next one begins.
+      if (lost < 12) {
+        EXPECT_GE(driver.counters().frames_format, 1U);
+      }
+    }
+}
+
+TEST(DbcDriver, IgnoresOtherIdsAndExtendedTwinsAndCountsShortFrames) {
+  ifog::DriverInstance driver = three_axes();
+  ifog_can_frame twin = axis_frame(256, 1.0F, 1);
+  twin.flags = IFOG_CAN_EXTENDED;
+  ifog_can_frame cut = axis_frame(256, 1.0F, 1);
+  cut.length = 5;
+  EXPECT_TRUE(decode(driver, {twin, axis_frame(999, 1.0F, 1), cut}).empty());
+  EXPECT_EQ(driver.counters().frames_good, 0U);
+  EXPECT_EQ(driver.counters().frames_format, 1U);
+}
+
+TEST(DbcDriver, NaNIsInvalidAndLeavesTheOtherAxesValid) {
+  ifog::DriverInstance driver = three_axes();
+  const std::vector<ifog_sample> samples =
+      decode(driver, {axis_frame(256, 1.0F, 1), axis_frame(257, std::nanf(""), 1), axis_frame(258, 3.0F, 1)});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].valid_axes, 0b101U);
+}
+
+class DbcText : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::temp_directory_path() / ("ifog-dbc-" + std::to_string(getpid()) + ".dbc");
+  }
+  void TearDown() override { fs::remove(path_); }
+  ifog::DriverInstance driver(const std::string& text, ifog::DriverSettings settings) {
+    std::ofstream(path_) << text;
+    settings["dbc"] = path_.string();
+    return ifog::make_driver("dbc", settings);
+  }
+  std::string refusal(const std::string& text, const ifog::DriverSettings& settings) {
+    try {
+      driver(text, settings);
+    } catch (const std::runtime_error& error) {
+      std::string what = error.what();
+      for (std::size_t at = what.find(path_.string()); at != std::string::npos;
+           at = what.find(path_.string()))
+        what.replace(at, path_.string().size(), "F");
+      return what;
+    }
+    return "accepted";
+  }
+
+ private:
+  fs::path path_;
+};
+
+constexpr const char* kTwo =
+    "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"deg/s\" X\n SG_ N : 16|4@1+ (1,0) [0|0] \"\" X\n"
+    "BO_ 2 B: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"furlong\" X\n SG_ T : 16|32@1+ (1,0) [0|0] \"us\" X\n";
+
+TEST_F(DbcText, RefusalsNameKeyValueAndExpectation) {
+  EXPECT_EQ(
+      refusal(kTwo, {{"signal", "R"}}),
+      "driver dbc: signal is 'R', expected one signal, with its message before a dot; 'R' may be A.R or B.R");
+  EXPECT_EQ(refusal(kTwo, {{"signal", "Q"}}),
+            "driver dbc: signal is 'Q', expected a signal of F: A.R, A.N, B.R, B.T");
+  EXPECT_EQ(refusal(kTwo, {}),
+            "driver dbc: signal is '', expected a signal here, or in x, y, z: A.R, A.N, B.R, B.T");
+  EXPECT_EQ(
+      refusal(kTwo, {{"signal", "B.R"}}),
+      "driver dbc: unit is 'auto', expected a unit of angular rate (rad/s, deg/s, deg/h, …), as the DBC file "
+      "gives 'furlong' for B.R");
+  EXPECT_EQ(refusal(kTwo, {{"signal", "A.R"}, {"x", "A.R"}}),
+            "driver dbc: x is 'A.R', expected nothing beside 'signal': a sensor has either one axis without "
+            "a name or "
+            "x, y, z");
+  EXPECT_EQ(
+      refusal(kTwo, {{"signal", "A.R"}, {"counter", "B.T"}}),
+      "driver dbc: counter is 'B.T', expected a signal in a message that carries an axis; B.T is in none");
+  EXPECT_EQ(refusal("BO_ 1 A 8", {{"signal", "A.R"}}), "driver dbc: F:1: '8', expected ':'");
+  EXPECT_EQ(
+      refusal(kTwo, {{"signal", "A.R"}, {"environment", "T"}}),
+      "driver dbc: environment is 'T', expected COLUMN=SIGNAL, several separated by commas; 'T' is not");
+}
+
+TEST_F(DbcText, UnitsCountersAndClocks) {
+  ifog::DriverInstance a = driver(kTwo, {{"signal", "A.R"}, {"counter", "N"}, {"counter_modulus", "15"}});
+  EXPECT_EQ(a.description().sequence_modulus, 15U);
+  const std::vector<ifog_sample> s =
+      decode(a, {frame(1, {0x9C, 0xFF, 14, 0, 0, 0, 0, 0})});  // -100 · 0.01 deg/s
+  ASSERT_EQ(s.size(), 1U);
+  EXPECT_DOUBLE_EQ(s[0].value[0], -std::numbers::pi / 180.0);
+  EXPECT_EQ(s[0].sequence, 14U);
+
+  ifog::DriverInstance b = driver(kTwo, {{"signal", "B.R"}, {"unit", "deg/h"}, {"time", "T"}});
+  EXPECT_EQ(b.description().has_device_time, 1U);
+  const std::vector<ifog_sample> t =
+      decode(b, {frame(2, {0, 0, 0x00, 0xFF, 0xFF, 0xFF, 0, 0}),    // 2^32 - 256 µs
+                 frame(2, {1, 0, 0x00, 0x01, 0x00, 0x00, 0, 0})});  // 256 µs later still
+  ASSERT_EQ(t.size(), 2U);
+  EXPECT_EQ(t[1].device_time_ns - t[0].device_time_ns, 512'000);
+  EXPECT_DOUBLE_EQ(t[1].value[0], 0.01 * std::numbers::pi / 180.0 / 3600.0);
+}
+
+TEST_F(DbcText, AnIntegerAngleWrapsAtItsRange) {
+  const std::string text = "BO_ 1 A: 8 X\n SG_ Phi : 0|16@1+ (0.01,0) [0|0] \"deg\" X\n";
+  ifog::DriverInstance d = driver(text, {{"signal", "Phi"}, {"kind", "angle"}});
+  EXPECT_DOUBLE_EQ(d.description().angle_wrap_rad, 655.36 * std::numbers::pi / 180.0);
+  ifog::DriverInstance e = driver(text, {{"signal", "Phi"}, {"kind", "angle"}, {"wrap", "360"}});
+  EXPECT_DOUBLE_EQ(e.description().angle_wrap_rad, 2.0 * std::numbers::pi);
+  ifog::DriverInstance f = driver(text, {{"signal", "Phi"}, {"kind", "angle"}, {"wrap", "none"}});
+  EXPECT_EQ(f.description().angle_wrap_rad, 0.0);
+}
+
+// Axes in one message, told apart by a multiplexor; CAN FD; what is encoded decodes to the same sample.
+TEST_F(DbcText, MultiplexedAxesAndLongFramesRoundTrip) {
+  const std::string text =
+      "BO_ 2147483904 M: 8 X\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ N : 8|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ X m1 : 16|32@1- (1,0) [0|0] \"rad/s\" X\n SG_ Y m2 : 16|32@1- (1,0) [0|0] \"rad/s\" X\n"
+      " SG_ Z m5 : 23|32@0- (1,0) [0|0] \"rad/s\" X\n"
+      "BO_ 300 L: 20 X\n SG_ T : 128|32@1- (1,0) [0|0] \"degC\" X\n"
+      "SIG_VALTYPE_ 2147483904 X : 1;\nSIG_VALTYPE_ 2147483904 Y : 1;\nSIG_VALTYPE_ 2147483904 Z : "
+      "1;\nSIG_VALTYPE_ 300 T : 1;\n";
+  ifog::DriverInstance d = driver(
+      text,
+      {{"x", "X"}, {"y", "Y"}, {"z", "Z"}, {"counter", "M.N"}, {"environment", "temperature_degC=L.T"}});
+  ifog_sample sample{};
+  sample.flags = IFOG_SAMPLE_SEQUENCE;
+  sample.sequence = 9;
+  sample.value[0] = 0.25;
+  sample.value[1] = -0.5;
+  sample.value[2] = 4.0;
+  sample.environment[0] = 21.5;
+  sample.environment_fresh = 1;
+  std::vector<ifog_can_frame> frames;
+  d.encode_can(sample, frames);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_EQ(frames[0].id, 300U);
+  EXPECT_EQ(frames[0].flags, IFOG_CAN_FD);
+  EXPECT_EQ(frames[0].length, 20U);
+  EXPECT_EQ(frames[1].id, 256U);
+  EXPECT_EQ(frames[1].flags, IFOG_CAN_EXTENDED);
+  EXPECT_EQ(frames[1].data[0], 1U);
+  EXPECT_EQ(frames[1].data[1], 9U);
+  EXPECT_EQ(frames[3].data[0], 5U);
+  EXPECT_EQ(frames[3].data[2], 0x40U);  // 4.0 is 0x40800000, the sign first
+  const std::vector<ifog_sample> back = decode(d, frames);
+  ASSERT_EQ(back.size(), 1U);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(back[0].value[i], sample.value[i]);
+  EXPECT_EQ(back[0].environment[0], 21.5);
+  EXPECT_EQ(back[0].sequence, 9U);
+}
+
+}  // namespace
