@@ -1,5 +1,5 @@
-// Draws of the scenario maker: a stream is a function of (seed, stream), so that a sensor can be made again from its
-// seed alone and its noise does not change when its environment is drawn differently.
+// Draws of the scenario maker: a stream is a function of (seed, stream), so that a sensor can be made again
+// from its seed alone and its noise does not change when its environment is drawn differently.
 #pragma once
 
 #include <cmath>
@@ -19,8 +19,9 @@ class Draw {
   // In (0, 1).
   double uniform() {
     if (used_ == 4) {
-      block_ = philox({static_cast<std::uint32_t>(counter_), static_cast<std::uint32_t>(counter_ >> 32), stream_, 0},
-                      key_);
+      block_ = philox(
+          {static_cast<std::uint32_t>(counter_), static_cast<std::uint32_t>(counter_ >> 32), stream_, 0},
+          key_);
       ++counter_;
       used_ = 0;
     }

@@ -50,22 +50,25 @@ Series temperature(const OperatingRange& range, std::size_t n, double dt_s, Draw
     case 0: {  // ramps between soaks
       const double start = draw.uniform(0.05, 0.3), end = draw.uniform(0.6, 0.95);
       for (std::size_t k = 0; k < n; ++k)
-        x[k] = std::clamp((static_cast<double>(k) / static_cast<double>(n) - start) / (end - start), 0.0, 1.0);
+        x[k] =
+            std::clamp((static_cast<double>(k) / static_cast<double>(n) - start) / (end - start), 0.0, 1.0);
       if (draw.chance(0.5)) std::reverse(x.begin(), x.end());
       break;
     }
     case 1: {  // cycles
       const double cycles = draw.uniform(1.3, 8.0), phase = draw.uniform(0.0, 2.0 * std::numbers::pi);
       for (std::size_t k = 0; k < n; ++k)
-        x[k] = std::sin(2.0 * std::numbers::pi * cycles * static_cast<double>(k) / static_cast<double>(n) + phase);
+        x[k] = std::sin(2.0 * std::numbers::pi * cycles * static_cast<double>(k) / static_cast<double>(n) +
+                        phase);
       break;
     }
     case 2:  // a chamber's set points through its thermal mass
-      x = low_passed(dwells(n, record_s / draw.uniform(4.0, 10.0), dt_s, draw), draw.uniform(200.0, 600.0), dt_s);
+      x = low_passed(dwells(n, record_s / draw.uniform(4.0, 10.0), dt_s, draw), draw.uniform(200.0, 600.0),
+                     dt_s);
       break;
     case 3:  // a room
-      x = low_passed(random_walk_like(n, record_s / draw.uniform(4.0, 20.0), dt_s, draw), draw.uniform(60.0, 300.0),
-                     dt_s);
+      x = low_passed(random_walk_like(n, record_s / draw.uniform(4.0, 20.0), dt_s, draw),
+                     draw.uniform(60.0, 300.0), dt_s);
       break;
     default: {  // triangle
       const double cycles = draw.uniform(1.2, 5.0), phase = draw.uniform();
@@ -104,7 +107,8 @@ Series slow_channel(std::size_t n, double dt_s, bool lively, double centre, doub
     case 3: {
       const double cycles = draw.uniform(2.0, 30.0), phase = draw.uniform(0.0, 2.0 * std::numbers::pi);
       for (std::size_t k = 0; k < n; ++k)
-        x[k] = std::sin(2.0 * std::numbers::pi * cycles * static_cast<double>(k) / static_cast<double>(n) + phase);
+        x[k] = std::sin(2.0 * std::numbers::pi * cycles * static_cast<double>(k) / static_cast<double>(n) +
+                        phase);
       break;
     }
     default:
@@ -154,8 +158,9 @@ std::vector<double> low_passed(const std::vector<double>& x, double tau_s, doubl
 }
 
 const std::vector<std::string>& channel_names() {
-  static const std::vector<std::string> names{"temperature_degC", "accel_x_mps2",  "accel_y_mps2",  "accel_z_mps2",
-                                              "supply_V",         "magnetic_x_uT", "magnetic_y_uT", "humidity_percent"};
+  static const std::vector<std::string> names{"temperature_degC", "accel_x_mps2",    "accel_y_mps2",
+                                              "accel_z_mps2",     "supply_V",        "magnetic_x_uT",
+                                              "magnetic_y_uT",    "humidity_percent"};
   return names;
 }
 
@@ -182,8 +187,8 @@ Environment draw_environment(const OperatingRange& range, std::size_t samples, d
         c.truth.assign(samples, 0.5 * (range.temperature_low + range.temperature_high));
       c.recorded = record_temperature(c.truth, range.temperature_step, draw);
     } else if (name.starts_with("accel_")) {
-      const double centre = name == "accel_z_mps2" ? 0.8 * kGravity : 0.0;
-      c.truth = slow_channel(samples, dt_s, moves, centre, 0.2 * kGravity, draw);
+      const double centre = name == "accel_z_mps2" ? 0.4 * kGravity : 0.0;
+      c.truth = slow_channel(samples, dt_s, moves, centre, 0.6 * kGravity, draw);
       c.recorded = with_noise(c.truth, 0.002, draw);
     } else if (name == "supply_V") {
       c.truth = slow_channel(samples, dt_s, moves, 12.0, 0.6, draw);

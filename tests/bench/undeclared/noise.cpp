@@ -12,10 +12,10 @@ constexpr double kRatio = 2.5;
 NoiseModel::NoiseModel(const NoiseTruth& truth, std::size_t samples, double dt_s)
     : samples_(samples), white_sigma_(truth.N / std::sqrt(dt_s)), walk_sigma_(truth.K * std::sqrt(dt_s)) {
   if (truth.B > 0.0) {
-    // A Gauss-Markov process of variance v has the one-sided density 4 v T / (1 + (2 pi f T)^2); over time constants
-    // in the ratio r the sum is v / (f ln r).
+    // A Gauss-Markov process of variance v has the one-sided density 4 v T / (1 + (2 pi f T)^2); over time
+    // constants in the ratio r the sum is v / (f ln r).
     const double variance = truth.B * truth.B * std::log(kRatio) / (2.0 * std::numbers::pi);
-    for (double T = dt_s; T < 10.0 * dt_s * static_cast<double>(samples); T *= kRatio) {
+    for (double T = 0.1 * dt_s; T < 10.0 * dt_s * static_cast<double>(samples); T *= kRatio) {
       const double decay = std::exp(-dt_s / T);
       decay_.push_back(decay);
       drive_sigma_.push_back(std::sqrt(variance * (1.0 - decay * decay)));
@@ -77,8 +77,8 @@ std::vector<double> NoiseModel::whiten(const std::vector<double>& column) const 
 
 std::vector<double> Visibility::whitened(const Column& column) const {
   std::vector<double> out;
-  for (std::size_t c = 0; c < captures_.size(); ++c) {
-    const std::vector<double> part = captures_[c].whiten(column[c]);
+  for (const std::vector<double>& capture : column) {
+    const std::vector<double> part = noise_->whiten(capture);
     out.insert(out.end(), part.begin(), part.end());
   }
   return out;
@@ -107,9 +107,10 @@ double Visibility::of(const Column& column, const std::vector<Column>& others) c
     for (double& value : w) value /= norm;
     basis.push_back(std::move(w));
   };
-  for (std::size_t c = 0; c < captures_.size(); ++c) {
-    Column constant(captures_.size());
-    for (std::size_t d = 0; d < captures_.size(); ++d) constant[d].assign(column[d].size(), d == c ? 1.0 : 0.0);
+  const auto captures = static_cast<std::size_t>(captures_);
+  for (std::size_t c = 0; c < captures; ++c) {
+    Column constant(captures);
+    for (std::size_t d = 0; d < captures; ++d) constant[d].assign(column[d].size(), d == c ? 1.0 : 0.0);
     add(constant);
   }
   for (const Column& other : others) add(other);

@@ -7,12 +7,11 @@ namespace ifog::undeclared {
 namespace {
 
 Eigen::MatrixXd whitened_columns(const Sensor& s, std::vector<double>& z) {
-  const NoiseModel noise(s.noise, s.samples, s.dt_s);
   const std::size_t n = s.samples, captures = static_cast<std::size_t>(s.captures);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n * captures),
                                             static_cast<Eigen::Index>(s.effects.size() + captures));
   const auto put = [&](std::size_t capture, std::size_t column, const std::vector<double>& values) {
-    const std::vector<double> w = noise.whiten(values);
+    const std::vector<double> w = s.noise_model->whiten(values);
     for (std::size_t k = 0; k < n; ++k)
       A(static_cast<Eigen::Index>(capture * n + k), static_cast<Eigen::Index>(column)) = w[k];
   };
@@ -21,7 +20,7 @@ Eigen::MatrixXd whitened_columns(const Sensor& s, std::vector<double>& z) {
     std::vector<double> error = r.capture.rate_radps[0];
     if (s.range.has_reference)
       for (std::size_t k = 0; k < n; ++k) error[k] -= r.capture.reference_rate_radps[0][k];
-    const std::vector<double> w = noise.whiten(error);
+    const std::vector<double> w = s.noise_model->whiten(error);
     z.insert(z.end(), w.begin(), w.end());
     for (std::size_t e = 0; e < s.effects.size(); ++e) {
       std::vector<double> unit = r.effects[e];

@@ -1,5 +1,5 @@
-// Scores the diagnosis on sensors whose effects it is not told of. Without arguments: 1000 sensors with effects of
-// 12 to 80 sigma and 1000 without any. Every sensor can be made again from its seed.
+// Scores the diagnosis on sensors whose effects it is not told of. Without arguments: 1000 sensors with
+// effects of 12 to 80 sigma and 1000 without any. Every sensor can be made again from its seed.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -22,17 +22,19 @@ struct Options {
 
 // The next sensor of the series; `place` walks through the kinds so that every size meets every kind.
 Sensor sensor_at(const Options& o, int place, bool with_effect) {
-  const std::uint64_t seed = o.seed * 1'000'000U + (with_effect ? 0U : 500'000U) + static_cast<std::uint64_t>(place);
+  const std::uint64_t seed =
+      o.seed * 1'000'000U + (with_effect ? 0U : 500'000U) + static_cast<std::uint64_t>(place);
   Draw draw(seed, 999);
   const auto& kinds = kinds_with_effect();
-  Kind kind = with_effect ? kinds[static_cast<std::size_t>(place) % kinds.size()]
+  Kind kind = with_effect      ? kinds[static_cast<std::size_t>(place) % kinds.size()]
               : place % 4 == 3 ? Kind::kLookalike
                                : Kind::kNothing;
   if (with_effect && !o.kind.empty()) {
     for (const Kind k : kinds)
       if (o.kind == name_of(k)) kind = k;
   }
-  const double sigma = o.curve ? 4.0 + place / static_cast<int>(kinds.size()) % 9 : draw.log_uniform(o.sigma_low, o.sigma_high);
+  const double sigma = o.curve ? 4.0 + place / static_cast<int>(kinds.size()) % 9
+                               : draw.log_uniform(o.sigma_low, o.sigma_high);
   return draw_sensor(seed, kind, sigma, o.captures);
 }
 
@@ -43,7 +45,8 @@ int main(int argc, char** argv) {
   CLI::App app{"score the diagnosis on undeclared effects"};
   app.add_option("--with", o.with, "sensors with effects");
   app.add_option("--without", o.without, "sensors without");
-  app.add_option("--captures", o.captures, "captures of each sensor, diagnosed together")->check(CLI::Range(1, 3));
+  app.add_option("--captures", o.captures, "captures of each sensor, diagnosed together")
+      ->check(CLI::Range(1, 3));
   app.add_option("--seed", o.seed, "of the series");
   app.add_option("--sigma-low", o.sigma_low);
   app.add_option("--sigma-high", o.sigma_high);

@@ -94,7 +94,8 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
   for (std::size_t c = 0; c < records.size(); ++c) {
     hidden[c].assign(sensor.samples, 0.0);
     for (std::size_t t = 0; t < matched.size(); ++t)
-      for (std::size_t k = 0; !matched[t] && k < sensor.samples; ++k) hidden[c][k] += records[c].effects[t][k];
+      for (std::size_t k = 0; !matched[t] && k < sensor.samples; ++k)
+        hidden[c][k] += records[c].effects[t][k];
     for (std::size_t f = 0; f < found.size(); ++f)
       found[f].push_back(finding.effects[f].waveform(records[c].capture));
   }
@@ -131,11 +132,13 @@ void score_next_capture(Score& s, const Sensor& sensor, const Finding& finding) 
     for (std::size_t k = 0; k < truth.size(); ++k) difference[k] += estimate[k];
   }
   for (std::size_t k = 0; k < truth.size(); ++k) difference[k] -= truth[k];
-  for (const TrueEffect& e : sensor.effects) s.transferable = s.transferable && e.form != "line" && e.form != "step";
+  for (const TrueEffect& e : sensor.effects)
+    s.transferable = s.transferable && e.form != "line" && e.form != "step";
 
   const Series noise = block_means(next.noise, sensor.dt_s, 10.0);
   const double scale = rms(noise, mean(noise));
-  const Series error = block_means(difference, sensor.dt_s, 10.0), effect = block_means(truth, sensor.dt_s, 10.0);
+  const Series error = block_means(difference, sensor.dt_s, 10.0),
+               effect = block_means(truth, sensor.dt_s, 10.0);
   s.effect_error = rms(error) / scale;
   s.shape_error = rms(error, mean(error)) / scale;
   s.effect_size = rms(effect, mean(effect)) / scale;

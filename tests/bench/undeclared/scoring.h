@@ -1,10 +1,10 @@
 // What a diagnosis said against what was hidden, by names first and by an oracle second.
 //
-// A true effect is found *exactly* when form and channel (and the partner of a product) are named as hidden. It is found
-// *equivalently* when other names were given, but their waveforms reproduce the hidden ones so well that what is left
-// would be visible below 3 sigma in the captures diagnosed: with the true noise known, nobody could have told them
-// apart. Both count as right; they are reported apart. Every found effect that is neither is extra; an equivalent
-// explanation must also be free of parts that it could do without.
+// A true effect is found *exactly* when form and channel (and the partner of a product) are named as hidden.
+// It is found *equivalently* when other names were given, but their waveforms reproduce the hidden ones so
+// well that what is left would be visible below 3 sigma in the captures diagnosed: with the true noise known,
+// nobody could have told them apart. Both count as right; they are reported apart. Every found effect that is
+// neither is extra; an equivalent explanation must also be free of parts that it could do without.
 #pragma once
 
 #include <functional>
@@ -27,8 +27,8 @@ struct FoundEffect {
 struct Finding {
   std::vector<FoundEffect> effects;
   bool unexplained = false;  // "something is left that no form describes"
-  // Standard deviation of the heading error, rad, that the sensor's model predicts for a capture, its switch-on bias
-  // being estimated from `align_s` at the start. Empty when the diagnosis does not predict it.
+  // Standard deviation of the heading error, rad, that the sensor's model predicts for a capture, its
+  // switch-on bias being estimated from `align_s` at the start. Empty when the diagnosis does not predict it.
   std::function<double(const Capture&, double align_s)> heading_sigma;
 };
 
@@ -45,8 +45,9 @@ struct Score {
   double sigma = 0.0;
   int hidden = 0, exact = 0, equivalent = 0, missed = 0, extra = 0;
   bool unexplained = false;
-  // On another capture: RMS of 10 s means of (estimated - true effect) and of the true effect, over the RMS of 10 s
-  // means of the sensor's own noise about its mean. `shape_error` leaves the mean out, which a switch-on bias hides.
+  // On another capture: RMS of 10 s means of (estimated - true effect) and of the true effect, over the RMS
+  // of 10 s means of the sensor's own noise about its mean. `shape_error` leaves the mean out, which a
+  // switch-on bias hides.
   double effect_error = 0.0, shape_error = 0.0, effect_size = 0.0;
   bool transferable = true;  // false: a step, or a line, whose phase in another capture nothing can tell
   std::vector<Parameter> parameters;

@@ -16,7 +16,14 @@ constexpr const char* kTemperature = "temperature_degC";
 constexpr const char* kReference = "reference_rate_radps";
 
 // What is drawn separately for each capture has a stream of its own, and so has each attempt at the sensor.
-enum Stream : std::uint32_t { kSensorStream, kEnvironmentStream, kNoiseStream, kPhaseStream, kBiasStream, kStreams };
+enum Stream : std::uint32_t {
+  kSensorStream,
+  kEnvironmentStream,
+  kNoiseStream,
+  kPhaseStream,
+  kBiasStream,
+  kStreams
+};
 std::uint32_t stream(const Sensor& s, Stream what, int capture = 0) {
   return what + kStreams * (static_cast<std::uint32_t>(capture) + 1000U * s.attempt);
 }
@@ -33,30 +40,41 @@ TrueEffect simple(const std::string& form, const std::string& channel, double re
 TrueEffect draw_effect(Kind kind, const Sensor& s, Draw& draw) {
   const double record_s = static_cast<double>(s.samples) * s.dt_s;
   switch (kind) {
-    case Kind::kTemperatureLinear: return simple("linear", kTemperature, 25.0);
-    case Kind::kTemperatureQuadratic: return simple("quadratic", kTemperature, 25.0);
-    case Kind::kTemperatureRate: return simple("rate", kTemperature, 0.0, draw.log_uniform(10.0, 120.0));
-    case Kind::kTemperatureLagged: return simple("lagged", kTemperature, 25.0, draw.log_uniform(60.0, 0.1 * record_s));
+    case Kind::kTemperatureLinear:
+      return simple("linear", kTemperature, 25.0);
+    case Kind::kTemperatureQuadratic:
+      return simple("quadratic", kTemperature, 25.0);
+    case Kind::kTemperatureRate:
+      return simple("rate", kTemperature, 0.0, draw.log_uniform(10.0, 120.0));
+    case Kind::kTemperatureLagged:
+      return simple("lagged", kTemperature, 25.0, draw.log_uniform(60.0, 0.1 * record_s));
     case Kind::kAcceleration:
       return simple("linear", channel_names()[static_cast<std::size_t>(1 + draw.below(3))], 0.0);
-    case Kind::kSupply: return simple("linear", "supply_V", 12.0);
+    case Kind::kSupply:
+      return simple("linear", "supply_V", 12.0);
     case Kind::kMagnetic:
       return simple("linear", channel_names()[static_cast<std::size_t>(5 + draw.below(2))], 0.0);
-    case Kind::kLine: return simple("line", "", 0.0, draw.log_uniform(0.02, 0.45) / s.dt_s);
-    case Kind::kScaleFactor: return simple("linear", kReference, 0.0);
-    case Kind::kScaleNonlinearity: return simple("cubic", kReference, 0.0);
+    case Kind::kLine:
+      return simple("line", "", 0.0, draw.log_uniform(0.02, 0.45) / s.dt_s);
+    case Kind::kScaleFactor:
+      return simple("linear", kReference, 0.0);
+    case Kind::kScaleNonlinearity:
+      return simple("cubic", kReference, 0.0);
     case Kind::kScaleTemperature: {
       TrueEffect e = simple("linear", kTemperature, 25.0);
       e.with_form = "linear";
       e.with_channel = kReference;
       return e;
     }
-    case Kind::kStep: return simple("step", "", 0.0, record_s * draw.uniform(0.2, 0.8));
-    case Kind::kWarmUp: return simple("warm_up", "", 0.0, draw.log_uniform(120.0, 0.15 * record_s));
+    case Kind::kStep:
+      return simple("step", "", 0.0, record_s * draw.uniform(0.2, 0.8));
+    case Kind::kWarmUp:
+      return simple("warm_up", "", 0.0, draw.log_uniform(120.0, 0.15 * record_s));
     case Kind::kUncovered:
       return simple("backlash", kTemperature, 0.0,
                     (s.range.temperature_high - s.range.temperature_low) * draw.uniform(0.12, 0.25));
-    default: throw std::logic_error("no single effect of this kind");
+    default:
+      throw std::logic_error("no single effect of this kind");
   }
 }
 
@@ -77,8 +95,8 @@ std::vector<Kind> parts_of(Kind kind, Draw& draw) {
   return {singles[static_cast<std::size_t>(first)], singles[static_cast<std::size_t>(second)]};
 }
 
-// The part of a hysteresis loop that depends on where the temperature came from: play minus the temperature itself,
-// so that it is not a linear effect by another name.
+// The part of a hysteresis loop that depends on where the temperature came from: play minus the temperature
+// itself, so that it is not a linear effect by another name.
 Series backlash(const Series& temperature, double half_width) {
   Series out(temperature.size());
   double play = temperature.front();
@@ -131,13 +149,13 @@ double correlation(const Series& a, const Series& b) {
   return ab / std::sqrt(std::max(aa * bb, 1e-300));
 }
 
-Series draw_noise(const Sensor& s, const NoiseModel& model, const Environment& env, int capture) {
+Series draw_noise(const Sensor& s, const Environment& env, int capture) {
   Draw draw(s.seed, stream(s, kNoiseStream, capture));
-  if (s.kind != Kind::kLookalike) return model.draw(draw);
+  if (s.kind != Kind::kLookalike) return s.noise_model->draw(draw);
   Series best;
   double best_correlation = -1.0;
   for (int tries = 0; tries < 20; ++tries) {
-    Series candidate = model.draw(draw);
+    Series candidate = s.noise_model->draw(draw);
     const double c = std::abs(correlation(candidate, env.channel(kTemperature).truth));
     if (c > best_correlation) {
       best_correlation = c;
@@ -170,6 +188,8 @@ void draw_character(Sensor& s, Draw& draw) {
   const bool lookalike = s.kind == Kind::kLookalike;
   const double crossing_s = lookalike ? draw.log_uniform(30.0, 1000.0) : draw.log_uniform(100.0, 3e4);
   if (lookalike || draw.chance(0.7)) s.noise.K = std::sqrt(3.0) * s.noise.N / crossing_s;
+
+  s.noise_model = std::make_shared<const NoiseModel>(s.noise, s.samples, s.dt_s);
 
   s.range.temperature_low = draw.uniform(5.0, 20.0);
   s.range.temperature_high = s.range.temperature_low + draw.uniform(18.0, 35.0);
@@ -213,40 +233,64 @@ bool size_effects(Sensor& s, double sigma, Draw& draw) {
 
 const char* name_of(Kind kind) {
   switch (kind) {
-    case Kind::kNothing: return "nothing";
-    case Kind::kLookalike: return "lookalike walk";
-    case Kind::kTemperatureLinear: return "temperature linear";
-    case Kind::kTemperatureQuadratic: return "temperature quadratic";
-    case Kind::kTemperatureRate: return "temperature rate";
-    case Kind::kTemperatureLagged: return "temperature lagged";
-    case Kind::kAcceleration: return "acceleration";
-    case Kind::kSupply: return "supply";
-    case Kind::kMagnetic: return "magnetic field";
-    case Kind::kLine: return "line";
-    case Kind::kScaleFactor: return "scale factor";
-    case Kind::kScaleNonlinearity: return "scale nonlinearity";
-    case Kind::kScaleTemperature: return "scale x temperature";
-    case Kind::kStep: return "step";
-    case Kind::kWarmUp: return "warm-up";
-    case Kind::kTwo: return "two at once";
-    case Kind::kUncovered: return "no form covers it";
+    case Kind::kNothing:
+      return "nothing";
+    case Kind::kLookalike:
+      return "lookalike walk";
+    case Kind::kTemperatureLinear:
+      return "temperature linear";
+    case Kind::kTemperatureQuadratic:
+      return "temperature quadratic";
+    case Kind::kTemperatureRate:
+      return "temperature rate";
+    case Kind::kTemperatureLagged:
+      return "temperature lagged";
+    case Kind::kAcceleration:
+      return "acceleration";
+    case Kind::kSupply:
+      return "supply";
+    case Kind::kMagnetic:
+      return "magnetic field";
+    case Kind::kLine:
+      return "line";
+    case Kind::kScaleFactor:
+      return "scale factor";
+    case Kind::kScaleNonlinearity:
+      return "scale nonlinearity";
+    case Kind::kScaleTemperature:
+      return "scale x temperature";
+    case Kind::kStep:
+      return "step";
+    case Kind::kWarmUp:
+      return "warm-up";
+    case Kind::kTwo:
+      return "two at once";
+    case Kind::kUncovered:
+      return "no form covers it";
   }
   return "?";
 }
 
 const std::vector<Kind>& kinds_with_effect() {
-  static const std::vector<Kind> kinds{
-      Kind::kTemperatureLinear, Kind::kTemperatureQuadratic, Kind::kTemperatureRate,   Kind::kTemperatureLagged,
-      Kind::kAcceleration,      Kind::kSupply,               Kind::kMagnetic,          Kind::kLine,
-      Kind::kScaleFactor,       Kind::kScaleNonlinearity,    Kind::kScaleTemperature,  Kind::kStep,
-      Kind::kWarmUp,            Kind::kTwo,                  Kind::kUncovered};
+  static const std::vector<Kind> kinds{Kind::kTemperatureLinear,
+                                       Kind::kTemperatureQuadratic,
+                                       Kind::kTemperatureRate,
+                                       Kind::kTemperatureLagged,
+                                       Kind::kAcceleration,
+                                       Kind::kSupply,
+                                       Kind::kMagnetic,
+                                       Kind::kLine,
+                                       Kind::kScaleFactor,
+                                       Kind::kScaleNonlinearity,
+                                       Kind::kScaleTemperature,
+                                       Kind::kStep,
+                                       Kind::kWarmUp,
+                                       Kind::kTwo,
+                                       Kind::kUncovered};
   return kinds;
 }
 
-Visibility visibility(const Sensor& s) {
-  return Visibility(std::vector<NoiseModel>(static_cast<std::size_t>(s.captures),
-                                            NoiseModel(s.noise, s.samples, s.dt_s)));
-}
+Visibility visibility(const Sensor& s) { return {s.noise_model, s.captures}; }
 
 Sensor draw_sensor(std::uint64_t seed, Kind kind, double sigma, int captures) {
   for (std::uint32_t attempt = 0;; ++attempt) {
@@ -264,9 +308,8 @@ Sensor draw_sensor(std::uint64_t seed, Kind kind, double sigma, int captures) {
 
 Record record(const Sensor& s, int capture) {
   const Environment env = environment(s, capture);
-  const NoiseModel model(s.noise, s.samples, s.dt_s);
   Record r;
-  r.noise = draw_noise(s, model, env, capture);
+  r.noise = draw_noise(s, env, capture);
   // Switch-on biases are far above what the noise could hide.
   r.bias = 20.0 * kDegreePerHour * Draw(s.seed, stream(s, kBiasStream, capture)).normal();
   r.capture.time_s = env.time_s;

@@ -1,8 +1,8 @@
-// A simulated gyro with hidden effects: drawn from its seed, sized in GLS sigma against its own true noise, and
-// recorded as often as wanted, each time in another environment and with another switch-on bias.
+// A simulated gyro with hidden effects: drawn from its seed, sized in GLS sigma against its own true noise,
+// and recorded as often as wanted, each time in another environment and with another switch-on bias.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,13 +35,16 @@ enum class Kind {
 const char* name_of(Kind kind);
 const std::vector<Kind>& kinds_with_effect();
 
-// In the model file's terms, so that what was found can be compared by name. `backlash` is in no list of forms.
+// In the model file's terms, so that what was found can be compared by name. `backlash` is in no list of
+// forms.
 struct TrueEffect {
   std::string form, channel, with_form, with_channel;
   double reference = 0.0;  // channel value at which the effect is zero
   double size = 0.0;       // coefficient, SI; amplitude of a line
-  double shape = 0.0;      // lag_s, bandwidth_s, frequency_hz, time_constant_s, time_s of a step, half width in degC
-  double sigma = 0.0;      // GLS visibility in the captures it is to be found in, given the sensor's other effects
+  double shape =
+      0.0;  // lag_s, bandwidth_s, frequency_hz, time_constant_s, time_s of a step, half width in degC
+  double sigma =
+      0.0;  // GLS visibility in the captures it is to be found in, given the sensor's other effects
 };
 
 struct Sensor {
@@ -49,6 +52,7 @@ struct Sensor {
   std::uint32_t attempt = 0;  // of drawing effects that can be told apart
   Kind kind = Kind::kNothing;
   NoiseTruth noise;
+  std::shared_ptr<const NoiseModel> noise_model;  // of one capture
   OperatingRange range;
   std::size_t samples = 0;  // of each capture
   double dt_s = 1.0;

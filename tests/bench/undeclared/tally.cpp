@@ -38,8 +38,8 @@ void print_row(std::ostream& out, const char* name, const std::vector<Score>& sc
     if (s.transferable) error.push_back(s.effect_error);
   }
   const auto n = static_cast<int>(scores.size());
-  line(out, "%-24s %7d %7d %7d %7d %7d   %8.3f %8.3f", name, n, right, exact, n - right, extra, quantile(error, 0.5),
-       quantile(error, 0.9));
+  line(out, "%-24s %7d %7d %7d %7d %7d   %8.3f %8.3f", name, n, right, exact, n - right, extra,
+       quantile(error, 0.5), quantile(error, 0.9));
 }
 
 void print_coverage(std::ostream& out, const std::vector<Score>& scores) {
@@ -103,13 +103,16 @@ Totals total(const std::vector<Score>& scores) {
 }
 
 void print(std::ostream& out, const std::vector<Score>& scores) {
-  out << "hidden effect            sensors   right   exact  missed   extra   effect error on another capture\n"
-         "                                                                 (x own noise, 10 s means) median, 90 %\n";
+  out << "hidden effect            sensors   right   exact  missed   extra   effect error on another "
+         "capture\n"
+         "                                                                 (x own noise, 10 s means) median, "
+         "90 %\n";
   std::map<Kind, std::vector<Score>> by_kind;
   std::map<int, std::vector<Score>> by_size;
   for (const Score& s : scores) {
     by_kind[s.kind].push_back(s);
-    if (!effect_free(s) && s.kind != Kind::kUncovered) by_size[static_cast<int>(std::round(s.sigma))].push_back(s);
+    if (!effect_free(s) && s.kind != Kind::kUncovered)
+      by_size[static_cast<int>(std::round(s.sigma))].push_back(s);
   }
   for (const auto& [kind, part] : by_kind) print_row(out, name_of(kind), part);
   if (by_size.size() > 1) {
@@ -127,8 +130,8 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
   const Totals t = total(scores);
   out << "\n";
   if (t.sensors > 0) {
-    line(out, "right            %5d of %5d  %5.1f %%   (target >= 97; by the hidden name %d)", t.right, t.sensors,
-         percent(t.right, t.sensors), t.exact);
+    line(out, "right            %5d of %5d  %5.1f %%   (target >= 97; by the hidden name %d)", t.right,
+         t.sensors, percent(t.right, t.sensors), t.exact);
     line(out, "extra effects    %5d of %5d  %5.1f %%   (target <= 3)", t.extra, t.sensors + t.uncovered,
          percent(t.extra, t.sensors + t.uncovered));
     line(out, "effect's error   median %.3f (target <= 0.06), 90 %% %.3f (target <= 0.2)", t.error_median,
@@ -139,8 +142,8 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
     line(out, "false alarms     %5d of %5d  %5.2f %%  (target <= 1)", t.false_alarms, t.effect_free,
          percent(t.false_alarms, t.effect_free));
   if (t.uncovered > 0)
-    line(out, "not covered      %5d, called unexplained %d, made worse %d (target 0)", t.uncovered, t.uncovered_said,
-         t.made_worse);
+    line(out, "not covered      %5d, called unexplained %d, made worse %d (target 0)", t.uncovered,
+         t.uncovered_said, t.made_worse);
   if (t.intervals > 0)
     line(out, "95 %% intervals  hold %.1f %% of %d (target 93 to 97)", 100.0 * t.coverage, t.intervals);
   if (t.headings > 0)
