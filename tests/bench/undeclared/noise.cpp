@@ -15,7 +15,7 @@ NoiseModel::NoiseModel(const NoiseTruth& truth, std::size_t samples, double dt_s
     // A Gauss-Markov process of variance v has the one-sided density 4 v T / (1 + (2 pi f T)^2); over time
     // constants in the ratio r the sum is v / (f ln r).
     const double variance = truth.B * truth.B * std::log(kRatio) / (2.0 * std::numbers::pi);
-    for (double T = 0.1 * dt_s; T < 10.0 * dt_s * static_cast<double>(samples); T *= kRatio) {
+    for (double T = dt_s; T < 10.0 * dt_s * static_cast<double>(samples); T *= kRatio) {
       const double decay = std::exp(-dt_s / T);
       decay_.push_back(decay);
       drive_sigma_.push_back(std::sqrt(variance * (1.0 - decay * decay)));
