@@ -1,0 +1,27 @@
+// One signal of a DBC file as an environment channel.
+#pragma once
+
+#include <string>
+
+#include "drivers/dbc/database.h"
+#include "drivers/ifog/driver.h"
+#include "drivers/transport/file.h"
+
+namespace ifog {
+
+class CanChannel {
+ public:
+  // signal: "SIGNAL" or "MESSAGE.SIGNAL". Throws std::runtime_error with one line: the file, a signal that is not there
+  // or is in several messages.
+  CanChannel(const std::string& dbc_file, const std::string& signal);
+
+  [[nodiscard]] CanId id() const { return {message_.id, message_.extended}; }
+  // False: another frame, or one that does not carry the signal.
+  bool decode(const ifog_can_frame& frame, double& value) const noexcept;
+
+ private:
+  dbc::Message message_;
+  std::size_t signal_ = 0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,205 @@
+#include "daemon/channels/channel_sources.h"
+
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <ifog/channel_t.hpp>
+#include <ifog/rate_t.hpp>
+#include <map>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "daemon/channels/can_channel.h"
+#include "drivers/transport/can.h"
+#include "filters/estimator/estimator.h"
+
+namespace ifog {
+namespace {
+
+constexpr auto kTurn = std::chrono::milliseconds(250);
+
+void put(const ChannelSources::Wanted& wanted, double number, std::int64_t time_ns) {
+  wanted.table->set(wanted.index, number * wanted.config.scale + wanted.config.offset, time_ns);
+}
+
+// A file that holds one number: hwmon, thermal zones, IIO.
+class FileChannel {
+ public:
+  explicit FileChannel(ChannelSources::Wanted wanted) : wanted_(std::move(wanted)) {}
+  [[nodiscard]] std::int64_t due_ns() const { return due_ns_; }
+  void read(std::int64_t now_ns) {
+    due_ns_ = now_ns + static_cast<std::int64_t>(wanted_.config.period_s * 1e9);
+    std::ifstream file(wanted_.config.path);
+    double number = 0.0;
+    // What cannot be read grows old, and is flagged as stale: no other message is needed.
+    if (file >> number) put(wanted_, number, realtime_ns());
+  }
+
+ private:
+  ChannelSources::Wanted wanted_;
+  std::int64_t due_ns_ = 0;
+};
+
+// One LCM channel and field.
+class LcmChannel {
+ public:
+  explicit LcmChannel(ChannelSources::Wanted wanted) : wanted_(std::move(wanted)) {
+    const std::string& field = wanted_.config.field;
+    const std::size_t bracket = field.find('[');
+    name_ = field.empty() ? wanted_.config.name : field.substr(0, bracket);
+    if (bracket == std::string::npos) return;
+    const bool known = name_ == "raw" || name_ == "compensated" || name_ == "denoised";
+    if (!known || field.size() != bracket + 3 || field.back() != ']' || field[bracket + 1] < '0' ||
+        field[bracket + 1] >= '0' + kMaxAxes)
+      throw std::runtime_error("sensor.channel.field = \"" + field +
+                               "\": expected the name in an ifog.channel_t, or raw[i], compensated[i], denoised[i] of an "
+                               "ifog.rate_t, i = 0 ... 2");
+    axis_ = field[bracket + 1] - '0';
+  }
+  [[nodiscard]] const std::string& lcm_channel() const { return wanted_.config.lcm_channel; }
+
+  void take(const lcm_recv_buf_t& message) const {
+    const int size = static_cast<int>(message.data_size);
+    if (axis_ < 0) {
+      channel_t value{};
+      if (value.decode(message.data, 0, size) >= 0 && value.name == name_)
+        put(wanted_, value.value, value.utime > 0 ? value.utime * 1000 : message.recv_utime * 1000);
+      return;
+    }
+    rate_t rate{};
+    if (rate.decode(message.data, 0, size) < 0 || axis_ >= rate.axes) return;
+    const std::vector<double>& field = name_ == "raw"           ? rate.raw
+                                       : name_ == "compensated" ? rate.compensated
+                                                                : rate.denoised;
+    put(wanted_, field[static_cast<std::size_t>(axis_)], rate.utime * 1000);
+  }
+
+ private:
+  ChannelSources::Wanted wanted_;
+  std::string name_;
+  int axis_ = -1;  // −1: a channel_t
+};
+
+// All signals wanted from one CAN interface.
+struct CanGroup {
+  std::vector<std::pair<ChannelSources::Wanted, CanChannel>> channels;
+  std::unique_ptr<Transport> transport;
+
+  void listen() {
+    while (!transport->stopped()) {
+      const Delivery delivery = transport->read(kTurn);
+      for (const ifog_can_frame& frame : delivery.frames)
+        for (const auto& [wanted, channel] : channels)
+          if (double value = 0.0; channel.decode(frame, value)) put(wanted, value, frame.arrival_ns);
+    }
+  }
+};
+
+}  // namespace
+
+struct ChannelSources::Impl {
+  std::vector<FileChannel> files;
+  std::vector<LcmChannel> messages;
+  std::map<std::string, CanGroup> buses;
+  lcm_t* lcm = nullptr;
+  int stop_event = -1;
+  std::vector<std::thread> threads;
+
+  ~Impl() {
+    if (lcm != nullptr) lcm_destroy(lcm);
+    if (stop_event >= 0) close(stop_event);
+  }
+
+  static void received(const lcm_recv_buf_t* message, const char* channel, void* user) {
+    for (const LcmChannel& one : static_cast<Impl*>(user)->messages)
+      if (one.lcm_channel() == channel) one.take(*message);
+  }
+
+  void listen() {
+    pollfd wanted[2] = {{stop_event, POLLIN, 0}, {lcm != nullptr ? lcm_get_fileno(lcm) : -1, POLLIN, 0}};
+    for (;;) {
+      std::int64_t now_ns = monotonic_ns();
+      std::int64_t next_ns = now_ns + 3'600'000'000'000;
+      for (FileChannel& file : files) {
+        if (file.due_ns() <= now_ns) file.read(now_ns);
+        next_ns = std::min(next_ns, file.due_ns());
+      }
+      now_ns = monotonic_ns();
+      poll(wanted, 2, static_cast<int>(std::max<std::int64_t>(0, next_ns - now_ns + 999'999) / 1'000'000));
+      if ((wanted[0].revents & POLLIN) != 0) return;
+      if ((wanted[1].revents & POLLIN) != 0) lcm_handle(lcm);
+    }
+  }
+};
+
+ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url)
+    : impl_(std::make_unique<Impl>()) {
+  for (Wanted& one : wanted) {
+    switch (one.config.source) {
+      case ChannelConfig::Source::frame:
+        break;
+      case ChannelConfig::Source::file:
+        impl_->files.emplace_back(std::move(one));
+        break;
+      case ChannelConfig::Source::lcm:
+        impl_->messages.emplace_back(std::move(one));
+        break;
+      case ChannelConfig::Source::can: {
+        CanChannel channel(one.config.dbc, one.config.signal);
+        impl_->buses[one.config.interface].channels.emplace_back(std::move(one), std::move(channel));
+        break;
+      }
+    }
+  }
+  for (auto& [interface, bus] : impl_->buses) {
+    CanSettings settings;
+    settings.interface = interface;
+    for (const auto& [one, channel] : bus.channels) settings.ids.push_back(channel.id());
+    bus.transport = make_can_transport(settings);
+  }
+  if (!impl_->messages.empty()) {
+    impl_->lcm = lcm_create(lcm_url.c_str());
+    if (impl_->lcm == nullptr) throw std::runtime_error("lcm_url = \"" + lcm_url + "\": LCM cannot use it");
+    std::vector<std::string> names;
+    for (const LcmChannel& one : impl_->messages) names.push_back(one.lcm_channel());
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    for (const std::string& name : names) lcm_subscribe(impl_->lcm, name.c_str(), &Impl::received, impl_.get());
+  }
+}
+
+ChannelSources::~ChannelSources() { stop(); }
+
+void ChannelSources::start() {
+  if (!impl_->files.empty() || !impl_->messages.empty()) {
+    impl_->stop_event = eventfd(0, EFD_CLOEXEC);
+    if (impl_->stop_event < 0) throw std::runtime_error("no eventfd left");
+    impl_->threads.emplace_back([impl = impl_.get()] { impl->listen(); });
+  }
+  for (auto& [interface, bus] : impl_->buses) {
+    try {
+      bus.transport->open({});
+    } catch (const std::exception&) {
+      // read() goes on trying; until then the channel is stale, which is flagged.
+    }
+    impl_->threads.emplace_back([group = &bus] { group->listen(); });
+  }
+}
+
+void ChannelSources::stop() {
+  if (impl_->stop_event >= 0) {
+    const std::uint64_t one = 1;
+    if (write(impl_->stop_event, &one, sizeof one) != sizeof one) return;
+  }
+  for (auto& [interface, bus] : impl_->buses) bus.transport->stop();
+  for (std::thread& thread : impl_->threads) thread.join();
+  impl_->threads.clear();
+}
+
+}  // namespace ifog

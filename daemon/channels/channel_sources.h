@@ -1,0 +1,34 @@
+// Listens to the sources of environment channels that do not come in a sensor's frames, and keeps the latest
+// value of each where the sensor's reader thread looks. One ordinary thread for all of them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/channels/channel_table.h"
+#include "daemon/config/config.h"
+
+namespace ifog {
+
+class ChannelSources {
+ public:
+  struct Wanted {
+    ChannelConfig config;
+    std::shared_ptr<ChannelTable> table;
+    int index = 0;  // in the table
+  };
+
+  // Throws std::runtime_error with one line: a DBC file or a signal that is not there, a field nobody knows.
+  ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url);
+  ~ChannelSources();  // stops
+
+  void start();
+  void stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace ifog

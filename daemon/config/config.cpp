@@ -1,0 +1,252 @@
+#include "daemon/config/config.h"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "daemon/config/table_reader.h"
+#include "drivers/capture/text_file.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Range kNotNegative{0.0, kInfinity};
+
+template <typename T, typename U>
+void take(std::optional<U>&& given, T& setting) {
+  if (given) setting = static_cast<T>(std::move(*given));
+}
+
+// What the readers of all tables share.
+struct Context {
+  std::string file;
+  std::filesystem::path folder;
+  std::vector<std::string> errors;
+
+  // "-" is the standard input, not a file.
+  [[nodiscard]] std::string absolute(const std::string& path) const {
+    if (path.empty() || path == "-") return path;
+    return (folder / path).lexically_normal().string();
+  }
+};
+
+bool good_name(const std::string& name) {
+  constexpr std::size_t kLongest = 32;
+  return !name.empty() && name.size() <= kLongest &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+}
+
+TransportConfig read_transport(const toml::table& table, const std::string& where, Context& context) {
+  TableReader in(table, where, context.file, context.errors);
+  TransportConfig out;
+  const auto type = in.choice("type", {"serial", "can", "file"});
+  if (!type) {
+    if (!in.has("type")) in.complain("type", ": missing; expected \"serial\" | \"can\" | \"file\"");
+    return out;
+  }
+  if (*type == "serial") {
+    out.kind = TransportConfig::Kind::serial;
+    out.device = in.required_text("device", "the path of a serial device, \"/dev/ttyUSB0\"");
+    take(in.integer("baud", 50, 10'000'000), out.baud);
+  } else if (*type == "can") {
+    out.kind = TransportConfig::Kind::can;
+    out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
+  } else {
+    out.kind = TransportConfig::Kind::file;
+    out.path = context.absolute(in.required_text("path", "a file or FIFO, \"-\" for the standard input"));
+    if (const auto format = in.choice("format", {"bytes", "candump"})) out.candump = *format == "candump";
+    if (const auto pace = in.choice("pace", {"free", "recorded"})) out.recorded = *pace == "recorded";
+    take(in.number("speed", {1e-3, 1e6}), out.speed);
+    take(in.number("bytes_per_second", {1.0, 1e9}), out.bytes_per_second);
+    take(in.integer("block_bytes", 1, 1'000'000), out.block_bytes);
+    take(in.boolean("await_writer"), out.await_writer);
+    take(in.text("interface"), out.interface);
+    if (out.recorded && !out.candump && out.bytes_per_second <= 0.0)
+      in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second beside it");
+  }
+  in.refuse_the_rest();
+  return out;
+}
+
+FilterChoice read_filter(const toml::table& table, const std::string& where, double& start_up_s,
+                         Context& context) {
+  TableReader in(table, where, context.file, context.errors);
+  FilterChoice out;
+  out.rule = in.text("rule");
+  out.state = in.text("state");
+  out.weights = in.choice("weights", {"kept", "fresh", "uniform"});
+  out.process_noise = in.number("process_noise", kNotNegative);
+  out.measurement_noise = in.number("measurement_noise", kNotNegative);
+  out.state_parameters = in.numbers("state_parameters");
+  out.floor = in.number("floor", {0.0, 1.0});
+  if (const auto window = in.integer("window", 2, 100'000)) out.window = static_cast<int>(*window);
+  if (const auto draws = in.integer("draws", 1, 1000)) out.draws = static_cast<int>(*draws);
+  out.follow_manoeuvres = in.boolean("follow_manoeuvres");
+  out.conserve_angle = in.boolean("conserve_angle");
+  if (const auto seed = in.integer("seed", 0, std::numeric_limits<std::int64_t>::max()))
+    out.seed = static_cast<std::uint64_t>(*seed);
+  take(in.number("start_up_s", {0.01, 3600.0}), start_up_s);
+  in.refuse_the_rest();
+  return out;
+}
+
+RealtimeConfig read_realtime(const toml::table& table, const std::string& where, Context& context) {
+  TableReader in(table, where, context.file, context.errors);
+  RealtimeConfig out;
+  take(in.integer("reader_priority", 0, 99), out.reader_priority);
+  take(in.integer("filter_priority", 0, 99), out.filter_priority);
+  take(in.integers("reader_cpus", 0, 1023), out.reader_cpus);
+  take(in.integers("filter_cpus", 0, 1023), out.filter_cpus);
+  take(in.boolean("spin"), out.spin);
+  take(in.integer("ring_slots", 2, 1'000'000), out.ring_slots);
+  in.refuse_the_rest();
+  return out;
+}
+
+ChannelConfig read_channel(const toml::table& table, const std::string& where, Context& context) {
+  TableReader in(table, where, context.file, context.errors);
+  ChannelConfig out;
+  out.name = in.required_text("name", "a channel's name with its unit, \"temperature_degC\"");
+  take(in.number("max_age_s", kNotNegative), out.max_age_s);
+  const auto source = in.choice("source", {"frame", "can", "lcm", "file"});
+  if (!source) {
+    if (!in.has("source"))
+      in.complain("source", ": missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\"");
+    return out;
+  }
+  if (*source == "frame") {
+    out.source = ChannelConfig::Source::frame;
+  } else {
+    take(in.number("scale", {-kInfinity, kInfinity}), out.scale);
+    take(in.number("offset", {-kInfinity, kInfinity}), out.offset);
+  }
+  if (*source == "can") {
+    out.source = ChannelConfig::Source::can;
+    out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
+    out.dbc = context.absolute(in.required_text("dbc", "a DBC file"));
+    out.signal = in.required_text("signal", "a signal of the DBC file, \"SIGNAL\" or \"MESSAGE.SIGNAL\"");
+  } else if (*source == "lcm") {
+    out.source = ChannelConfig::Source::lcm;
+    out.lcm_channel =
+        in.required_text("lcm_channel", "an LCM channel that carries ifog.channel_t or ifog.rate_t");
+    out.field = in.text("field").value_or("");
+  } else if (*source == "file") {
+    out.source = ChannelConfig::Source::file;
+    out.path = context.absolute(in.required_text("path", "a file that holds one number"));
+    take(in.number("period_s", {1e-3, 3600.0}), out.period_s);
+  }
+  in.refuse_the_rest();
+  return out;
+}
+
+SensorConfig read_sensor(const toml::table& table, Context& context) {
+  TableReader in(table, "sensor", context.file, context.errors);
+  SensorConfig out;
+  out.line = table.source().begin.line;
+  out.name = in.required_text("name", "a name, letters, digits, _ and -");
+  if (!out.name.empty() && !good_name(out.name))
+    in.complain("name", " = '" + out.name + "': expected at most 32 letters, digits, _ and -");
+  out.driver = in.required_text("driver", "the name of a driver, see `ifog drivers`");
+  out.model = context.absolute(in.text("model").value_or(""));
+  take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
+  if (const toml::table* const transport = in.table("transport"))
+    out.transport = read_transport(*transport, "sensor.transport", context);
+  else if (!in.has("transport"))
+    in.complain("transport", ": missing; expected a table [sensor.transport]");
+  if (const toml::table* const options = in.table("options")) {
+    TableReader reader(*options, "sensor.options", context.file, context.errors);
+    for (const auto& [key, node] : *options) {
+      if (node.is_table() || node.is_array())
+        reader.complain(key.str(), " = " + as_written(node) + ": expected a text, a number, true or false");
+      else
+        out.options[std::string(key.str())] = node.is_string() ? node.as_string()->get() : as_written(node);
+    }
+  }
+  if (const toml::table* const filter = in.table("filter"))
+    out.filter = read_filter(*filter, "sensor.filter", out.start_up_s, context);
+  if (const toml::table* const realtime = in.table("realtime"))
+    out.realtime = read_realtime(*realtime, "sensor.realtime", context);
+  std::set<std::string> names;
+  for (const toml::table* const channel : in.tables("channel")) {
+    out.channels.push_back(read_channel(*channel, "sensor.channel", context));
+    const std::string& name = out.channels.back().name;
+    if (!name.empty() && !names.insert(name).second)
+      TableReader(*channel, "sensor.channel", context.file, context.errors)
+          .complain("name", " = '" + name + "': this sensor has a channel of that name already");
+  }
+  in.refuse_the_rest();
+  return out;
+}
+
+void read_daemon(const toml::table& table, Config& out, Context& context) {
+  TableReader in(table, "daemon", context.file, context.errors);
+  if (const auto folder = in.text("plugin_folder")) out.plugin_folders = {context.absolute(*folder)};
+  take(in.text("lcm_url"), out.lcm_url);
+  take(in.choice("log_level", {"debug", "info", "warning", "error"}), out.log_level);
+  take(in.boolean("lock_memory"), out.lock_memory);
+  in.refuse_the_rest();
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string out;
+  for (const std::string& line : lines) out += (out.empty() ? "" : "\n") + line;
+  return out;
+}
+
+}  // namespace
+
+std::string SensorConfig::lcm_channel() const {
+  std::string out = "IFOG_" + name;
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return out;
+}
+
+Config parse_config(const std::string& text, const std::string& path) {
+  toml::table root;
+  try {
+    root = toml::parse(std::string_view(text), path);
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(path + ":" + std::to_string(error.source().begin.line) + ": " +
+                      std::string(error.description()));
+  }
+  Context context;
+  context.file = path;
+  context.folder = std::filesystem::absolute(path).parent_path();
+  Config out;
+  out.file = path;
+  TableReader in(root, "", path, context.errors);
+  if (const toml::table* const daemon = in.table("daemon")) read_daemon(*daemon, out, context);
+  std::set<std::string> channels;
+  for (const toml::table* const sensor : in.tables("sensor")) {
+    out.sensors.push_back(read_sensor(*sensor, context));
+    const SensorConfig& read = out.sensors.back();
+    // By LCM channel, which has capitals only.
+    if (!read.name.empty() && !channels.insert(read.lcm_channel()).second)
+      TableReader(*sensor, "sensor", path, context.errors)
+          .complain("name",
+                    " = '" + read.name + "': another sensor publishes on " + read.lcm_channel() + " already");
+  }
+  if (!in.has("sensor")) context.errors.push_back(path + ": no [[sensor]]: expected at least one");
+  in.refuse_the_rest();
+  if (!context.errors.empty()) throw ConfigError(joined(context.errors));
+  return out;
+}
+
+Config read_config(const std::string& path) {
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (const std::exception& error) {
+    throw ConfigError(error.what());
+  }
+  return parse_config(text, path);
+}
+
+}  // namespace ifog

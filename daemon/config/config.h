@@ -1,0 +1,89 @@
+// The daemon's configuration, a TOML file. Every key, its unit, range and default is in
+// daemon/examples/reference.toml, which a test reads.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "filters/chain/filter_choice.h"
+
+namespace ifog {
+
+struct TransportConfig {
+  enum class Kind { serial, can, file };
+  Kind kind = Kind::file;
+  // serial
+  std::string device;      // a path, may be a udev symlink
+  std::uint32_t baud = 0;  // 0: what the driver says
+  // can
+  std::string interface;  // "can0"; file: of a candump log's frames, empty for all
+  // file
+  std::string path;       // "-" is the standard input
+  bool candump = false;   // else raw bytes
+  bool recorded = false;  // at recorded times, else as fast as it goes
+  double speed = 1.0;
+  double bytes_per_second = 0.0;
+  std::uint32_t block_bytes = 0;
+  bool await_writer = true;  // of a FIFO
+};
+
+struct ChannelConfig {
+  enum class Source { frame, can, lcm, file };
+  std::string name;  // as in the model file: NAME_UNIT
+  Source source = Source::frame;
+  double max_age_s = 10.0;           // older is stale; 0: never
+  std::string interface;             // can: "can0"
+  std::string dbc, signal;           // can: file, and MESSAGE.SIGNAL or SIGNAL
+  std::string lcm_channel;           // lcm: channel of an ifog.channel_t, or of an ifog.rate_t with `field`
+  std::string field;                 // lcm: the channel_t's name, or a field of rate_t: "denoised[0]"
+  std::string path;                  // file: holds one number, as hwmon's temp1_input
+  double scale = 1.0, offset = 0.0;  // value = number * scale + offset; lcm, can and file
+  double period_s = 1.0;             // file: how often it is read
+};
+
+struct RealtimeConfig {
+  int reader_priority = 0, filter_priority = 0;  // SCHED_FIFO; 0: ordinary
+  std::vector<int> reader_cpus, filter_cpus;
+  bool spin = false;  // the filter thread never sleeps
+  int ring_slots = 1024;
+};
+
+struct SensorConfig {
+  std::string name;  // letters, digits, _ and -; LCM channel IFOG_<NAME in capitals>
+  std::string driver;
+  std::string model;             // path, "" for none
+  double nominal_rate_hz = 0.0;  // 0: what the driver says
+  double start_up_s = 4.0;
+  TransportConfig transport;
+  std::map<std::string, std::string> options;  // of the driver
+  FilterChoice filter;
+  RealtimeConfig realtime;
+  std::vector<ChannelConfig> channels;
+  std::uint32_t line = 0;  // in the file, for messages
+
+  [[nodiscard]] std::string lcm_channel() const;  // "IFOG_NAME"
+};
+
+struct Config {
+  std::string file;
+  std::vector<std::string> plugin_folders;
+  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  std::string log_level = "info";
+  bool lock_memory = true;
+  std::vector<SensorConfig> sensors;
+};
+
+// Everything that is wrong, one line each, joined by '\n'.
+struct ConfigError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Throws ConfigError. Relative paths in it (models, DBC files, captures, plugin folders) are relative to the
+// file.
+Config read_config(const std::string& path);
+Config parse_config(const std::string& text, const std::string& path);
+
+}  // namespace ifog

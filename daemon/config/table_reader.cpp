@@ -1,0 +1,186 @@
+#include "daemon/config/table_reader.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace ifog {
+namespace {
+
+std::string shortest(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string describe(Range range) {
+  if (std::isinf(range.most)) {
+    if (std::isinf(range.least)) return "a number";
+    return "a number >= " + shortest(range.least);
+  }
+  return "a number " + shortest(range.least) + " ... " + shortest(range.most);
+}
+
+}  // namespace
+
+std::string as_written(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  std::ostringstream out;
+  if (const auto* array = node.as_array())
+    out << *array;
+  else
+    node.visit([&out](const auto& value) {
+      if constexpr (toml::is_value<decltype(value)>) out << value;
+    });
+  std::string text = out.str();
+  constexpr std::size_t kLongest = 60;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+std::string TableReader::path(std::string_view key) const {
+  if (where_.empty()) return std::string(key);
+  return key.empty() ? where_ : where_ + "." + std::string(key);
+}
+
+std::uint32_t TableReader::line(std::string_view key) const {
+  const toml::node* const node = table_.get(key);
+  return node != nullptr ? node->source().begin.line : table_.source().begin.line;
+}
+
+void TableReader::complain(std::string_view key, const std::string& what) {
+  errors_.push_back(file_ + ":" + std::to_string(line(key)) + ": " + path(key) + what);
+}
+
+const toml::node* TableReader::find(std::string_view key) {
+  asked_.emplace(key);
+  return table_.get(key);
+}
+
+void TableReader::wrong(std::string_view key, const toml::node& node, const std::string& expected) {
+  complain(key, " = " + as_written(node) + ": expected " + expected);
+}
+
+std::optional<std::string> TableReader::text(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto* value = node->as_string(); value != nullptr && !value->get().empty()) return value->get();
+  wrong(key, *node, "a text in quotes");
+  return std::nullopt;
+}
+
+std::string TableReader::required_text(std::string_view key, const char* expected) {
+  if (!has(key)) {
+    asked_.emplace(key);
+    complain(key, std::string(": missing; expected ") + expected);
+    return "";
+  }
+  return text(key).value_or("");
+}
+
+std::optional<std::string> TableReader::choice(std::string_view key,
+                                               std::initializer_list<const char*> allowed) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  std::string list;
+  for (const char* const one : allowed) {
+    if (const auto* value = node->as_string(); value != nullptr && value->get() == one) return one;
+    list += (list.empty() ? "\"" : " | \"") + std::string(one) + "\"";
+  }
+  wrong(key, *node, list);
+  return std::nullopt;
+}
+
+std::optional<double> TableReader::number(std::string_view key, Range range) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (node->is_number()) {
+    const double value = node->value<double>().value_or(std::nan(""));
+    if (value >= range.least && value <= range.most) return value;
+  }
+  wrong(key, *node, describe(range));
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> TableReader::integer(std::string_view key, std::int64_t least,
+                                                 std::int64_t most) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto* value = node->as_integer();
+      value != nullptr && value->get() >= least && value->get() <= most)
+    return value->get();
+  wrong(key, *node, "a whole number " + std::to_string(least) + " ... " + std::to_string(most));
+  return std::nullopt;
+}
+
+std::optional<bool> TableReader::boolean(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto* value = node->as_boolean()) return value->get();
+  wrong(key, *node, "true or false");
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> TableReader::numbers(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  std::vector<double> out;
+  const auto* const array = node->as_array();
+  bool good = array != nullptr;
+  if (good)
+    for (const toml::node& element : *array) {
+      good = good && element.is_number() && std::isfinite(element.value<double>().value_or(std::nan("")));
+      if (good) out.push_back(element.value<double>().value_or(0.0));
+    }
+  if (good) return out;
+  wrong(key, *node, "a list of numbers");
+  return std::nullopt;
+}
+
+std::optional<std::vector<int>> TableReader::integers(std::string_view key, int least, int most) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  std::vector<int> out;
+  const auto* const array = node->as_array();
+  bool good = array != nullptr;
+  if (good)
+    for (const toml::node& element : *array) {
+      const auto* const value = element.as_integer();
+      good = good && value != nullptr && value->get() >= least && value->get() <= most;
+      if (good) out.push_back(static_cast<int>(value->get()));
+    }
+  if (good) return out;
+  wrong(key, *node, "a list of whole numbers " + std::to_string(least) + " ... " + std::to_string(most));
+  return std::nullopt;
+}
+
+const toml::table* TableReader::table(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return nullptr;
+  if (node->is_table()) return node->as_table();
+  wrong(key, *node, "a table [" + path(key) + "]");
+  return nullptr;
+}
+
+std::vector<const toml::table*> TableReader::tables(std::string_view key) {
+  std::vector<const toml::table*> out;
+  const toml::node* const node = find(key);
+  if (node == nullptr) return out;
+  if (const auto* const array = node->as_array(); array != nullptr && node->is_array_of_tables()) {
+    for (const toml::node& element : *array) out.push_back(element.as_table());
+    return out;
+  }
+  complain(key, ": expected [[" + path(key) + "]]");
+  return out;
+}
+
+void TableReader::refuse_the_rest() {
+  for (const auto& [key, node] : table_) {
+    if (asked_.contains(key.str())) continue;
+    std::string known;
+    for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
+    errors_.push_back(file_ + ":" + std::to_string(key.source().begin.line) + ": " + path(key.str()) +
+                      ": unknown key; known here: " + known);
+  }
+}
+
+}  // namespace ifog

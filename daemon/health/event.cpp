@@ -1,0 +1,35 @@
+#include "daemon/health/event.h"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace ifog {
+
+std::string describe(const Event& event) {
+  switch (event.kind) {
+    case EventKind::gap:
+      return fmt::format("gap: {} sample(s) missing before number {}", event.count, event.sequence);
+    case EventKind::device_restart:
+      return fmt::format(
+          "the device's counter or clock jumped back before number {}: was it switched off and on?",
+          event.sequence);
+    case EventKind::reopened:
+      return "device open again";
+    case EventKind::overflow:
+      return fmt::format("ring full at number {}: increments are merged until the filter catches up",
+                         event.sequence);
+    case EventKind::noise_learned:
+      return fmt::format(
+          "noise from start-up data: process_noise = {:.4g} (rad/s)^2/s, measurement_noise = {:.4g} "
+          "(rad/s)^2",
+          event.a, event.b);
+    case EventKind::model_in_use:
+      return fmt::format("model in use from number {} on", event.sequence);
+    case EventKind::divergence:
+      return fmt::format("estimator diverged and started again at number {}", event.sequence);
+    case EventKind::publish_failed:
+      return fmt::format("LCM did not take number {}", event.sequence);
+  }
+  return "unknown event";
+}
+
+}  // namespace ifog

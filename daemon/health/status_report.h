@@ -1,0 +1,30 @@
+// The 1 Hz health message of one sensor, and the counters whose movement is worth a line in the log.
+#pragma once
+
+#include <cstdint>
+#include <ifog/status_t.hpp>
+#include <string>
+#include <vector>
+
+#include "daemon/pipeline/pipeline.h"
+
+namespace ifog {
+
+class StatusReport {
+ public:
+  StatusReport(std::string sensor, std::vector<std::string> channels, std::vector<std::string> axes);
+
+  // From the counters now and the last snapshot of the filter; interval_s since the call before.
+  const ifog::status_t& update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);
+  // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
+  [[nodiscard]] std::string moved() const;
+
+  [[nodiscard]] const ifog::status_t& message() const { return now_; }
+
+ private:
+  ifog::status_t before_, now_;
+};
+
+const char* state_name(std::int32_t state);
+
+}  // namespace ifog

@@ -1,0 +1,56 @@
+// ifogd: reads gyros, denoises, publishes. Exit 0 good, 1 failed, 2 usage or a configuration that cannot
+// work.
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "daemon/config/config.h"
+#include "daemon/health/log.h"
+#include "daemon/housekeeping.h"
+
+namespace {
+
+// All threads inherit it: signals come to housekeeping alone, as bytes of a file descriptor.
+void block_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
+  app.set_version_flag("--version", IFOG_VERSION);
+  std::string file;
+  bool check = false;
+  app.add_option("--config", file, "configuration (TOML)")->required()->type_name("FILE");
+  app.add_flag("--check", check, "say what is wrong with the configuration, open nothing");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  block_signals();
+  try {
+    ifog::Config config = ifog::read_config(file);
+    ifog::set_up_log(config.log_level);
+    const std::size_t sensors = config.sensors.size();
+    ifog::Housekeeping housekeeping(std::move(config));
+    if (check) {
+      std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
+      return 0;
+    }
+    return housekeeping.run();
+  } catch (const ifog::ConfigError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ifogd: %s\n", error.what());
+    return 1;
+  }
+}

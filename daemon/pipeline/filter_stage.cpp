@@ -1,0 +1,137 @@
+#include "daemon/pipeline/filter_stage.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "drivers/transport/transport.h"
+
+namespace ifog {
+namespace {
+
+void relax() noexcept {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
+FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
+                         std::unique_ptr<Publisher> publisher, IncrementQueue& queue, EventQueue& events,
+                         bool measure_latency)
+    : facts_(facts),
+      chain_(std::move(parts)),
+      encoder_(facts.axes),
+      channel_(std::move(channel)),
+      publisher_(std::move(publisher)),
+      queue_(queue),
+      events_(events),
+      measure_latency_(measure_latency),
+      noise_known_(chain_.parts().noise_known()) {
+  encoder_.use(chain_.parts());
+}
+
+FilterStage::~FilterStage() {
+  delete offered_.load();
+  delete retired_.load();
+}
+
+void FilterStage::run(bool spin) noexcept {
+  for (;;) {
+    const Increment* const in = queue_.front();
+    if (in != nullptr) {
+      if (offered_.load(std::memory_order_relaxed) != nullptr) adopt(in->sequence);
+      process(*in);
+      queue_.pop();
+    }
+    if (ask_.load(std::memory_order_acquire) == Ask::asked) answer();
+    if (in != nullptr) continue;
+    if (queue_.finished()) {
+      // The last word, for whoever asks after the end. While answered, the snapshot is housekeeping's.
+      if (ask_.load(std::memory_order_acquire) != Ask::answered) answer();
+      return;
+    }
+    if (spin)
+      relax();
+    else
+      queue_.wait();
+  }
+}
+
+void FilterStage::process(const Increment& in) noexcept {
+  chain_.process(in, out_);
+  const ChainParts& parts = chain_.parts();
+  const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
+  if (measure_latency_) current_.latency.add(realtime_ns() - in.arrival_ns);
+  counters_.device_samples.add(in.samples);
+  if (sent) {
+    counters_.published.add(1);
+  } else {
+    if (counters_.lcm_failures.value() == 0)
+      events_.report({.kind = EventKind::publish_failed, .utime_ns = in.utime_ns, .sequence = in.sequence});
+    counters_.lcm_failures.add(1);
+  }
+  if ((out_.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) counters_.channel_stale.add(1);
+  if ((out_.compensator_flags & kOutOfRange) != 0) counters_.out_of_range.add(1);
+  if ((out_.estimate.flags & kRestarted) != 0) {
+    counters_.filter_resets.add(1);
+    events_.report({.kind = EventKind::divergence, .utime_ns = in.utime_ns, .sequence = in.sequence});
+  }
+  if (!noise_known_ && parts.noise_known()) {
+    noise_known_ = true;
+    events_.report({.kind = EventKind::noise_learned,
+                    .utime_ns = in.utime_ns,
+                    .sequence = in.sequence,
+                    .a = parts.filter().process_noise,
+                    .b = parts.filter().measurement_noise});
+  }
+  std::copy_n(in.channel.begin(), facts_.channels, current_.channel.begin());
+  std::copy_n(in.channel_age_s.begin(), facts_.channels, current_.channel_age_s.begin());
+}
+
+void FilterStage::adopt(std::uint64_t sequence) noexcept {
+  // The place of the retired must be free first: parts are deleted by housekeeping, never here.
+  if (retired_.load(std::memory_order_acquire) != nullptr) return;
+  std::unique_ptr<ChainParts> parts(offered_.exchange(nullptr, std::memory_order_acq_rel));
+  if (parts == nullptr) return;
+  retired_.store(chain_.swap(std::move(parts)).release(), std::memory_order_release);
+  encoder_.use(chain_.parts());
+  noise_known_ = chain_.parts().noise_known();
+  counters_.filter_resets.add(1);
+  events_.report({.kind = EventKind::model_in_use, .sequence = sequence});
+}
+
+void FilterStage::offer(std::unique_ptr<ChainParts> parts) noexcept {
+  delete offered_.exchange(parts.release(), std::memory_order_acq_rel);
+}
+
+void FilterStage::collect_retired() noexcept { delete retired_.exchange(nullptr, std::memory_order_acq_rel); }
+
+void FilterStage::answer() noexcept {
+  const ChainParts& parts = chain_.parts();
+  current_.has_health = parts.health() != nullptr;
+  if (current_.has_health) current_.health = *parts.health();
+  current_.angle_rad = out_.angle_rad;
+  const std::string& identity = parts.model_identity();
+  current_.model.fill('\0');
+  std::copy_n(identity.begin(), std::min(identity.size(), current_.model.size() - 1), current_.model.begin());
+  snapshot_ = current_;
+  current_.latency.clear();
+  ask_.store(Ask::answered, std::memory_order_release);
+}
+
+bool FilterStage::ask() noexcept {
+  if (ask_.load(std::memory_order_acquire) == Ask::asked) return false;
+  ask_.store(Ask::asked, std::memory_order_release);
+  queue_.notify();
+  return true;
+}
+
+bool FilterStage::take_snapshot(FilterSnapshot& out) noexcept {
+  if (ask_.load(std::memory_order_acquire) != Ask::answered) return false;
+  out = snapshot_;
+  ask_.store(Ask::none, std::memory_order_relaxed);
+  return true;
+}
+
+}  // namespace ifog

@@ -1,0 +1,81 @@
+// The filter thread's work: queue → signal chain → encoder → publisher. Stage 2 of a pipeline.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "daemon/health/counter.h"
+#include "daemon/health/event.h"
+#include "daemon/health/latency.h"
+#include "daemon/pipeline/increment_queue.h"
+#include "daemon/publish/publisher.h"
+#include "daemon/publish/rate_encoder.h"
+#include "filters/chain/signal_chain.h"
+
+namespace ifog {
+
+// What housekeeping wants to know of the filter, copied by the filter thread itself when asked.
+struct FilterSnapshot {
+  EstimatorHealth health;
+  bool has_health = false;   // false during start-up
+  LatencyHistogram latency;  // since the snapshot before
+  std::array<double, kMaxChannels> channel{};
+  std::array<float, kMaxChannels> channel_age_s{};
+  std::array<double, kMaxAxes> angle_rad{};
+  std::array<char, 64> model{};
+};
+
+struct FilterCounters {
+  Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
+};
+
+class FilterStage {
+ public:
+  // measure_latency: false where arrival times are not of today (a log read at its own pace).
+  FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
+              std::unique_ptr<Publisher> publisher, IncrementQueue& queue, EventQueue& events,
+              bool measure_latency);
+  ~FilterStage();
+
+  // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
+  void run(bool spin) noexcept;
+
+  // Any one other thread.
+  // New parts, in use from the next sample on; parts offered before and not yet taken are replaced.
+  void offer(std::unique_ptr<ChainParts> parts) noexcept;
+  // Frees parts that are out of use.
+  void collect_retired() noexcept;
+  // Asks for a snapshot; look again later. False: the last one has not come yet.
+  bool ask() noexcept;
+  // True: `out` has the snapshot asked for.
+  bool take_snapshot(FilterSnapshot& out) noexcept;
+  [[nodiscard]] const FilterCounters& counters() const noexcept { return counters_; }
+
+ private:
+  enum class Ask : std::uint32_t { none, asked, answered };
+  void process(const Increment& in) noexcept;
+  void adopt(std::uint64_t sequence) noexcept;
+  void answer() noexcept;
+
+  SensorFacts facts_;
+  SignalChain chain_;
+  RateEncoder encoder_;
+  std::string channel_;
+  std::unique_ptr<Publisher> publisher_;
+  IncrementQueue& queue_;
+  EventQueue& events_;
+  bool measure_latency_;
+  bool noise_known_;
+  ChainOutput out_;
+  FilterSnapshot current_;   // filled as samples go by
+  FilterSnapshot snapshot_;  // belongs to housekeeping while ask_ is answered
+  std::atomic<Ask> ask_{Ask::none};
+  std::atomic<ChainParts*> offered_{nullptr};
+  std::atomic<ChainParts*> retired_{nullptr};
+  FilterCounters counters_;
+};
+
+}  // namespace ifog

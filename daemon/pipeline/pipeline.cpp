@@ -1,0 +1,53 @@
+#include "daemon/pipeline/pipeline.h"
+
+#include <span>
+#include <utility>
+
+namespace ifog {
+
+Pipeline::Pipeline(PipelinePlan plan, std::unique_ptr<Transport> transport, DriverInstance driver,
+                   std::shared_ptr<const ChannelTable> outside, std::unique_ptr<ChainParts> parts,
+                   std::unique_ptr<Publisher> publisher)
+    : plan_(std::move(plan)),
+      queue_(plan_.ring_slots,
+             transport->holds_back() ? IncrementQueue::WhenFull::wait : IncrementQueue::WhenFull::merge),
+      reader_(std::move(transport), std::move(driver), plan_.facts, std::move(outside), queue_,
+              reader_events_),
+      filter_(std::move(parts), plan_.facts, plan_.lcm_channel, std::move(publisher), queue_, filter_events_,
+              !reader_.transport().holds_back()) {}
+
+Pipeline::~Pipeline() { stop(); }
+
+void Pipeline::open() {
+  const ifog_description& description = reader_.driver().description();
+  reader_.transport().open(std::span(description.opening, description.opening_length));
+}
+
+std::string Pipeline::start() {
+  std::promise<std::string> filter_ready, reader_ready;
+  const auto prepare = [](const ThreadPlan& plan, std::promise<std::string>& ready) {
+    prefault_stack();
+    ready.set_value(apply_to_this_thread(plan));
+  };
+  filter_thread_ = std::thread([this, &filter_ready, prepare] {
+    prepare(plan_.filter, filter_ready);
+    filter_.run(plan_.spin);
+    ended_.store(true, std::memory_order_release);
+  });
+  std::string missed = filter_ready.get_future().get();
+  reader_thread_ = std::thread([this, &reader_ready, prepare] {
+    prepare(plan_.reader, reader_ready);
+    reader_.run();
+  });
+  const std::string reader_missed = reader_ready.get_future().get();
+  if (!missed.empty() && !reader_missed.empty()) missed += "; ";
+  return missed + reader_missed;
+}
+
+void Pipeline::stop() noexcept {
+  reader_.transport().stop();
+  if (reader_thread_.joinable()) reader_thread_.join();
+  if (filter_thread_.joinable()) filter_thread_.join();
+}
+
+}  // namespace ifog

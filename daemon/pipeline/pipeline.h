@@ -1,0 +1,61 @@
+// One sensor: its reader thread, its filter thread and the queue between them. Pipelines share nothing.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "daemon/pipeline/filter_stage.h"
+#include "daemon/pipeline/reader.h"
+#include "daemon/realtime/realtime.h"
+
+namespace ifog {
+
+struct PipelinePlan {
+  std::string name;         // of the sensor
+  std::string lcm_channel;  // of rate_t
+  SensorFacts facts;
+  std::size_t ring_slots = 1024;
+  ThreadPlan reader, filter;
+  bool spin = false;
+};
+
+class Pipeline {
+ public:
+  Pipeline(PipelinePlan plan, std::unique_ptr<Transport> transport, DriverInstance driver,
+           std::shared_ptr<const ChannelTable> outside, std::unique_ptr<ChainParts> parts,
+           std::unique_ptr<Publisher> publisher);
+  ~Pipeline();  // stops
+
+  // Sends the driver's opening bytes. Throws std::runtime_error as Transport::open; start() may follow all
+  // the same: the reader goes on trying.
+  void open();
+  // Starts both threads; returns what of their real-time settings could not be had, "" for nothing.
+  std::string start();
+  // No more is read, what has been read is published. Waits for both threads.
+  void stop() noexcept;
+  // Both threads have come to their end (a file was read).
+  [[nodiscard]] bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
+
+  [[nodiscard]] const PipelinePlan& plan() const noexcept { return plan_; }
+  [[nodiscard]] const Reader& reader() const noexcept { return reader_; }
+  [[nodiscard]] FilterStage& filter() noexcept { return filter_; }
+  [[nodiscard]] const IncrementQueue& queue() const noexcept { return queue_; }
+  // Next event of either thread.
+  bool take_event(Event& out) noexcept { return reader_events_.take(out) || filter_events_.take(out); }
+  [[nodiscard]] std::uint64_t events_lost() const noexcept {
+    return reader_events_.lost() + filter_events_.lost();
+  }
+
+ private:
+  PipelinePlan plan_;
+  EventQueue reader_events_, filter_events_;
+  IncrementQueue queue_;
+  Reader reader_;
+  FilterStage filter_;
+  std::atomic<bool> ended_{false};
+  std::thread reader_thread_, filter_thread_;
+};
+
+}  // namespace ifog

@@ -1,0 +1,95 @@
+#include "daemon/pipeline/reader.h"
+
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr auto kTurn = std::chrono::milliseconds(250);
+
+}  // namespace
+
+Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
+               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, EventQueue& events)
+    : transport_(std::move(transport)),
+      driver_(std::move(driver)),
+      facts_(facts),
+      outside_(std::move(outside)),
+      incrementer_(facts),
+      queue_(queue),
+      events_(events) {}
+
+void Reader::take(const ifog_sample& sample) noexcept {
+  read_sample(sample, facts_.frame_channels, reading_);
+  for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    outside_->get(i - facts_.frame_channels, sample.arrival_ns, reading_.channel[c],
+                  reading_.channel_age_s[c]);
+  }
+  const IncrementerCounts before = incrementer_.counts();
+  Increment& increment = queue_.next();
+  if (!incrementer_.next(reading_, increment)) return;
+  report(increment, before);
+  queue_.push();
+  counters_.last_arrival_ns.store(sample.arrival_ns, std::memory_order_relaxed);
+}
+
+void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {
+  const IncrementerCounts& now = incrementer_.counts();
+  Event event;
+  event.utime_ns = increment.utime_ns;
+  event.sequence = increment.sequence;
+  if (now.restarts != before.restarts) {
+    event.kind = EventKind::device_restart;
+    events_.report(event);
+  } else if (now.missing != before.missing) {
+    event.kind = EventKind::gap;
+    event.count = now.missing - before.missing;
+    events_.report(event);
+  }
+  if (const std::uint64_t overflows = queue_.overflows(); overflows != overflows_seen_) {
+    overflows_seen_ = overflows;
+    event.kind = EventKind::overflow;
+    events_.report(event);
+  }
+}
+
+void Reader::publish_counters() noexcept {
+  const IncrementerCounts& counts = incrementer_.counts();
+  counters_.samples.set(counts.samples);
+  counters_.gaps.set(counts.gaps);
+  counters_.missing.set(counts.missing);
+  counters_.invalid.set(counts.invalid);
+  counters_.repeated.set(counts.repeated);
+  counters_.device_restarts.set(counts.restarts);
+  counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
+  const ifog_driver_counters driver = driver_.counters();
+  counters_.frames_good.set(driver.frames_good);
+  counters_.frames_crc.set(driver.frames_crc);
+  counters_.frames_format.set(driver.frames_format);
+  counters_.bytes_skipped.set(driver.bytes_skipped);
+}
+
+bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
+  const Delivery delivery = transport_->read(timeout);
+  if (delivery.restarted) {
+    driver_.reset();
+    incrementer_.discontinuity();
+    events_.report({.kind = EventKind::reopened});
+  }
+  const auto sink = [this](const ifog_sample& sample) { take(sample); };
+  if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);
+  for (const ifog_can_frame& frame : delivery.frames) driver_.decode_can(frame, sink);
+  queue_.flush();
+  publish_counters();
+  counters_.turns.add(1);
+  return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
+}
+
+void Reader::run() noexcept {
+  while (turn(kTurn)) {
+  }
+  queue_.close();
+}
+
+}  // namespace ifog

@@ -1,0 +1,61 @@
+// The reader thread's work: transport → plugin → increments → queue. Stage 1 of a pipeline.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "daemon/channels/channel_table.h"
+#include "daemon/health/counter.h"
+#include "daemon/health/event.h"
+#include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/sensor_facts.h"
+#include "drivers/host/driver_instance.h"
+#include "drivers/transport/transport.h"
+#include "filters/chain/incrementer.h"
+
+namespace ifog {
+
+// Any thread may read them.
+struct ReaderCounters {
+  Counter turns, samples, gaps, missing, invalid, repeated, device_restarts;
+  Counter frames_good, frames_crc, frames_format, bytes_skipped;
+  std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, CLOCK_REALTIME; 0: none yet
+  std::atomic<double> clock_offset_ppm{0.0};
+};
+
+class Reader {
+ public:
+  Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
+         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, EventQueue& events);
+
+  // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
+  void run() noexcept;
+  // One wait of the transport and all it brought. False: it is over.
+  bool turn(std::chrono::nanoseconds timeout) noexcept;
+
+  [[nodiscard]] Transport& transport() noexcept { return *transport_; }
+  [[nodiscard]] const Transport& transport() const noexcept { return *transport_; }
+  [[nodiscard]] const DriverInstance& driver() const noexcept { return driver_; }
+  [[nodiscard]] const ReaderCounters& counters() const noexcept { return counters_; }
+
+ private:
+  void take(const ifog_sample& sample) noexcept;
+  void report(const Increment& increment, const IncrementerCounts& before) noexcept;
+  void publish_counters() noexcept;
+
+  std::unique_ptr<Transport> transport_;
+  DriverInstance driver_;
+  SensorFacts facts_;
+  std::shared_ptr<const ChannelTable> outside_;
+  Incrementer incrementer_;
+  IncrementQueue& queue_;
+  EventQueue& events_;
+  Reading reading_;
+  std::uint64_t overflows_seen_ = 0;
+  ReaderCounters counters_;
+};
+
+}  // namespace ifog

@@ -1,0 +1,63 @@
+// Single producer, single consumer, wait-free, no allocation after construction.
+//
+// Slots are filled and read in place (claim/commit, front/pop): an increment is several hundred bytes, and
+// queues that hand values over copy it twice. Each side keeps a copy of the other's index on its own cache
+// line and looks at the shared one only when the copy says full or empty, so that in the common case the two
+// cores exchange one line a slot. tests/bench/ring measures it beside Boost.Lockfree and moodycamel's
+// ReaderWriterQueue.
+//
+// Full means full: claim() returns null and the caller decides (see IncrementQueue, which merges).
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <memory>
+
+namespace ifog {
+
+template <typename T>
+class Ring {
+ public:
+  // Room for at least `capacity` slots, rounded up to a power of two.
+  explicit Ring(std::size_t capacity)
+      : mask_(std::bit_ceil(capacity) - 1), slots_(std::make_unique<T[]>(mask_ + 1)) {}
+
+  // Producer: the next slot to fill, null when the ring is full. The same slot until commit().
+  [[nodiscard]] T* claim() noexcept {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (head - tail_seen_ > mask_) {
+      tail_seen_ = tail_.load(std::memory_order_acquire);
+      if (head - tail_seen_ > mask_) return nullptr;
+    }
+    return &slots_[head & mask_];
+  }
+  void commit() noexcept {
+    head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+
+  // Consumer: the oldest slot, null when the ring is empty. Valid until pop().
+  [[nodiscard]] T* front() noexcept {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    if (tail == head_seen_) {
+      head_seen_ = head_.load(std::memory_order_acquire);
+      if (tail == head_seen_) return nullptr;
+    }
+    return &slots_[tail & mask_];
+  }
+  void pop() noexcept { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
+
+ private:
+  // 64 rather than std::hardware_destructive_interference_size, whose value depends on compiler flags.
+  static constexpr std::size_t kLine = 64;
+  const std::size_t mask_;
+  const std::unique_ptr<T[]> slots_;
+  alignas(kLine) std::atomic<std::size_t> head_{0};  // written by the producer
+  std::size_t tail_seen_ = 0;                        // producer's copy of tail_
+  alignas(kLine) std::atomic<std::size_t> tail_{0};  // written by the consumer
+  std::size_t head_seen_ = 0;                        // consumer's copy of head_
+};
+
+}  // namespace ifog

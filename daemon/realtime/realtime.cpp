@@ -1,0 +1,57 @@
+#include "daemon/realtime/realtime.h"
+
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kStack = 64 * 1024;  // deeper than any path of the loops
+constexpr std::size_t kPage = 4096;
+
+std::string reason(int error) { return std::strerror(error); }
+
+}  // namespace
+
+void prefault_stack() noexcept {
+  std::array<volatile char, kStack> stack;
+  for (std::size_t i = 0; i < kStack; i += kPage) stack[i] = 0;
+}
+
+std::string apply_to_this_thread(const ThreadPlan& plan) {
+  std::string missed;
+  const pthread_t self = pthread_self();
+  pthread_setname_np(self, plan.name.substr(0, 15).c_str());
+  if (!plan.cpus.empty()) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    for (const int cpu : plan.cpus) CPU_SET(static_cast<std::size_t>(cpu), &set);
+    if (const int error = pthread_setaffinity_np(self, sizeof set, &set))
+      missed += plan.name + ": processors not set: " + reason(error) + "; ";
+  }
+  if (plan.priority > 0) {
+    sched_param wanted{};
+    wanted.sched_priority = plan.priority;
+    if (const int error = pthread_setschedparam(self, SCHED_FIFO, &wanted))
+      missed += plan.name + ": SCHED_FIFO priority " + std::to_string(plan.priority) +
+                " refused: " + reason(error) + " (needs CAP_SYS_NICE or LimitRTPRIO); ";
+  }
+  if (!missed.empty()) missed.resize(missed.size() - 2);
+  return missed;
+}
+
+std::string lock_memory() {
+  // What malloc has it keeps: giving pages back and taking them again would fault in the loop.
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_MMAP_MAX, 0);
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "";
+  return "memory not locked: " + reason(errno) + " (needs CAP_IPC_LOCK or LimitMEMLOCK)";
+}
+
+}  // namespace ifog

@@ -1,0 +1,53 @@
+#include "filters/chain/fitted_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ifog {
+namespace {
+
+// A late arrival says little about the device's clock: its pull is limited to this many mean deviations.
+constexpr double kLatenessLimit = 4.0;
+
+}  // namespace
+
+FittedClock::FittedClock(double nominal_period_s, int memory) noexcept
+    : nominal_ns_(nominal_period_s * 1e9),
+      period_ns_(nominal_ns_),
+      spread_ns_(nominal_ns_),
+      memory_(memory) {}
+
+double FittedClock::lateness_s(std::uint64_t steps, std::int64_t arrival_ns) const noexcept {
+  if (fitted_ == 0 || arrival_ns <= 0) return 0.0;
+  return (static_cast<double>(arrival_ns - origin_ns_) - time_ns_ - period_ns_ * static_cast<double>(steps)) *
+         1e-9;
+}
+
+std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) noexcept {
+  const double predicted = time_ns_ + period_ns_ * static_cast<double>(steps);
+  if (arrival_ns <= 0) {
+    time_ns_ = predicted;
+  } else if (fitted_ == 0) {
+    origin_ns_ = arrival_ns;
+    time_ns_ = 0.0;
+    spread_ns_ = nominal_ns_;
+    fitted_ = 1;
+  } else {
+    const double residual = static_cast<double>(arrival_ns - origin_ns_) - predicted;
+    const double limit = kLatenessLimit * spread_ns_;
+    const double pull = std::clamp(residual, -limit, limit);
+    fitted_ = std::min(fitted_ + 1, memory_);
+    const double n = static_cast<double>(fitted_ - 1);
+    const double g = 2.0 * (2.0 * n + 1.0) / ((n + 1.0) * (n + 2.0));
+    const double h = 6.0 / ((n + 1.0) * (n + 2.0));
+    time_ns_ = predicted + g * pull;
+    // The first samples say nothing about the period that the nominal one does not say better.
+    if (n >= 8.0) period_ns_ = std::clamp(period_ns_ + h * pull, 0.5 * nominal_ns_, 2.0 * nominal_ns_);
+    spread_ns_ += (std::abs(pull) - spread_ns_) * g;
+    // Never so narrow that a small shift of the arrival times could not be followed.
+    spread_ns_ = std::max(spread_ns_, 1e-3 * nominal_ns_);
+  }
+  return origin_ns_ + std::llround(time_ns_);
+}
+
+}  // namespace ifog

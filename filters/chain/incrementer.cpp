@@ -1,0 +1,247 @@
+#include "filters/chain/incrementer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ifog {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLongSilence_s = 2.0;
+constexpr double kClockMemory_s = 20.0;
+// A step of counter or clock that exceeds what the arrival times allow by this much is a restart of the
+// device.
+constexpr double kRestart_s = 10.0;
+constexpr double kRestartFactor = 1.5;
+
+int clock_memory(double rate_hz) {
+  return static_cast<int>(std::clamp(kClockMemory_s * rate_hz, 64.0, 100000.0));
+}
+
+std::uint64_t at_least_one(double samples) {
+  return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(samples)) : 1;
+}
+
+}  // namespace
+
+void merge(Increment& into, const Increment& later) noexcept {
+  Increment sum = later;
+  sum.dt_s = into.dt_s + later.dt_s;
+  sum.samples = into.samples + later.samples;
+  sum.flags = into.flags | later.flags | kMerged;
+  sum.status = into.status | later.status;
+  sum.valid_axes = into.valid_axes | later.valid_axes;
+  for (std::size_t i = 0; i < kMaxAxes; ++i) {
+    sum.delta_theta_rad[i] = into.delta_theta_rad[i] + later.delta_theta_rad[i];
+    sum.covered_s[i] = into.covered_s[i] + later.covered_s[i];
+    sum.rate_radps[i] = sum.covered_s[i] > 0.0 ? sum.delta_theta_rad[i] / sum.covered_s[i] : kNaN;
+  }
+  into = sum;
+}
+
+Incrementer::Incrementer(const SensorFacts& facts) noexcept
+    : facts_(facts),
+      period_s_(1.0 / facts.nominal_rate_hz),
+      clock_(period_s_, clock_memory(facts.nominal_rate_hz)) {
+  since_angle_s_.fill(-1.0);
+  channel_.fill(kNaN);
+  channel_age_s_.fill(std::numeric_limits<float>::infinity());
+}
+
+double Incrementer::clock_offset_ppm() const noexcept {
+  return clock_.settled() ? (clock_.period_s() / period_s_ - 1.0) * 1e6 : 0.0;
+}
+
+Incrementer::Step Incrementer::step_by_counter(const Reading& reading, double elapsed_s) const noexcept {
+  const std::uint64_t modulus = facts_.sequence_modulus;
+  const std::uint64_t difference = (reading.sequence + modulus - last_.sequence) % modulus;
+  const double elapsed = elapsed_s / period_s_;
+  const double round = static_cast<double>(modulus);
+  Step step;
+  step.samples = difference;
+  // A gap shows, or the silence was too long for a late delivery: then the arrival times count the full
+  // rounds.
+  if (elapsed_s > 0.0 && (difference != 1 || reopened_ || elapsed_s > kLongSilence_s)) {
+    const double rounds = std::floor((elapsed - static_cast<double>(difference)) / round + 0.5);
+    if (rounds > 0.0) step.samples += static_cast<std::uint64_t>(rounds) * modulus;
+  }
+  if (step.samples == 0) {
+    // The same counter again, too soon for a full round. CAN may deliver a frame twice; a device whose
+    // counter stands still yet measures is followed.
+    step.repeated = true;
+    for (int i = 0; i < facts_.axes; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      if (reading.value[axis] != last_.value[axis]) step.repeated = false;
+    }
+    step.samples = 1;
+    step.gap = true;
+  }
+  const double claimed_s = static_cast<double>(step.samples) * period_s_;
+  const bool backwards = elapsed_s < 0.0 && difference > modulus / 2;  // no arrival times to ask
+  if (step.samples > 1 &&
+      ((elapsed_s >= 0.0 && claimed_s > kRestartFactor * elapsed_s + kRestart_s) || backwards)) {
+    step.samples = elapsed_s > 0.0 ? at_least_one(elapsed) : 1;
+    step.restarted = true;
+  }
+  step.gap = step.gap || step.samples > 1 || step.restarted;
+  step.dt_s = static_cast<double>(step.samples) * period_s_;
+  return step;
+}
+
+Incrementer::Step Incrementer::step_by_clock(const Reading& reading, double elapsed_s) const noexcept {
+  Step step;
+  step.dt_s = static_cast<double>(reading.device_time_ns - last_.device_time_ns) * 1e-9;
+  if (step.dt_s <= 0.0 || (elapsed_s >= 0.0 && step.dt_s > kRestartFactor * elapsed_s + kRestart_s)) {
+    step.restarted = true;
+    step.gap = true;
+    step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / period_s_) : 1;
+    step.dt_s = static_cast<double>(step.samples) * period_s_;
+    return step;
+  }
+  step.samples = at_least_one(step.dt_s / period_s_);
+  step.gap = step.samples > 1;
+  return step;
+}
+
+Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double elapsed_s) const noexcept {
+  // Nothing counts, so only a silence that scheduling does not explain is a gap.
+  Step step;
+  const double period_s = clock_.period_s();
+  const double late_s = clock_.lateness_s(1, reading.arrival_ns);
+  if (elapsed_s > 0.0 && (reopened_ || late_s > std::max(0.25, 20.0 * period_s))) {
+    step.samples = at_least_one(elapsed_s / period_s);
+    step.gap = step.samples > 1;
+  }
+  step.dt_s = static_cast<double>(step.samples) * period_s;
+  return step;
+}
+
+Incrementer::Step Incrementer::step(const Reading& reading) const noexcept {
+  const bool timed = reading.arrival_ns > 0 && last_.arrival_ns > 0;
+  const double elapsed_s = timed ? static_cast<double>(reading.arrival_ns - last_.arrival_ns) * 1e-9 : -1.0;
+  const bool counts = reading.has_sequence && facts_.sequence_modulus > 0;
+  const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
+  Step step;
+  if (counts) {
+    step = step_by_counter(reading, elapsed_s);
+    if (clocked && !step.repeated && !step.restarted) {
+      const Step by_clock = step_by_clock(reading, elapsed_s);
+      // The clock resolves full rounds of the counter exactly.
+      const std::uint64_t modulus = facts_.sequence_modulus;
+      if (!by_clock.restarted) {
+        step.dt_s = by_clock.dt_s;
+        if (by_clock.samples > step.samples + modulus / 2)
+          step.samples += (by_clock.samples - step.samples + modulus / 2) / modulus * modulus;
+      }
+      step.gap = step.gap || by_clock.restarted || step.samples > 1;
+      step.restarted = by_clock.restarted;
+    }
+  } else {
+    step = clocked ? step_by_clock(reading, elapsed_s) : step_by_arrival(reading, elapsed_s);
+  }
+  if (reopened_) step.gap = true;
+  return step;
+}
+
+void Incrementer::measure(const Reading& reading, const Step& step, Increment& out) noexcept {
+  const double own_s = step.dt_s / static_cast<double>(step.samples);  // a gap's time is not this sample's
+  out.valid_axes = 0;
+  bool invalid = false;
+  for (int i = 0; i < facts_.axes; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const double value = reading.value[axis];
+    const bool valid = ((reading.valid_axes >> i) & 1u) != 0 && std::isfinite(value);
+    invalid = invalid || !valid;
+    double delta = 0.0;
+    double covered = 0.0;
+    if (facts_.kind == SensorKind::angle) {
+      if (since_angle_s_[axis] >= 0.0) since_angle_s_[axis] += step.dt_s;
+      if (valid) {
+        if (since_angle_s_[axis] > 0.0) {
+          delta = value - angle_[axis];
+          if (facts_.angle_wrap_rad > 0.0) delta = std::remainder(delta, facts_.angle_wrap_rad);
+          covered = since_angle_s_[axis];
+        }
+        angle_[axis] = value;
+        since_angle_s_[axis] = 0.0;
+      }
+    } else if (valid) {
+      delta = facts_.kind == SensorKind::rate ? value * own_s : value;
+      covered = own_s;
+    }
+    out.delta_theta_rad[axis] = delta;
+    out.covered_s[axis] = covered;
+    // A rate is passed on as sent: dividing the product again would cost its last bit.
+    if (covered > 0.0) {
+      out.rate_radps[axis] = facts_.kind == SensorKind::rate ? value : delta / covered;
+      out.valid_axes |= 1u << i;
+    } else {
+      out.rate_radps[axis] = kNaN;
+    }
+  }
+  if (invalid) {
+    out.flags |= kInvalid;
+    ++counts_.invalid;
+  }
+}
+
+void Incrementer::hold_channels(const Reading& reading, Increment& out) noexcept {
+  for (int i = 0; i < facts_.channels; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    if (i >= facts_.frame_channels) {
+      channel_[c] = reading.channel[c];
+      channel_age_s_[c] = reading.channel_age_s[c];
+    } else if (((reading.fresh_channels >> i) & 1u) != 0 && std::isfinite(reading.channel[c])) {
+      channel_[c] = reading.channel[c];
+      channel_age_s_[c] = 0.0F;
+    } else {
+      channel_age_s_[c] += static_cast<float>(out.dt_s);
+    }
+  }
+  out.channel = channel_;
+  out.channel_age_s = channel_age_s_;
+}
+
+bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
+  Step now;
+  if (started_) {
+    now = step(reading);
+    if (now.repeated) {
+      ++counts_.repeated;
+      return false;
+    }
+    sequence_ += now.samples;
+  } else {
+    now.dt_s = period_s_;
+    sequence_ = reading.has_sequence ? reading.sequence : 0;
+  }
+  out.flags = 0;
+  if (started_ && now.gap) {
+    out.flags |= kGapBefore;
+    ++counts_.gaps;
+    counts_.missing += now.samples - 1;
+    clock_.restart();
+  }
+  if (now.restarted) {
+    ++counts_.restarts;
+    // An angle counts from power-up: after a restart it says nothing about the turn since the last one.
+    since_angle_s_.fill(-1.0);
+  }
+  out.samples = 1;
+  out.status = reading.status;
+  out.sequence = sequence_;
+  out.arrival_ns = reading.arrival_ns;
+  out.device_time_ns = reading.device_time_ns;
+  out.dt_s = now.dt_s;
+  out.utime_ns = clock_.advance(now.samples, reading.arrival_ns);
+  measure(reading, now, out);
+  hold_channels(reading, out);
+  ++counts_.samples;
+  last_ = reading;
+  started_ = true;
+  reopened_ = false;
+  return true;
+}
+
+}  // namespace ifog

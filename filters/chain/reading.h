@@ -1,0 +1,74 @@
+// What a sensor delivers, as plain structs: the same facts as the plugin interface's, so that filters know no
+// devices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "filters/estimator/estimator.h"
+
+namespace ifog {
+
+inline constexpr int kMaxChannels = 24;  // environment channels of one sensor, its own frame's and all others
+
+enum class SensorKind {
+  rate,         // rad/s, mean since the sample before
+  delta_angle,  // rad, turned since the sample before
+  angle,        // rad, turned since power-up; may wrap
+};
+
+// Constant while the sensor runs.
+struct SensorFacts {
+  SensorKind kind = SensorKind::rate;
+  int axes = 1;                        // 1 … kMaxAxes
+  std::uint32_t sequence_modulus = 0;  // the device's counter counts modulo this; 0: it sends none
+  double nominal_rate_hz = 0.0;        // > 0
+  double angle_wrap_rad = 0.0;         // SensorKind::angle: wraps modulo this; 0: it does not
+  int frame_channels = 0;              // channels 0 … frame_channels − 1 come in the sensor's own frames
+  int channels = 0;                    // all of them, ≤ kMaxChannels
+};
+
+// One sample as decoded.
+struct Reading {
+  std::int64_t arrival_ns = 0;       // CLOCK_REALTIME; 0 where nobody knows (a raw byte file)
+  std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; −1: it has none
+  std::uint32_t sequence = 0;        // as sent
+  bool has_sequence = false;
+  std::uint32_t status = 0;
+  std::uint32_t valid_axes = 0;  // bit i
+  std::array<double, kMaxAxes> value{};
+  std::uint32_t fresh_channels = 0;            // bit i: frame channel i came with this sample
+  std::array<double, kMaxChannels> channel{};  // NaN until known
+  // Ages of channels that do not come in the sensor's frames, s; those of its own frames are counted here.
+  std::array<float, kMaxChannels> channel_age_s{};
+};
+
+enum IncrementFlags : std::uint32_t {
+  kGapBefore = 1,  // samples are missing before this one
+  kMerged = 2,     // several samples in one, because the filter could not keep up
+  kInvalid = 4,    // the device marks an axis invalid, or its value is no number
+};
+
+// The angle turned over one step, and what came with it.
+struct Increment {
+  std::int64_t utime_ns = 0;  // fitted time of the sample, ns since the epoch
+  std::int64_t arrival_ns = 0;
+  std::int64_t device_time_ns = -1;
+  std::uint64_t sequence = 0;                      // unwrapped; starts at the device's first counter value
+  double dt_s = 0.0;                               // since the sample before, gap included
+  std::array<double, kMaxAxes> delta_theta_rad{};  // only what the device sent: a gap adds nothing
+  std::array<double, kMaxAxes> covered_s{};        // time delta_theta covers: dt less gap and invalid samples
+  std::array<double, kMaxAxes> rate_radps{};       // delta_theta / covered; NaN where the axis is not valid
+  std::uint32_t valid_axes = 0;
+  std::uint32_t status = 0;
+  std::uint32_t flags = 0;
+  std::uint32_t samples = 1;  // device samples in it
+  std::array<double, kMaxChannels> channel{};
+  std::array<float, kMaxChannels> channel_age_s{};
+};
+
+// Appends `later` to `into`: angles, times and counts add, so no angle is lost; all else is the later
+// sample's.
+void merge(Increment& into, const Increment& later) noexcept;
+
+}  // namespace ifog

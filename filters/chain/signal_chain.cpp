@@ -1,0 +1,137 @@
+#include "filters/chain/signal_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kLeastStartUp = 256;
+constexpr std::size_t kMostStartUp = 20000;
+
+}  // namespace
+
+void ExactSum::add(double term) noexcept {
+  const double sum = sum_ + term;
+  lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - sum) + term : (term - sum) + sum_;
+  sum_ = sum;
+}
+
+ChainParts::ChainParts(const ChainSettings& settings)
+    : facts_(settings.facts), period_s_(1.0 / settings.facts.nominal_rate_hz) {
+  FilterSettings base;
+  if (settings.model) {
+    identity_ = settings.model->identity();
+    if (settings.model->filter) base = *settings.model->filter;
+    use_effects(settings);
+  }
+  filter_ = settings_in_force(settings.filter, std::move(base));
+  if (filter_.process_noise > 0.0 && filter_.measurement_noise > 0.0) {
+    estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+    return;
+  }
+  // Built once for its complaints: a wrong setting is told at start, not after the start-up seconds.
+  FilterSettings trial = filter_;
+  if (trial.process_noise <= 0.0) trial.process_noise = 1e-10;
+  if (trial.measurement_noise <= 0.0) trial.measurement_noise = 1e-10;
+  const Estimator check(trial, facts_.axes, period_s_);
+  start_up_size_ =
+      std::clamp(static_cast<std::size_t>(std::max(0.0, settings.start_up_s * facts_.nominal_rate_hz)),
+                 kLeastStartUp, kMostStartUp);
+  start_up_.resize(start_up_size_ * static_cast<std::size_t>(facts_.axes));
+}
+
+ChainParts::~ChainParts() = default;
+
+void ChainParts::use_effects(const ChainSettings& settings) {
+  // Each channel has a limit of its own: the compensator is given ages in units of it.
+  compensator_.emplace(*settings.model, settings.axes, 1.0);
+  for (const std::string& name : compensator_->channels()) {
+    const auto found = std::find(settings.channels.begin(), settings.channels.end(), name);
+    if (found == settings.channels.end()) {
+      std::string known;
+      for (const std::string& channel : settings.channels) known += (known.empty() ? "" : ", ") + channel;
+      throw std::invalid_argument(
+          "the model uses channel \"" + name +
+          "\", which this sensor does not have; it has: " + (known.empty() ? "none" : known));
+    }
+    const auto index = static_cast<std::size_t>(found - settings.channels.begin());
+    wanted_.push_back(index);
+    const double allowed =
+        index < settings.channel_max_age_s.size() ? settings.channel_max_age_s[index] : 0.0;
+    relative_age_max_.push_back(allowed > 0.0 ? 1.0 / allowed : 0.0);
+  }
+  channel_.resize(wanted_.size());
+  relative_age_.resize(wanted_.size());
+}
+
+std::vector<std::string> ChainParts::left_out() const {
+  return compensator_ ? compensator_->left_out() : std::vector<std::string>{};
+}
+
+void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
+  out.compensated_radps = in.rate_radps;
+  out.delta_theta_rad = in.delta_theta_rad;
+  out.compensator_flags = 0;
+  if (!compensator_) return;
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    channel_[i] = in.channel[wanted_[i]];
+    relative_age_[i] = static_cast<double>(in.channel_age_s[wanted_[i]]) * relative_age_max_[i];
+  }
+  compensator_->step(
+      {.dt_s = in.dt_s, .rate_radps = in.rate_radps, .channels = channel_, .age_s = relative_age_},
+      correction_);
+  out.compensated_radps = correction_.compensated_radps;
+  out.compensator_flags = correction_.flags;
+  for (std::size_t i = 0; i < kMaxAxes; ++i)
+    if (in.covered_s[i] > 0.0) out.delta_theta_rad[i] -= correction_.correction_radps[i] * in.covered_s[i];
+}
+
+void ChainParts::learn(const Increment& in, const ChainOutput& out) {
+  if (in.valid_axes == 0) return;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
+    start_up_[axis * start_up_size_ + collected_] = out.compensated_radps[axis];
+  if (++collected_ < start_up_size_) return;
+  const StartupNoise noise = startup_noise(start_up_, facts_.axes, period_s_);
+  if (filter_.process_noise <= 0.0) filter_.process_noise = noise.process_noise;
+  if (filter_.measurement_noise <= 0.0) filter_.measurement_noise = noise.measurement_noise;
+  estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+}
+
+void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
+  ChainParts& parts = *parts_;
+  out.flags = 0;
+  parts.compensate(in, out);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i) {
+    angle_[i].add(out.delta_theta_rad[i]);
+    out.angle_rad[i] = angle_[i].value();
+  }
+  if (parts.estimator_ == nullptr) {
+    out.flags |= kNoiseUnknown;
+    out.estimate = EstimatorOutput{};
+    out.estimate.denoised_radps = out.compensated_radps;
+    out.estimate.variance_rad2ps2.fill(std::nan(""));
+    parts.learn(in, out);
+    return;
+  }
+  if (std::exchange(parts.first_, false)) out.flags |= kFilterReset;
+  EstimatorInput input;
+  input.sequence = in.sequence;
+  input.dt_s = in.dt_s;
+  input.rate_radps = out.compensated_radps;
+  input.valid_axes = in.valid_axes;
+  parts.estimator_->step(input, out.estimate);
+  if (parts.compensator_)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i)
+      out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];
+}
+
+std::unique_ptr<ChainParts> SignalChain::swap(std::unique_ptr<ChainParts> parts) noexcept {
+  if (parts->compensator_ && parts_->compensator_) parts->compensator_->take_over(*parts_->compensator_);
+  std::swap(parts_, parts);
+  return parts;
+}
+
+}  // namespace ifog

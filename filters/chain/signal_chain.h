@@ -1,0 +1,117 @@
+// From an angle increment to everything that is published of it: effects removed, rate estimated, angle
+// summed. The daemon and `ifog denoise` run this very code, so the same frames and settings give the same
+// bits in both.
+//
+// What a model file or a setting can change is in ChainParts, built outside the hot path and swapped in
+// between two samples; the angle lives in SignalChain and goes on exactly.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/chain/filter_choice.h"
+#include "filters/chain/reading.h"
+#include "filters/chain/startup_noise.h"
+#include "filters/effects/compensator.h"
+#include "filters/estimator/estimator.h"
+#include "filters/estimator/settings.h"
+#include "filters/model/model.h"
+
+namespace ifog {
+
+struct ChainSettings {
+  SensorFacts facts;
+  std::vector<std::string> axes;          // "x", … or one ""
+  std::vector<std::string> channels;      // by index in Reading::channel, capture column names
+  std::vector<double> channel_max_age_s;  // older is stale; one a channel, 0: never
+  FilterChoice filter;      // over the model's; process or measurement noise 0 or not said: from start-up
+  double start_up_s = 4.0;  // of data for that
+  std::shared_ptr<const Model> model;  // null: nothing is compensated
+};
+
+enum ChainFlags : std::uint32_t {
+  kNoiseUnknown = 1,  // start-up: denoised is the compensated rate
+  kFilterReset = 2,   // first sample of a new estimator
+};
+
+struct ChainOutput {
+  std::array<double, kMaxAxes> compensated_radps{};
+  std::array<double, kMaxAxes> delta_theta_rad{};  // compensated, unfiltered
+  std::array<double, kMaxAxes> angle_rad{};        // running sum of delta_theta
+  EstimatorOutput estimate;                        // its variance includes the correction's
+  std::uint32_t flags = 0;                         // ChainFlags
+  std::uint32_t compensator_flags = 0;             // CompensatorFlags
+};
+
+// A sum that loses nothing: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher
+// Summen", ZAMM 54 (1974). Plain summation of 4·10^8 increments may lose 1e-9 rad; this keeps the error at
+// one rounding.
+class ExactSum {
+ public:
+  void add(double term) noexcept;
+  [[nodiscard]] double value() const noexcept { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0.0, lost_ = 0.0;
+};
+
+class ChainParts {
+ public:
+  // Throws std::invalid_argument or std::runtime_error with one line: a setting out of range, an effect of
+  // the model on a channel or an axis that the sensor does not have.
+  explicit ChainParts(const ChainSettings& settings);
+  ~ChainParts();
+
+  [[nodiscard]] const std::string& model_identity() const { return identity_; }
+  // The settings in use, with the noise once it is known.
+  [[nodiscard]] const FilterSettings& filter() const { return filter_; }
+  [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
+  // Effects of the model that cannot be corrected here, in words.
+  [[nodiscard]] std::vector<std::string> left_out() const;
+  // Null during start-up.
+  [[nodiscard]] const EstimatorHealth* health() const { return estimator_ ? &estimator_->health() : nullptr; }
+
+ private:
+  friend class SignalChain;
+  void use_effects(const ChainSettings& settings);
+  void compensate(const Increment& in, ChainOutput& out) noexcept;
+  void learn(const Increment& in, const ChainOutput& out);
+
+  SensorFacts facts_;
+  FilterSettings filter_;
+  std::string identity_;
+  double period_s_;
+  std::optional<Compensator> compensator_;
+  std::vector<std::size_t> wanted_;       // by the compensator: index in Increment::channel
+  std::vector<double> relative_age_max_;  // 1 / the age allowed, of each
+  std::vector<double> channel_, relative_age_;
+  CompensatorOutput correction_;
+  std::vector<double> start_up_;   // compensated rates, axis after axis
+  std::size_t start_up_size_ = 0;  // samples of an axis wanted
+  std::size_t collected_ = 0;
+  std::unique_ptr<Estimator> estimator_;
+  bool first_ = true;
+};
+
+class SignalChain {
+ public:
+  explicit SignalChain(std::unique_ptr<ChainParts> parts) : parts_(std::move(parts)) {}
+
+  // Hot path: no allocation, lock, log or exception, except once at the end of a start-up that had to learn
+  // the noise.
+  void process(const Increment& in, ChainOutput& out) noexcept;
+  // Between two samples. Returns the old parts, to be freed elsewhere.
+  std::unique_ptr<ChainParts> swap(std::unique_ptr<ChainParts> parts) noexcept;
+
+  [[nodiscard]] const ChainParts& parts() const { return *parts_; }
+
+ private:
+  std::unique_ptr<ChainParts> parts_;
+  std::array<ExactSum, kMaxAxes> angle_{};
+};
+
+}  // namespace ifog
