@@ -14,6 +14,7 @@ class RandomWalk final : public StateModel {
   }
   [[nodiscard]] Eigen::VectorXd measurement() const override { return Eigen::VectorXd::Ones(1); }
   [[nodiscard]] Eigen::VectorXd level() const override { return Eigen::VectorXd::Ones(1); }
+  [[nodiscard]] bool carries_level() const noexcept override { return true; }
   [[nodiscard]] Eigen::MatrixXd stationary() const override { return Eigen::MatrixXd::Zero(1, 1); }
   [[nodiscard]] Eigen::VectorXd diffuse() const override { return Eigen::VectorXd::Ones(1); }
 };
@@ -35,6 +36,7 @@ class IntegratedRandomWalk final : public StateModel {
   }
   [[nodiscard]] Eigen::VectorXd measurement() const override { return Eigen::Vector2d(1.0, 0.0); }
   [[nodiscard]] Eigen::VectorXd level() const override { return Eigen::Vector2d(1.0, 0.0); }
+  [[nodiscard]] bool carries_level() const noexcept override { return true; }
   [[nodiscard]] Eigen::MatrixXd stationary() const override { return Eigen::MatrixXd::Zero(2, 2); }
   [[nodiscard]] Eigen::VectorXd diffuse() const override {
     return Eigen::Vector2d(1.0, 1.0 / (period_s_ * period_s_));

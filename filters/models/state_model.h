@@ -40,6 +40,8 @@ class StateModel {
   // The direction in which the state moves when the rate changes by one; h'level = 1. Used to follow a
   // manoeuvre.
   [[nodiscard]] virtual Eigen::VectorXd level() const = 0;
+  // Whether a lasting change of rate belongs in this term rather than in a sum's other ones.
+  [[nodiscard]] virtual bool carries_level() const noexcept { return false; }
   // Stationary covariance for unit q, with zero rows for states that have none (those are listed in
   // diffuse()).
   [[nodiscard]] virtual Eigen::MatrixXd stationary() const = 0;

@@ -14,4 +14,7 @@ struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void add_convert(CLI::App& app);
+void add_drivers(CLI::App& app);
+
 }  // namespace ifog::tools

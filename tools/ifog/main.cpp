@@ -11,6 +11,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", IFOG_VERSION);
 
+  ifog::tools::add_convert(app);
+  ifog::tools::add_drivers(app);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

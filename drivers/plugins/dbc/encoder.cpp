@@ -78,6 +78,9 @@ std::uint64_t Encoder::bits_of(const Entry& entry, const ifog_sample& sample) co
     case Role::kCounter:
       return sent_;
     case Role::kStatus:
+      // A sample that did not come from such a device has a status all the same: the good one.
+      if (picks_.status_good && sample.valid_axes != 0)
+        return (sample.status & ~picks_.status_mask) | *picks_.status_good;
       return sample.status;
     case Role::kTime: {
       if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) == 0)

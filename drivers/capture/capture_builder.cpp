@@ -1,0 +1,123 @@
+#include "drivers/capture/capture_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+bool never_known(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
+}
+
+}  // namespace
+
+CaptureBuilder::CaptureBuilder(const ifog_description& description) : description_(description) {
+  for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
+  capture_.rate_radps.resize(description.axes);
+  capture_.reference_rate_radps.resize(description.axes);
+  for (std::uint32_t i = 0; i < description.environments; ++i)
+    capture_.channels.push_back({description.environment[i], {}});
+}
+
+void CaptureBuilder::choose_clock(const ifog_sample& sample) {
+  first_arrival_ns_ = sample.arrival_ns;
+  const bool rate_known = description_.nominal_rate_hz > 0.0;
+  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0)
+    clock_ = Clock::device;
+  else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known)
+    clock_ = Clock::counter;
+  else if (sample.arrival_ns != 0)
+    clock_ = Clock::arrival;
+  else if (rate_known)
+    clock_ = Clock::number;
+  else
+    throw std::runtime_error(
+        "the samples carry no time: expected the option rate_hz with the samples a second of the device");
+}
+
+// How many samples the device has taken since the last one.
+std::uint64_t CaptureBuilder::steps_to(const ifog_sample& sample) const {
+  const std::uint64_t modulus = description_.sequence_modulus;
+  if (modulus == 0 || (sample.flags & last_.flags & IFOG_SAMPLE_SEQUENCE) == 0) return 1;
+  std::uint64_t steps = (sample.sequence + modulus - last_.sequence % modulus) % modulus;
+  // A pause of whole turns of the counter shows only in the arrival times.
+  const double paused =
+      static_cast<double>(sample.arrival_ns - last_.arrival_ns) * 1e-9 * description_.nominal_rate_hz;
+  const double turns = std::round((paused - static_cast<double>(steps)) / static_cast<double>(modulus));
+  if (turns >= 1.0 && turns < 1e9) steps += static_cast<std::uint64_t>(turns) * modulus;
+  return steps;
+}
+
+double CaptureBuilder::seconds(const ifog_sample& sample) const {
+  constexpr double kNsPerSecond =
+      1e9;  // divided by, so that the result is the double nearest to the decimal time
+  switch (clock_) {
+    case Clock::device:
+      return static_cast<double>(sample.device_time_ns) / kNsPerSecond;
+    case Clock::arrival:
+      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond;
+    default:
+      return static_cast<double>(count_) / description_.nominal_rate_hz;
+  }
+}
+
+void CaptureBuilder::add(const ifog_sample& sample) {
+  const bool first = capture_.time_s.empty();
+  if (first) choose_clock(sample);
+  const std::uint64_t steps = first ? 0 : steps_to(sample);
+  count_ += steps;
+  if (steps > 1) missing_ += steps - 1;
+  const double now = seconds(sample);
+  const double elapsed = first ? kMissing : now - capture_.time_s.back();
+  if (elapsed <= 0.0)
+    throw std::runtime_error(
+        "sample " + std::to_string(capture_.size() + 1) + ": its time is " + std::to_string(now) + " s by " +
+        (clock_ == Clock::device    ? "the device's clock"
+         : clock_ == Clock::counter ? "its counter"
+                                    : "its arrival") +
+        ", expected more than the " + std::to_string(capture_.time_s.back()) + " s of the sample before");
+  double period = elapsed / static_cast<double>(std::max<std::uint64_t>(steps, 1));
+  if (first && description_.nominal_rate_hz > 0.0) period = 1.0 / description_.nominal_rate_hz;
+
+  capture_.time_s.push_back(now);
+  for (std::uint32_t i = 0; i < description_.axes; ++i) {
+    double rate = kMissing;
+    if ((sample.valid_axes & 1U << i) != 0) {
+      if (description_.kind == IFOG_RATE) {
+        rate = sample.value[i];
+      } else if (description_.kind == IFOG_DELTA_ANGLE) {
+        rate = sample.value[i] / period;
+      } else if ((last_.valid_axes & 1U << i) != 0) {
+        const double turned = sample.value[i] - last_.value[i];
+        const double wrap = description_.angle_wrap_rad;
+        rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
+      }
+    }
+    capture_.rate_radps[i].push_back(rate);
+  }
+  for (std::uint32_t i = 0; i < description_.environments; ++i)
+    capture_.channels[i].values.push_back((sample.environment_fresh & 1U << i) != 0 ? sample.environment[i]
+                                                                                    : kMissing);
+  last_ = sample;
+}
+
+Capture CaptureBuilder::finish() {
+  if (capture_.time_s.empty()) throw std::runtime_error("holds no sample that the driver understands");
+  for (std::size_t i = capture_.axes.size(); i-- > 0;) {
+    if (!never_known(capture_.rate_radps[i])) continue;
+    capture_.axes.erase(capture_.axes.begin() + static_cast<std::ptrdiff_t>(i));
+    capture_.rate_radps.erase(capture_.rate_radps.begin() + static_cast<std::ptrdiff_t>(i));
+    capture_.reference_rate_radps.pop_back();
+  }
+  if (capture_.axes.empty()) throw std::runtime_error("the device marks every value of every axis invalid");
+  std::erase_if(capture_.channels, [](const CaptureColumn& channel) { return never_known(channel.values); });
+  return std::move(capture_);
+}
+
+}  // namespace ifog

@@ -1,0 +1,49 @@
+// From the samples a driver delivers to a capture: rates in rad/s on a time axis in seconds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "drivers/capture/capture.h"
+#include "drivers/ifog/driver.h"
+
+namespace ifog {
+
+// Time, the first of these that the samples have:
+//   - the device's clock, as it is;
+//   - the sequence counter, unwrapped, over the nominal rate, from 0;
+//   - the arrival times, from 0;
+//   - the number of the sample over the nominal rate.
+// A delta angle becomes a rate over its own sample period, also behind a gap; an angle over the time since
+// the sample before, so the first sample has none. Axes the device marks invalid and environment values that
+// did not come with the sample are NaN.
+class CaptureBuilder {
+ public:
+  explicit CaptureBuilder(const ifog_description& description);
+
+  // Throws std::runtime_error with one line when time does not go on: the sample's number, both times, the
+  // cause.
+  void add(const ifog_sample& sample);
+
+  // Leaves out axes and channels that never had a value. Throws std::runtime_error if nothing is left.
+  Capture finish();
+
+  [[nodiscard]] std::size_t missing() const { return missing_; }  // samples the counter says were not there
+
+ private:
+  enum class Clock { undecided, device, counter, arrival, number };
+  void choose_clock(const ifog_sample& sample);
+  std::uint64_t steps_to(const ifog_sample& sample) const;
+  [[nodiscard]] double seconds(const ifog_sample& sample) const;
+
+  ifog_description description_;
+  Capture capture_;
+  Clock clock_ = Clock::undecided;
+  ifog_sample last_{};
+  std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
+  std::int64_t first_arrival_ns_ = 0;
+  std::size_t missing_ = 0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,173 @@
+#include "drivers/capture/capture_encoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::string seven_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.7g", value);
+  return text;
+}
+
+std::string list_of_axes(const ifog_description& d) {
+  std::string list;
+  for (std::uint32_t i = 0; i < d.axes; ++i)
+    list +=
+        (list.empty() ? "" : ", ") + (d.axis[i][0] == '\0' ? std::string("one without a name") : d.axis[i]);
+  return list;
+}
+
+std::size_t driver_axis(const ifog_description& d, const std::string& name) {
+  for (std::uint32_t i = 0; i < d.axes; ++i)
+    if (name == d.axis[i]) return i;
+  throw std::runtime_error("the driver has no axis '" + name + "', expected one of: " + list_of_axes(d));
+}
+
+}  // namespace
+
+double sample_rate_hz(const Capture& capture) {
+  if (capture.size() < 2) return 0.0;
+  std::vector<double> steps(capture.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = capture.time_s[i + 1] - capture.time_s[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  // Decimal times are not evenly spaced in binary: 1 / (0.015 − 0.010) is not quite 200.
+  return std::strtod(seven_digits(1.0 / *middle).c_str(), nullptr);
+}
+
+DriverSettings with_rate_of(const Capture& capture, const Plugin& plugin, DriverSettings settings) {
+  const ifog_option* option = plugin.table().options;
+  while (option->key != nullptr && std::string(option->key) != "rate_hz") ++option;
+  if (option->key != nullptr && capture.size() > 1)
+    settings.try_emplace("rate_hz", seven_digits(sample_rate_hz(capture)));
+  return settings;
+}
+
+CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, const std::string& axis)
+    : capture_(capture), driver_(driver), angle_(capture.axes.size(), 0.0) {
+  const ifog_description& d = driver.description();
+  rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : sample_rate_hz(capture);
+  if (capture.axes.size() == 1) {
+    const std::string& own = capture.axes.front();
+    const bool by_own_name = axis.empty() && !own.empty() && d.axes > 1;
+    axis_of_.push_back(!axis.empty() ? driver_axis(d, axis) : by_own_name ? driver_axis(d, own) : 0);
+  } else {
+    for (const std::string& name : capture.axes) axis_of_.push_back(driver_axis(d, name));
+  }
+  for (std::size_t i = 0; i < capture.axes.size(); ++i)
+    if (!capture.reference_rate_radps[i].empty())
+      notices_.push_back("left out, no device sends it: the reference rate" +
+                         (capture.axes[i].empty() ? "" : " of axis " + capture.axes[i]));
+
+  channels_.resize(d.environments, nullptr);
+  std::string without_place;
+  std::string without_column;
+  const auto add = [](std::string& list, const std::string& name) {
+    list += (list.empty() ? "" : ", ") + name;
+  };
+  for (const CaptureColumn& channel : capture.channels) {
+    std::size_t at = 0;
+    while (at < d.environments && channel.name != d.environment[at]) ++at;
+    if (at < d.environments)
+      channels_[at] = &channel.values;
+    else
+      add(without_place, channel.name);
+  }
+  for (std::uint32_t i = 0; i < d.environments; ++i)
+    if (channels_[i] == nullptr) add(without_column, d.environment[i]);
+  if (!without_place.empty())
+    notices_.push_back("left out, the format as set up has no place for it: " + without_place);
+  if (!without_column.empty())
+    notices_.push_back("not in the capture, sent as unknown or else as 0: " + without_column);
+
+  std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
+}
+
+ifog_sample CaptureEncoder::next_sample() {
+  const ifog_description& d = driver_.description();
+  const double now = capture_.time_s[row_];
+  const double elapsed = row_ == 0 ? 1.0 / rate_hz_ : now - capture_.time_s[row_ - 1];
+  const double periods = elapsed * rate_hz_;
+  // Below one and a half it is jitter of the recorded times, not a missing row.
+  const std::uint64_t steps = periods < 1.5 ? 1 : static_cast<std::uint64_t>(std::llround(periods));
+  if (row_ != 0) count_ += steps;
+
+  sample_.arrival_ns = std::llround(now * 1e9);
+  sample_.device_time_ns = sample_.arrival_ns;
+  sample_.flags = IFOG_SAMPLE_DEVICE_TIME;
+  if (d.sequence_modulus != 0) {
+    sample_.flags |= IFOG_SAMPLE_SEQUENCE;
+    sample_.sequence = static_cast<std::uint32_t>(count_ % d.sequence_modulus);
+  }
+  sample_.valid_axes = 0;
+  std::fill(std::begin(sample_.value), std::end(sample_.value), kMissing);
+  for (std::size_t i = 0; i < axis_of_.size(); ++i) {
+    const double rate = capture_.rate_radps[i][row_];
+    double value = rate;
+    if (d.kind == IFOG_DELTA_ANGLE) value = rate * elapsed / static_cast<double>(steps);
+    if (d.kind == IFOG_ANGLE && !std::isnan(rate)) {
+      angle_[i] += rate * elapsed;
+      value = d.angle_wrap_rad > 0.0 ? std::remainder(angle_[i], d.angle_wrap_rad) : angle_[i];
+    }
+    if (std::isnan(value)) continue;
+    sample_.value[axis_of_[i]] = value;
+    sample_.valid_axes |= 1U << axis_of_[i];
+  }
+  sample_.environment_fresh = 0;
+  for (std::uint32_t i = 0; i < channels_.size(); ++i) {
+    if (channels_[i] == nullptr || std::isnan((*channels_[i])[row_])) continue;
+    sample_.environment[i] = (*channels_[i])[row_];
+    sample_.environment_fresh |= 1U << i;
+  }
+  return sample_;
+}
+
+template <typename Out>
+bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const ifog_sample&, Out&)) {
+  if (row_ == capture_.size()) return false;
+  ifog_sample sample = next_sample();
+  const ifog_description& d = driver_.description();
+  const auto refuse = [&](const std::runtime_error& error) {
+    throw std::runtime_error("at " + std::to_string(capture_.time_s[row_]) + " s: " + error.what());
+  };
+  try {
+    (driver_.*encode)(sample, out);
+  } catch (const std::runtime_error& error) {
+    if (sample.valid_axes == 0) {
+      ++left_out_;
+    } else if (d.kind == IFOG_ANGLE && d.angle_wrap_rad > 0.0) {
+      // An unsigned angle runs from 0, not from minus half a turn.
+      for (double& value : sample.value)
+        if (value < 0.0) value += d.angle_wrap_rad;
+      try {
+        (driver_.*encode)(sample, out);
+      } catch (const std::runtime_error& again) {
+        refuse(again);
+      }
+    } else {
+      refuse(error);
+    }
+  }
+  ++row_;
+  return true;
+}
+
+bool CaptureEncoder::next(std::vector<std::uint8_t>& bytes) {
+  return encode_next(bytes, &DriverInstance::encode_bytes);
+}
+
+bool CaptureEncoder::next(std::vector<ifog_can_frame>& frames) {
+  return encode_next(frames, &DriverInstance::encode_can);
+}
+
+}  // namespace ifog

@@ -1,0 +1,61 @@
+// The inverse of a recording: a capture as the frames that a device would have sent, by its driver's encoder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/capture.h"
+#include "drivers/host/driver_instance.h"
+
+namespace ifog {
+
+// Samples a second: one over the median time step, to seven digits. 0 for a single row.
+double sample_rate_hz(const Capture& capture);
+
+// The driver's settings with `rate_hz` set from the capture, where the driver has that option and nobody set
+// it.
+DriverSettings with_rate_of(const Capture& capture, const Plugin& plugin, DriverSettings settings);
+
+// Rows become samples in order. The rate is turned into the driver's kind: a delta angle over the sample
+// period, or an angle that sums up and wraps. The counter counts sample periods, so that missing rows are a
+// gap in it. Environment columns go by their name; what is missing in a row is held from the row before.
+class CaptureEncoder {
+ public:
+  // A capture of one axis goes to the driver's axis `axis`, or to its first when that is empty; several axes
+  // go by their names. Throws std::runtime_error: an axis the driver does not have. Keeps references to both.
+  CaptureEncoder(const Capture& capture, DriverInstance& driver, const std::string& axis = {});
+
+  // One line for each column that the format has no place for, and for each that it has but the capture
+  // lacks.
+  [[nodiscard]] const std::vector<std::string>& notices() const { return notices_; }
+
+  // The next row, encoded and appended. False after the last row. Throws std::runtime_error with the row's
+  // time and what it cannot express.
+  bool next(std::vector<std::uint8_t>& bytes);
+  bool next(std::vector<ifog_can_frame>& frames);
+
+  [[nodiscard]] std::size_t rows_done() const { return row_; }
+  // Rows without a rate, in a format that cannot say so: sent as nothing, which is a gap in the counter.
+  [[nodiscard]] std::size_t rows_left_out() const { return left_out_; }
+
+ private:
+  template <typename Out>
+  bool encode_next(Out& out, void (DriverInstance::*encode)(const ifog_sample&, Out&));
+  ifog_sample next_sample();
+
+  const Capture& capture_;
+  DriverInstance& driver_;
+  std::vector<std::size_t> axis_of_;                  // by the capture's axis: the driver's
+  std::vector<const std::vector<double>*> channels_;  // by the driver's environment channel, null: not there
+  std::vector<std::string> notices_;
+  std::vector<double> angle_;  // by the capture's axis
+  ifog_sample sample_{};
+  std::size_t row_ = 0;
+  std::size_t left_out_ = 0;
+  std::uint64_t count_ = 0;
+  double rate_hz_ = 0.0;
+};
+
+}  // namespace ifog

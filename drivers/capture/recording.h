@@ -1,0 +1,40 @@
+// A recording of what a device sent, put through its driver: raw bytes, or a candump log. Plain or gzip.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "drivers/host/driver_instance.h"
+
+namespace ifog {
+
+enum class FileKind {
+  capture,  // .csv
+  candump,  // .log, .candump
+  bytes,    // .bin, .kvh, .raw, .dat, .txt
+  lcm_log,  // begins with an LCM event, or is called .lcm
+  unknown
+};
+
+// By the ending (before .gz), and for a file without a telling one by its first bytes; the file need not
+// exist.
+FileKind file_kind(const std::string& path);
+
+struct RecordingCounts {
+  std::size_t samples = 0;
+  ifog_driver_counters driver{};
+  std::uint64_t bytes_at_end = 0;  // a frame that the file ends within; also in bytes_skipped
+  std::size_t remote_frames = 0, error_frames = 0;  // of a candump log; passed over
+};
+
+// Feeds the whole recording to the driver, as `candump` if the driver takes CAN frames, else as bytes; of a
+// candump log only one interface's frames unless `interface` is empty. A log's frames arrive at their
+// recorded times; raw bytes have none and arrive at 0. Throws std::runtime_error with one line (file, line,
+// what was expected).
+RecordingCounts decode_recording(const std::string& path, DriverInstance& driver,
+                                 const std::string& interface,
+                                 const std::function<void(const ifog_sample&)>& sink);
+
+}  // namespace ifog

@@ -1,0 +1,72 @@
+// Scores the diagnosis on sensors whose effects it is not told of. Without arguments: 1000 sensors with
+// effects of 12 to 80 sigma and 1000 without any. Every sensor can be made again from its seed.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "tests/bench/undeclared/oracle_diagnosis.h"
+#include "tests/bench/undeclared/tally.h"
+
+using namespace ifog::undeclared;
+
+namespace {
+
+struct Options {
+  int with = 1000, without = 1000, captures = 1;
+  std::uint64_t seed = 1;
+  double sigma_low = 12.0, sigma_high = 80.0;
+  std::string kind, method = "oracle";
+  bool curve = false, quiet = false;
+};
+
+// The next sensor of the series; `place` walks through the kinds so that every size meets every kind.
+Sensor sensor_at(const Options& o, int place, bool with_effect) {
+  const std::uint64_t seed =
+      o.seed * 1'000'000U + (with_effect ? 0U : 500'000U) + static_cast<std::uint64_t>(place);
+  Draw draw(seed, 999);
+  const auto& kinds = kinds_with_effect();
+  Kind kind = with_effect      ? kinds[static_cast<std::size_t>(place) % kinds.size()]
+              : place % 4 == 3 ? Kind::kLookalike
+                               : Kind::kNothing;
+  if (with_effect && !o.kind.empty()) {
+    for (const Kind k : kinds)
+      if (o.kind == name_of(k)) kind = k;
+  }
+  const double sigma = o.curve ? 4.0 + place / static_cast<int>(kinds.size()) % 9
+                               : draw.log_uniform(o.sigma_low, o.sigma_high);
+  return draw_sensor(seed, kind, sigma, o.captures);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CLI::App app{"score the diagnosis on undeclared effects"};
+  app.add_option("--with", o.with, "sensors with effects");
+  app.add_option("--without", o.without, "sensors without");
+  app.add_option("--captures", o.captures, "captures of each sensor, diagnosed together")
+      ->check(CLI::Range(1, 3));
+  app.add_option("--seed", o.seed, "of the series");
+  app.add_option("--sigma-low", o.sigma_low);
+  app.add_option("--sigma-high", o.sigma_high);
+  app.add_option("--kind", o.kind, "only this kind, as named in the table");
+  app.add_option("--method", o.method)->check(CLI::IsMember({"oracle", "blind"}));
+  app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
+  app.add_flag("--quiet", o.quiet, "no list of failures");
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<Score> scores;
+  const auto run = [&](int count, bool with_effect) {
+    for (int i = 0; i < count; ++i) {
+      const Sensor sensor = sensor_at(o, i, with_effect);
+      scores.push_back(score(sensor, o.method == "oracle" ? oracle_diagnosis(sensor) : blind_diagnosis()));
+      if ((i + 1) % 50 == 0) std::fprintf(stderr, "%d of %d\n", i + 1, count);
+    }
+  };
+  run(o.with, true);
+  run(o.without, false);
+  if (!o.quiet) print_failures(std::cout, scores);
+  print(std::cout, scores);
+  return 0;
+}

@@ -1,0 +1,69 @@
+// What a diagnosis said against what was hidden, by names first and by an oracle second.
+//
+// A true effect is found *exactly* when form and channel (and the partner of a product) are named as hidden.
+// It is found *equivalently* when other names were given, but their waveforms reproduce the hidden ones so
+// well that what is left would be visible below 3 sigma in the captures diagnosed: with the true noise known,
+// nobody could have told them apart. Both count as right; they are reported apart. Every found effect that is
+// neither is extra; an equivalent explanation must also be free of parts that it could do without.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filters/model/model.h"
+#include "tests/bench/undeclared/sensor.h"
+
+namespace ifog::undeclared {
+
+struct FoundEffect {
+  Effect effect;
+  // rad/s over another capture of the same sensor, causal, as the daemon would subtract it.
+  std::function<std::vector<double>(const Capture&)> waveform;
+};
+
+struct Finding {
+  std::vector<FoundEffect> effects;
+  bool unexplained = false;  // "something is left that no form describes"
+  // Standard deviation of the heading error, rad, that the sensor's model predicts for a capture, its
+  // switch-on bias being estimated from `align_s` at the start. Empty when the diagnosis does not predict it.
+  std::function<double(const Capture&, double align_s)> heading_sigma;
+};
+
+using Diagnose = std::function<Finding(const std::vector<Capture>&)>;
+
+struct Parameter {
+  std::string name;  // "linear temperature_degC coefficient"
+  double error_in_sigma = 0.0;
+};
+
+struct Score {
+  Kind kind = Kind::kNothing;
+  std::uint64_t seed = 0;
+  double sigma = 0.0;
+  int hidden = 0, exact = 0, equivalent = 0, missed = 0, extra = 0;
+  bool unexplained = false;
+  // On another capture: RMS of 10 s means of (estimated - true effect) and of the true effect, over the RMS
+  // of 10 s means of the sensor's own noise about its mean. `shape_error` leaves the mean out, which a
+  // switch-on bias hides.
+  double effect_error = 0.0, shape_error = 0.0, effect_size = 0.0;
+  bool transferable = true;  // false: a step, or a line, whose phase in another capture nothing can tell
+  std::vector<Parameter> parameters;
+  std::optional<double> heading_square;  // (heading error found / predicted)^2 on another capture
+  std::string names;                     // what was found, for the log
+  double seconds = 0.0;
+
+  [[nodiscard]] bool right() const { return missed == 0; }
+};
+
+// `align_s`: how long the switch-on bias is averaged before the heading is counted.
+Score score(const Sensor& sensor, const Diagnose& diagnose);
+
+// Means of consecutive blocks of `seconds`; the incomplete last one is left out.
+std::vector<double> block_means(const std::vector<double>& x, double dt_s, double seconds);
+
+std::string name_of(const Effect& effect);
+
+}  // namespace ifog::undeclared

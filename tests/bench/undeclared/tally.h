@@ -1,0 +1,33 @@
+// Scores of many sensors as tables, by kind and by size, with the promises they are held to.
+#pragma once
+
+#include <ostream>
+#include <vector>
+
+#include "tests/bench/undeclared/scoring.h"
+
+namespace ifog::undeclared {
+
+struct Totals {
+  int sensors = 0, right = 0, exact = 0, missed = 0,
+      extra = 0;  // sensors, not effects; uncovered ones not among them
+  int effect_free = 0, false_alarms = 0;
+  int uncovered = 0, uncovered_said = 0, made_worse = 0;
+  double error_median = 0.0, error_p90 = 0.0;              // of transferable effects rightly found or missed
+  double shape_error_median = 0.0, shape_error_p90 = 0.0;  // the same without the mean
+  double coverage = 0.0;                                   // of 95 % intervals
+  int intervals = 0;
+  double heading_square = 0.0;  // mean
+  int headings = 0;
+  double seconds_each = 0.0;
+};
+
+Totals total(const std::vector<Score>& scores);
+
+// Tables: by kind; by size when sizes differ; parameters' coverage by name; the totals beside their targets.
+void print(std::ostream& out, const std::vector<Score>& scores);
+
+// One line a wrong sensor, enough to make it again.
+void print_failures(std::ostream& out, const std::vector<Score>& scores);
+
+}  // namespace ifog::undeclared

@@ -1,0 +1,134 @@
+// The likelihood against the multivariate normal density of the whole record with its dense covariance
+// matrix. The autocovariances come from the process's own definition, not from the state-space form under
+// test.
+#include "filters/kalman/likelihood.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace {
+
+constexpr double kPeriod = 0.01;
+
+// Autocovariance of an ARMA process for unit shocks, from its infinite moving average.
+std::vector<double> autocovariance(std::vector<double> phi, std::vector<double> theta, std::size_t lags) {
+  std::vector<double> psi(20000, 0.0);
+  for (std::size_t i = 0; i < psi.size(); ++i) {
+    psi[i] = i == 0 ? 1.0 : (i <= theta.size() ? theta[i - 1] : 0.0);
+    for (std::size_t j = 0; j < phi.size() && j < i; ++j) psi[i] += phi[j] * psi[i - 1 - j];
+  }
+  std::vector<double> gamma(lags, 0.0);
+  for (std::size_t k = 0; k < lags; ++k) {
+    for (std::size_t i = 0; i + k < psi.size(); ++i) gamma[k] += psi[i] * psi[i + k];
+  }
+  return gamma;
+}
+
+double dense_log_likelihood(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& record) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const double log_determinant = 2.0 * Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
+  const Eigen::VectorXd white = factor.matrixL().solve(record);
+  return -0.5 * (static_cast<double>(record.size()) * std::log(2 * std::numbers::pi) + log_determinant +
+                 white.squaredNorm());
+}
+
+struct Case {
+  const char* name;
+  std::vector<double> phi, theta;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+class ArmaLikelihood : public testing::TestWithParam<Case> {};
+
+TEST_P(ArmaLikelihood, IsThatOfTheDenseCovariance) {
+  const Case& c = GetParam();
+  constexpr int kLength = 120;
+  constexpr double kProcess = 3e-6, kMeasurement = 2e-8;
+  const std::vector<double> gamma = autocovariance(c.phi, c.theta, kLength);
+  Eigen::MatrixXd covariance(kLength, kLength);
+  for (int i = 0; i < kLength; ++i) {
+    for (int j = 0; j < kLength; ++j) {
+      covariance(i, j) = kProcess * kPeriod * gamma[static_cast<std::size_t>(std::abs(i - j))];
+    }
+  }
+  covariance.diagonal().array() += kMeasurement;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd white(kLength);
+  for (double& value : white) value = normal(random);
+  const Eigen::VectorXd drawn = Eigen::MatrixXd(covariance.llt().matrixL()) * white;
+
+  std::vector<double> parameters = c.phi;
+  parameters.insert(parameters.end(), c.theta.begin(), c.theta.end());
+  const auto model = ifog::make_state_model(c.name, parameters, kPeriod);
+  std::vector<double> record(drawn.begin(), drawn.end());
+  EXPECT_NEAR(ifog::likelihood(*model, kProcess, kMeasurement, record, kPeriod).log_likelihood(),
+              dense_log_likelihood(covariance, drawn), 1e-7);
+
+  // A missing sample is a row and a column that are not there.
+  constexpr int kMissing = 40;
+  record[kMissing] = std::numeric_limits<double>::quiet_NaN();
+  Eigen::MatrixXd without(kLength - 1, kLength - 1);
+  Eigen::VectorXd kept(kLength - 1);
+  for (int i = 0; i < kLength - 1; ++i) {
+    const int from_i = i < kMissing ? i : i + 1;
+    kept(i) = drawn(from_i);
+    for (int j = 0; j < kLength - 1; ++j) without(i, j) = covariance(from_i, j < kMissing ? j : j + 1);
+  }
+  EXPECT_NEAR(ifog::likelihood(*model, kProcess, kMeasurement, record, kPeriod).log_likelihood(),
+              dense_log_likelihood(without, kept), 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, ArmaLikelihood,
+                         testing::Values(Case{"ar(1)", {0.9}, {}}, Case{"ar(2)", {1.5, -0.7}, {}},
+                                         Case{"arma(1,1)", {0.8}, {-0.4}},
+                                         Case{"arma(2,2)", {0.6, 0.2}, {0.5, 0.3}},
+                                         Case{"arma(0,2)", {}, {0.7, -0.2}}));
+
+TEST(GaussMarkovLikelihood, IsThatOfTheDenseCovariance) {
+  constexpr int kLength = 100;
+  constexpr double kTau = 0.2, kProcess = 4e-7, kMeasurement = 1e-8;
+  Eigen::MatrixXd covariance(kLength, kLength);
+  for (int i = 0; i < kLength; ++i) {
+    for (int j = 0; j < kLength; ++j) {
+      covariance(i, j) = 0.5 * kProcess * kTau * std::exp(-std::abs(i - j) * kPeriod / kTau);
+    }
+  }
+  covariance.diagonal().array() += kMeasurement;
+  Eigen::VectorXd record(kLength);
+  for (int i = 0; i < kLength; ++i) record(i) = 2e-4 * std::sin(0.7 * i) + 1e-4 * std::cos(0.05 * i * i);
+  const auto model = ifog::make_state_model("gauss-markov", std::vector{kTau}, kPeriod);
+  EXPECT_NEAR(
+      ifog::likelihood(*model, kProcess, kMeasurement, std::vector(record.begin(), record.end()), kPeriod)
+          .log_likelihood(),
+      dense_log_likelihood(covariance, record), 1e-7);
+}
+
+// With a free starting value the differences of a random walk in white noise carry all the information: their
+// likelihood is the diffuse one. Cov of the differences: q dt + 2R on the diagonal, -R beside it.
+TEST(RandomWalkLikelihood, IsThatOfItsDifferences) {
+  constexpr int kLength = 150;
+  constexpr double kProcess = 2e-7, kMeasurement = 3e-8;
+  std::vector<double> record(kLength);
+  for (std::size_t i = 0; i < record.size(); ++i)
+    record[i] = 0.02 + 2e-4 * std::sin(1.3 * static_cast<double>(i * i));
+  Eigen::VectorXd differences(kLength - 1);
+  for (int i = 0; i + 1 < kLength; ++i) {
+    differences(i) = record[static_cast<std::size_t>(i + 1)] - record[static_cast<std::size_t>(i)];
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(kLength - 1, kLength - 1);
+  covariance.diagonal().setConstant(kProcess * kPeriod + 2 * kMeasurement);
+  covariance.diagonal(1).setConstant(-kMeasurement);
+  covariance.diagonal(-1).setConstant(-kMeasurement);
+  const auto model = ifog::make_state_model("random-walk", {}, kPeriod);
+  const auto terms = ifog::likelihood(*model, kProcess, kMeasurement, record, kPeriod);
+  EXPECT_EQ(terms.count, kLength - 1);
+  EXPECT_NEAR(terms.log_likelihood(), dense_log_likelihood(covariance, differences), 1e-4);
+}
+
+}  // namespace

@@ -1,0 +1,80 @@
+// ifog drivers: which protocol plugins are found, where, with which options; which were refused and why.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/host/plugin.h"
+#include "tools/ifog/commands.h"
+
+namespace ifog::tools {
+namespace {
+
+std::string transports(const ifog_driver& table) {
+  std::string text;
+  if ((table.transports & IFOG_TRANSPORT_BYTES) != 0) text += "bytes";
+  if ((table.transports & IFOG_TRANSPORT_CAN) != 0) text += text.empty() ? "CAN" : ", CAN";
+  if (table.encode_bytes != nullptr || table.encode_can != nullptr) text += ", encodes";
+  return text;
+}
+
+std::string note_of(const FoundPlugin& found) {
+  return found.hidden ? "  (not used: a folder before this one has a driver of this name)" : "";
+}
+
+void print(const FoundPlugin& found) {
+  const ifog_driver& table = found.plugin->table();
+  std::printf("%s %s: %s\n  takes %s; interface version %u\n  %s%s\n", table.name, table.version,
+              table.summary, transports(table).c_str(), table.abi, found.path.c_str(),
+              note_of(found).c_str());
+  std::size_t width = 0;
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option)
+    width = std::max(width, std::strlen(option->key));
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
+    std::string standard = "must be given";
+    if (option->default_value != nullptr)
+      standard =
+          option->default_value[0] == '\0' ? "default none" : std::string("default ") + option->default_value;
+    std::printf("    %-*s  %s\n    %-*s  %s; %s\n", static_cast<int>(width), option->key, option->help,
+                static_cast<int>(width), "", option->values, standard.c_str());
+  }
+  std::printf("\n");
+}
+
+void run(const std::string& name) {
+  const std::vector<std::string> folders = plugin_folders();
+  if (!name.empty()) {
+    FoundPlugin one;
+    one.plugin = find_plugin(name, folders);
+    one.path = one.plugin->path();
+    print(one);
+    return;
+  }
+  const std::vector<FoundPlugin> all = list_plugins(folders);
+  std::size_t usable = 0;
+  for (const FoundPlugin& found : all) {
+    if (!found.plugin) continue;
+    ++usable;
+    print(found);
+  }
+  for (const FoundPlugin& found : all)
+    if (!found.plugin) std::printf("refused: %s\n", found.refusal.c_str());
+  std::printf("looked in:\n");
+  for (const std::string& folder : folders) std::printf("  %s\n", folder.c_str());
+  if (usable == 0) throw std::runtime_error("no driver found; IFOG_PLUGIN_PATH may name folders to look in");
+}
+
+}  // namespace
+
+void add_drivers(CLI::App& app) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
+  command->add_option("NAME", *name, "Only this driver");
+  command->callback([name] { run(*name); });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,16 @@
+// The rate_t messages of a log made by lcm-logger, as a capture of what the sensor measured.
+#pragma once
+
+#include <string>
+
+#include "drivers/capture/capture.h"
+
+namespace ifog::tools {
+
+// `channel` empty: the log's only IFOG_… channel with rates. Time is the sensor's own clock where it has one,
+// else the fitted time, counted from the first message. Throws std::runtime_error with one line: no log, no
+// such channel (those there are named), several where none was chosen, a message that is no rate_t, time that
+// does not go on.
+Capture read_lcm_log(const std::string& path, const std::string& channel);
+
+}  // namespace ifog::tools
