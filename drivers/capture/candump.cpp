@@ -183,7 +183,9 @@ Candump read_candump(const std::string& path, std::string_view interface) {
     if (kind == CandumpLine::blank || (!interface.empty() && entry.interface != interface)) continue;
     if (kind == CandumpLine::remote) ++log.remote;
     if (kind == CandumpLine::error) ++log.error;
-    if (kind == CandumpLine::frame) log.frames.push_back(entry.frame);
+    if (kind != CandumpLine::frame) continue;
+    if (log.frames.empty()) log.interface = entry.interface;
+    log.frames.push_back(entry.frame);
   }
   return log;
 }

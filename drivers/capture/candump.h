@@ -35,6 +35,7 @@ std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view in
 
 struct Candump {
   std::vector<ifog_can_frame> frames;  // data frames, as in the log
+  std::string interface;               // of the first of them
   std::size_t remote = 0, error = 0;   // frames passed over
 };
 

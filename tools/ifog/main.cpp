@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
 
   ifog::tools::add_convert(app);
   ifog::tools::add_drivers(app);
+  ifog::tools::add_replay(app);
 
   try {
     app.parse(argc, argv);

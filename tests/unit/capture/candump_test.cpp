@@ -84,6 +84,7 @@ TEST(CandumpFile, RefusesWithFileAndLine) {
   const ifog::Candump log = ifog::read_candump(path, "can0");
   ASSERT_EQ(log.frames.size(), 1U);
   EXPECT_EQ(log.frames[0].data[0], 0x11);
+  EXPECT_EQ(log.interface, "can0");
   EXPECT_EQ(log.remote, 1U);
   EXPECT_EQ(log.error, 1U);
   std::ofstream(path) << "(1.0) can0 123#11\n(1.1) can0 123#2";
