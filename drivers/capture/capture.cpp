@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "drivers/capture/text_file.h"
 
@@ -98,22 +99,23 @@ void append(std::string& out, double value) {
 
 }  // namespace
 
-Capture read_capture(const std::string& path) {
+Table read_table(const std::string& path) {
   const std::string text = read_text_file(path);
-  Capture capture;
+  Table table;
   Lines lines(text);
   std::string_view line;
   std::vector<std::string> names;
   while (lines.next(line)) {
     if (trimmed(line).empty()) continue;
     if (line.front() == '#') {
-      capture.comments.emplace_back(trimmed(line.substr(1)));
+      table.comments.emplace_back(trimmed(line.substr(1)));
       continue;
     }
     names = split_header(line);
     break;
   }
   if (names.empty()) throw std::runtime_error(path + ": no header line, expected 'time_s,rate_radps,…'");
+  table.header_line = lines.number();
   if (names.front() != "time_s")
     fail(path, lines.number(), "first column is '" + names.front() + "', expected 'time_s'");
 
@@ -123,37 +125,23 @@ Capture read_capture(const std::string& path) {
     if (!seen.insert(name).second) fail(path, lines.number(), "column '" + name + "' stands twice");
   }
 
-  // Where each column's values go; the vectors below must not move any more once their addresses are taken.
-  std::vector<std::vector<double>*> target(names.size());
-  target[0] = &capture.time_s;
-  std::string axis;
-  for (const std::string& name : names)
-    if (axis_of(name, "rate", axis)) capture.axes.push_back(axis);
-  if (capture.axes.empty())
-    fail(path, lines.number(), "no rate column, expected 'rate_radps' or 'rate_x_radps', …");
-  capture.rate_radps.resize(capture.axes.size());
-  capture.reference_rate_radps.resize(capture.axes.size());
-  const auto index_of = [&](const std::string& name) {
-    for (std::size_t i = 0; i < capture.axes.size(); ++i)
-      if (capture.axes[i] == name) return i;
-    fail(path, lines.number(), "reference column of axis '" + name + "' has no rate column beside it");
-  };
-  capture.channels.reserve(names.size());
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    if (axis_of(names[i], "rate", axis)) {
-      target[i] = &capture.rate_radps[index_of(axis)];
-    } else if (axis_of(names[i], "reference_rate", axis)) {
-      target[i] = &capture.reference_rate_radps[index_of(axis)];
-    } else {
-      capture.channels.push_back({names[i], {}});
-      target[i] = &capture.channels.back().values;
-    }
+  // Where each column's values go; nothing is added to table.columns once the addresses are taken.
+  std::vector<std::vector<double>*> target{&table.time_s};
+  for (std::size_t i = 1; i < names.size(); ++i) table.columns.push_back({names[i], {}});
+  for (CaptureColumn& column : table.columns) target.push_back(&column.values);
+  // Rows are about as long as the first; one allocation that is large enough beats doubling through a long
+  // record.
+  const std::size_t first_row = text.find('\n', static_cast<std::size_t>(line.data() - text.data()));
+  if (first_row != std::string::npos) {
+    const std::size_t length = text.find('\n', first_row + 1) - first_row;
+    const std::size_t rows = length > 1 && length < text.size() ? (text.size() - first_row) / length + 1 : 1;
+    for (std::vector<double>* values : target) values->reserve(rows + rows / 16);
   }
 
   while (lines.next(line)) {
     if (trimmed(line).empty()) continue;
     if (line.front() == '#') {
-      capture.comments.emplace_back(trimmed(line.substr(1)));
+      table.comments.emplace_back(trimmed(line.substr(1)));
       continue;
     }
     std::size_t column = 0;
@@ -172,14 +160,58 @@ Capture read_capture(const std::string& path) {
       fail(path, lines.number(),
            std::to_string(column) + " cells, expected " + std::to_string(names.size()) +
                " (a truncated line?)");
-    const double now = capture.time_s.back();
+    const double now = table.time_s.back();
     if (std::isnan(now)) fail(path, lines.number(), "time_s is missing, expected seconds");
-    if (capture.time_s.size() > 1 && now <= capture.time_s[capture.time_s.size() - 2])
+    if (table.time_s.size() > 1 && now <= table.time_s[table.time_s.size() - 2])
       fail(path, lines.number(),
            "time_s is " + std::string(trimmed(line.substr(0, line.find(',')))) +
                ", expected more than in the row before");
   }
-  if (capture.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
+  if (table.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
+  return table;
+}
+
+std::size_t line_of_row(const std::string& path, std::size_t row) {
+  const std::string text = read_text_file(path);
+  Lines lines(text);
+  std::string_view line;
+  bool header = true;
+  while (lines.next(line)) {
+    if (trimmed(line).empty() || line.front() == '#') continue;
+    if (header) {
+      header = false;
+    } else if (row-- == 0) {
+      return lines.number();
+    }
+  }
+  return 0;
+}
+
+Capture read_capture(const std::string& path) {
+  Table table = read_table(path);
+  Capture capture;
+  capture.comments = std::move(table.comments);
+  capture.time_s = std::move(table.time_s);
+  std::string axis;
+  for (const CaptureColumn& column : table.columns)
+    if (axis_of(column.name, "rate", axis)) capture.axes.push_back(axis);
+  if (capture.axes.empty())
+    fail(path, table.header_line, "no rate column, expected 'rate_radps' or 'rate_x_radps', …");
+  capture.rate_radps.resize(capture.axes.size());
+  capture.reference_rate_radps.resize(capture.axes.size());
+  const auto index_of = [&](const std::string& name) {
+    for (std::size_t i = 0; i < capture.axes.size(); ++i)
+      if (capture.axes[i] == name) return i;
+    fail(path, table.header_line, "reference column of axis '" + name + "' has no rate column beside it");
+  };
+  for (CaptureColumn& column : table.columns) {
+    if (axis_of(column.name, "rate", axis))
+      capture.rate_radps[index_of(axis)] = std::move(column.values);
+    else if (axis_of(column.name, "reference_rate", axis))
+      capture.reference_rate_radps[index_of(axis)] = std::move(column.values);
+    else
+      capture.channels.push_back(std::move(column));
+  }
   return capture;
 }
 

@@ -3,6 +3,7 @@
 // environment channels NAME_UNIT. Empty or `nan` is missing. `.gz` is read and written through zlib.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,22 @@ struct Capture {
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
+
+// The columns as they stand in the file, whatever they are called; `ifog denoise` writes such a file without
+// a rate.
+struct Table {
+  std::vector<std::string> comments;
+  std::vector<double> time_s;
+  std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
+  std::size_t header_line = 0;
+};
+
+// Refuses what read_capture refuses, but needs no rate column.
+Table read_table(const std::string& path);
+
+// The line of a data row (counted from 0), for messages about its values; 0 when the file has fewer. Reads
+// the file.
+std::size_t line_of_row(const std::string& path, std::size_t row);
 
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
 // Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line

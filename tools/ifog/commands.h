@@ -9,6 +9,8 @@ class App;
 
 namespace ifog::tools {
 
+void add_allan(CLI::App& app);
+
 // What a command throws after it has told the user why: exit code 1, no further message.
 struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
                "ifog"};
   app.require_subcommand(1);
   app.set_version_flag("--version", IFOG_VERSION);
+  ifog::tools::add_allan(app);
 
   ifog::tools::add_convert(app);
   ifog::tools::add_drivers(app);

@@ -1,0 +1,34 @@
+// What a capture's time column says before any variance is taken: the true sample time, and where samples are
+// missing. An Allan variance over a hole would compare averages that do not touch, so holes end a stretch.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ifog {
+
+// Samples begin … end − 1, evenly spaced and all present.
+struct Stretch {
+  std::size_t begin = 0, end = 0;
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+};
+
+struct SampleClock {
+  double period_s = 0.0;        // mean of the steps that are no gap
+  double worst_jitter_s = 0.0;  // largest distance of such a step from period_s
+  std::size_t gaps = 0;         // steps longer than 1.5 periods
+  std::size_t missing = 0;      // samples that fit into them
+  std::size_t first_gap = 0;    // index of the sample before the first gap; meaningful when gaps > 0
+};
+
+// time_s strictly increasing, at least two samples; throws std::invalid_argument otherwise. The median step
+// decides what a gap is, so up to half of the steps may be gaps. Time stamps rounded to coarse ticks
+// alternate between steps of k and k + 1 ticks; a step counts as a gap only if the stamps stay late after it.
+[[nodiscard]] SampleClock sample_clock(std::span<const double> time_s);
+
+// The runs without gap or NaN, in order. time_s may be empty: then only NaNs part them.
+[[nodiscard]] std::vector<Stretch> stretches(std::span<const double> time_s,
+                                             std::span<const double> rate_radps, const SampleClock& clock);
+
+}  // namespace ifog
