@@ -1,0 +1,196 @@
+// `ifog replay` as a user runs it, and the two small parts it is made of. How late it is, is measured beside
+// canplayer in tests/bench/replay; here nothing may come early or be lost.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "drivers/transport/pace.h"
+#include "drivers/transport/transport.h"
+#include "tools/ifog/lateness.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Lateness, PercentilesAreWithinABucketOfTheSortedValues) {
+  ifog::tools::Lateness late;
+  std::vector<std::int64_t> values;
+  std::uint64_t x = 1;
+  for (int i = 0; i < 20'000; ++i) {
+    x = x * 6364136223846793005ULL + 1442695040888963407ULL;
+    values.push_back(static_cast<std::int64_t>(x >> (20U + x % 40U)));
+    late.add(values.back());
+  }
+  std::sort(values.begin(), values.end());
+  for (const double share : {0.01, 0.5, 0.9, 0.99, 0.999}) {
+    const auto exact = static_cast<double>(values[static_cast<std::size_t>(share * 20'000)]);
+    EXPECT_GE(static_cast<double>(late.percentile_ns(share)), exact);
+    EXPECT_LE(static_cast<double>(late.percentile_ns(share)), exact * (1.0 + 1.0 / 32.0) + 1.0);
+  }
+  EXPECT_EQ(late.max_ns(), static_cast<std::uint64_t>(values.back()));
+  EXPECT_EQ(late.count(), 20'000U);
+  EXPECT_EQ(late.percentile_ns(1.0), late.max_ns());
+}
+
+TEST(Lateness, EarlyCountsAsOnTimeAndNothingHasNoPercentile) {
+  ifog::tools::Lateness late;
+  EXPECT_EQ(late.percentile_ns(0.5), 0U);
+  late.add(-5);
+  EXPECT_EQ(late.percentile_ns(0.99), 0U);
+  EXPECT_EQ(late.count(), 1U);
+}
+
+TEST(Pace, DeadlinesComeFromTheFirstAndKeepNanosecondsForDays) {
+  ifog::Pace pace;
+  pace.start(1'700'000'000'000'000'000, 5);
+  constexpr std::int64_t kTenDays_ns = 864'000'000'000'001;
+  EXPECT_EQ(pace.due_ns(1'700'000'000'000'000'000 + kTenDays_ns), 5 + kTenDays_ns);
+  EXPECT_EQ(pace.due_ns(1'699'999'999'999'999'999), 4);
+  ifog::Pace slow(0.5);
+  slow.start(100, 1000);
+  EXPECT_EQ(slow.due_ns(200), 1200);
+}
+
+class Replay : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ifog-replay-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string content(const std::string& name) const {
+    std::ifstream in(path(name), std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  // Exit status; what it prints goes to the file `out`.
+  int ifog(const std::string& arguments) const {
+    const std::string command =
+        IFOG_BINARY_DIR "/tools/ifog/ifog replay " + arguments + " >" + path("out") + " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+  // 100 frames, 1 ms apart.
+  std::string log() const {
+    std::ofstream out(path("gyro.log"));
+    for (int i = 0; i < 100; ++i)
+      out << "(1700000000." << (100'000 + i * 1000) << ") can3 12345678#" << std::to_string(1000 + i) << "\n";
+    return path("gyro.log");
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Replay, WritesTheSameLogNeverEarly) {
+  const std::int64_t before = ifog::monotonic_ns();
+  ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --json " + path("report.json")), 0)
+      << content("out");
+  EXPECT_GE(ifog::monotonic_ns() - before, 99'000'000);
+  EXPECT_EQ(content("again.log"), content("gyro.log"));
+  const auto report = nlohmann::json::parse(content("report.json"));
+  EXPECT_EQ(report["schema"], "ifog.replay/1");
+  EXPECT_EQ(report["sent"], 100);
+  EXPECT_EQ(report["unit"], "frame");
+  EXPECT_GE(report["seconds"], 0.099);
+  EXPECT_LE(report["lateness_us"]["p50"], report["lateness_us"]["p99"]);
+  EXPECT_LE(report["lateness_us"]["p99"], report["lateness_us"]["max"]);
+}
+
+TEST_F(Replay, LoopsAndScales) {
+  ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --loop 3 --speed 20"), 0) << content("out");
+  EXPECT_EQ(content("again.log"), content("gyro.log") + content("gyro.log") + content("gyro.log"));
+  ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --loop 3 --speed 0"), 0) << content("out");
+  EXPECT_EQ(content("again.log"), content("gyro.log") + content("gyro.log") + content("gyro.log"));
+}
+
+TEST_F(Replay, SendsRawBytesInBlocks) {
+  std::string bytes;
+  for (int i = 0; i < 1001; ++i) bytes += static_cast<char>(i * 7);
+  std::ofstream(path("gyro.bin"), std::ios::binary) << bytes;
+  ASSERT_EQ(ifog(path("gyro.bin") + " --block 100 --rate 1000 --to file:" + path("again.bin")), 0)
+      << content("out");
+  EXPECT_EQ(content("again.bin"), bytes);
+  EXPECT_NE(content("out").find("sent 11 blocks"), std::string::npos) << content("out");
+  EXPECT_EQ(ifog(path("gyro.bin") + " --to file:" + path("x")), 1);
+  EXPECT_EQ(content("out"),
+            "ifog: " + path("gyro.bin") +
+                ": raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME\n");
+}
+
+// Rows become KVH frames of 40 bytes, which the driver cuts again where each ends.
+TEST_F(Replay, EncodesACaptureAndCutsBytesByTheDriver) {
+  std::ofstream out(path("gyro.csv"));
+  out << "time_s,rate_x_radps,rate_y_radps,rate_z_radps\n";
+  for (int i = 0; i < 50; ++i) out << i * 0.001 << "," << i * 1e-3 << ",0,0\n";
+  out.close();
+  ASSERT_EQ(ifog(path("gyro.csv") + " --driver kvh1750 --option format=b --to file:" + path("gyro.kvh")), 0)
+      << content("out");
+  EXPECT_EQ(content("gyro.kvh").size(), 50U * 40U);
+  EXPECT_EQ(content("gyro.kvh").substr(0, 4), "\xFE\x81\xFF\x56");
+  ASSERT_EQ(ifog(path("gyro.kvh") + " --driver kvh1750 --option format=b --to file:" + path("again.kvh")), 0)
+      << content("out");
+  EXPECT_EQ(content("again.kvh"), content("gyro.kvh"));
+  EXPECT_NE(content("out").find("sent 50 blocks"), std::string::npos) << content("out");
+  EXPECT_EQ(ifog(path("gyro.csv") + " --to file:" + path("x")), 1);
+}
+
+TEST_F(Replay, AnInterruptEndsItWithTheReport) {
+  const std::string capture = log();
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    execl(IFOG_BINARY_DIR "/tools/ifog/ifog", "ifog", "replay", capture.c_str(), "--to",
+          ("file:" + path("again.log")).c_str(), "--loop", "0", "--json", path("report.json").c_str(),
+          nullptr);
+    _exit(127);
+  }
+  while (content("again.log").size() < 1000) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const auto report = nlohmann::json::parse(content("report.json"));
+  EXPECT_EQ(report["interrupted"], true);
+  const std::string sent = content("again.log");
+  EXPECT_EQ(report["sent"], std::count(sent.begin(), sent.end(), '\n'));
+}
+
+TEST_F(Replay, AReaderThatGoesAwayIsAFailureWithAReport) {
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  std::thread reader([&] {
+    std::ifstream in(path("fifo"));
+    std::string line;
+    std::getline(in, line);
+  });
+  EXPECT_EQ(ifog(log() + " --loop 0 --to fifo:" + path("fifo")), 1);
+  reader.join();
+  EXPECT_NE(content("out").find("fifo: the reader went away"), std::string::npos) << content("out");
+  EXPECT_NE(content("out").find("lateness p50"), std::string::npos) << content("out");
+}
+
+TEST_F(Replay, WrongUseIsTwoWhatCannotBeSentIsOne) {
+  EXPECT_EQ(ifog(log() + " --to nowhere"), 2);
+  EXPECT_EQ(ifog(log()), 2);
+  EXPECT_EQ(ifog(log() + " --to file:" + path("x") + " --speed -1"), 2);
+  EXPECT_EQ(ifog(log() + " --to serial:/dev/null"), 1);
+  EXPECT_EQ(content("out"), "ifog: /dev/null: CAN frames cannot go onto a serial line, expected bytes\n");
+  std::ofstream(path("empty.log")).close();
+  EXPECT_EQ(ifog(path("empty.log") + " --to file:" + path("x")), 1);
+  EXPECT_EQ(content("out"), "ifog: " + path("empty.log") + ": nothing in it to send\n");
+}
+
+}  // namespace
