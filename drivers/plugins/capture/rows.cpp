@@ -1,0 +1,100 @@
+#include "drivers/plugins/capture/rows.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace ifog::capture_rows {
+namespace {
+
+std::string_view trimmed(std::string_view cell) {
+  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
+  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
+    cell.remove_suffix(1);
+  return cell;
+}
+
+// Takes the next cell off the line; false after the last.
+bool next_cell(std::string_view& line, bool& more, std::string_view& cell) {
+  if (!more) return false;
+  const std::size_t comma = line.find(',');
+  cell = trimmed(line.substr(0, comma));
+  more = comma != std::string_view::npos;
+  line.remove_prefix(more ? comma + 1 : line.size());
+  return true;
+}
+
+// A number, or NaN for an empty cell. False: neither.
+bool parse(std::string_view cell, double& value) {
+  value = std::numeric_limits<double>::quiet_NaN();
+  if (cell.empty()) return true;
+  if (cell.front() == '+') cell.remove_prefix(1);  // from_chars takes no plus sign
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc() && end == cell.data() + cell.size() && !std::isinf(value);
+}
+
+}  // namespace
+
+Rows::Rows(std::vector<std::string> wanted)
+    : wanted_(std::move(wanted)), values_(wanted_.size()), line_(kLongestLine) {}
+
+void Rows::restart() noexcept {
+  counters_.skipped += length_ + overlong_;
+  length_ = overlong_ = 0;
+  columns_ = 0;
+  timed_ = false;
+}
+
+bool Rows::end_line() noexcept {
+  const std::string_view line = trimmed({line_.data(), std::exchange(length_, 0)});
+  const std::size_t beyond = std::exchange(overlong_, 0);
+  if (beyond == 0 && (line.empty() || line.front() == '#')) return false;
+  const bool row = columns_ > 0;
+  if (beyond == 0 && (row ? read_row(line) : read_header(line))) {
+    counters_.good += row ? 1 : 0;
+    return row;
+  }
+  ++counters_.format;
+  counters_.skipped += line.size() + beyond;
+  return false;
+}
+
+bool Rows::read_header(std::string_view line) noexcept {
+  std::size_t column = 0, found = 0;
+  std::string_view cell;
+  for (bool more = true; next_cell(line, more, cell); ++column) {
+    if (column == kMostColumns || (column == 0 && cell != "time_s")) return false;
+    const auto at = std::find(wanted_.begin(), wanted_.end(), cell);
+    slot_[column] = static_cast<std::int16_t>(at == wanted_.end() ? -1 : at - wanted_.begin());
+    if (at != wanted_.end()) ++found;
+  }
+  if (found != wanted_.size()) return false;
+  columns_ = column;
+  return true;
+}
+
+bool Rows::read_row(std::string_view line) noexcept {
+  constexpr double kMostSeconds = 9e9;  // what an int64 of nanoseconds holds
+  std::size_t column = 0;
+  std::int64_t time_ns = 0;
+  std::string_view cell;
+  for (bool more = true; next_cell(line, more, cell); ++column) {
+    double value = 0.0;
+    if (column == columns_ || !parse(cell, value)) return false;
+    if (column == 0) {
+      if (!(std::abs(value) < kMostSeconds)) return false;
+      time_ns = std::llround(value * 1e9);
+      if (timed_ && time_ns <= time_ns_) return false;
+    } else if (slot_[column] >= 0) {
+      values_[static_cast<std::size_t>(slot_[column])] = value;
+    }
+  }
+  if (column != columns_) return false;
+  time_ns_ = time_ns;
+  timed_ = true;
+  return true;
+}
+
+}  // namespace ifog::capture_rows

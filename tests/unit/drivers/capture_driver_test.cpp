@@ -1,0 +1,106 @@
+// The driver that takes a CSV capture for a sensor: the same numbers as read_capture gives, from bytes in any
+// portions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+
+namespace {
+
+struct Fed {
+  std::vector<ifog_sample> samples;
+  ifog_driver_counters counters{};
+};
+
+Fed feed(ifog::DriverInstance& driver, const std::string& text, std::size_t portion) {
+  Fed fed;
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+  for (std::size_t i = 0; i < text.size(); i += portion)
+    driver.decode_bytes({bytes + i, std::min(portion, text.size() - i)}, 77,
+                        [&](const ifog_sample& sample) { fed.samples.push_back(sample); });
+  fed.counters = driver.counters();
+  return fed;
+}
+
+TEST(CaptureDriver, RowsBecomeSamplesInAnyPortions) {
+  const std::string text =
+      "# a gyro\n\ntime_s,rate_x_radps,supply_V,rate_y_radps,temperature_degC\r\n"
+      "-0.5,1e-3,12,-2.5,25.5\r\n0,,12,+4,\n0.0050000001,nan,12, 0.1 ,26\n";
+  for (const std::size_t portion : {1U, 2U, 7U, 1000U}) {
+    ifog::DriverInstance driver = ifog::make_driver(
+        "capture", {{"columns", "rate_y_radps, temperature_degC,rate_x_radps"}, {"rate_hz", "200"}});
+    const ifog_description& d = driver.description();
+    EXPECT_EQ(d.axes, 2U);
+    EXPECT_STREQ(d.axis[0], "y");
+    EXPECT_STREQ(d.axis[1], "x");
+    EXPECT_EQ(d.environments, 1U);
+    EXPECT_STREQ(d.environment[0], "temperature_degC");
+    EXPECT_EQ(d.nominal_rate_hz, 200.0);
+    const Fed fed = feed(driver, text, portion);
+    ASSERT_EQ(fed.samples.size(), 3U);
+    EXPECT_EQ(fed.samples[0].device_time_ns, -500'000'000);
+    EXPECT_EQ(fed.samples[0].arrival_ns, 77);
+    EXPECT_EQ(fed.samples[0].value[0], -2.5);
+    EXPECT_EQ(fed.samples[0].value[1], 1e-3);
+    EXPECT_EQ(fed.samples[0].environment[0], 25.5);
+    EXPECT_EQ(fed.samples[0].valid_axes, 3U);
+    EXPECT_EQ(fed.samples[0].environment_fresh, 1U);
+    EXPECT_EQ(fed.samples[1].value[0], 4.0);
+    EXPECT_EQ(fed.samples[1].valid_axes, 1U);
+    EXPECT_EQ(fed.samples[1].environment[0], 25.5);  // the last known
+    EXPECT_EQ(fed.samples[1].environment_fresh, 0U);
+    EXPECT_EQ(fed.samples[2].device_time_ns, 5'000'000);
+    EXPECT_TRUE(std::isnan(fed.samples[2].value[1]));
+    EXPECT_EQ(fed.samples[2].environment[0], 26.0);
+    EXPECT_EQ(fed.counters.frames_good, 3U);
+    EXPECT_EQ(fed.counters.frames_format, 0U);
+    EXPECT_EQ(fed.counters.bytes_skipped, 0U);
+  }
+}
+
+TEST(CaptureDriver, WhatIsNoRowIsCountedAndPassedOver) {
+  ifog::DriverInstance driver = ifog::make_driver("capture", {});
+  const std::string text =
+      "time_s,rate_radps\n0,1\n0,2\n1\n1,2,3\n1,two\n1,inf\n,5\n" + std::string(40'000, 'x') + "\n1,6\n2,7";
+  const Fed fed = feed(driver, text, 100);
+  ASSERT_EQ(fed.samples.size(), 2U);
+  EXPECT_EQ(fed.samples[1].value[0], 6.0);
+  EXPECT_EQ(fed.counters.frames_good, 2U);
+  EXPECT_EQ(fed.counters.frames_format, 7U);
+  EXPECT_GE(fed.counters.bytes_skipped, 40'000U);
+  // The capture was cut off within its last line.
+  driver.reset();
+  EXPECT_EQ(driver.counters().bytes_skipped, fed.counters.bytes_skipped + 3);
+  // What follows is another capture, whose time may begin anew.
+  EXPECT_EQ(feed(driver, "time_s,rate_radps\n0,1\n", 5).samples.size(), 1U);
+}
+
+TEST(CaptureDriver, AHeaderWithoutTheWantedColumnsGivesNoSamples) {
+  ifog::DriverInstance driver = ifog::make_driver("capture", {{"columns", "rate_radps,temperature_degC"}});
+  const Fed fed = feed(driver, "time_s,rate_radps\n0,1\n", 5);
+  EXPECT_TRUE(fed.samples.empty());
+  EXPECT_EQ(fed.counters.frames_format, 2U);
+}
+
+TEST(CaptureDriver, RefusesColumnsThatCannotBe) {
+  const auto refusal = [](const std::string& columns) -> std::string {
+    try {
+      ifog::make_driver("capture", {{"columns", columns}});
+      return "accepted";
+    } catch (const std::runtime_error& error) {
+      const std::string line = error.what();
+      return line.substr(line.find("columns is"));
+    }
+  };
+  EXPECT_EQ(refusal("temperature_degC"),
+            "columns is 'temperature_degC', expected 1 to 3 rate columns, rate_radps or rate_x_radps, …");
+  EXPECT_EQ(refusal("rate_radps,"),
+            "columns is 'rate_radps,', expected names of 1 to 47 letters between commas, without time_s");
+  EXPECT_EQ(refusal("rate_x_radps,rate_x_radps"),
+            "columns is 'rate_x_radps,rate_x_radps', expected each name once");
+}
+
+}  // namespace
