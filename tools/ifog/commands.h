@@ -17,7 +17,9 @@ struct Failed : std::runtime_error {
 };
 
 void add_convert(CLI::App& app);
+void add_denoise(CLI::App& app);
 void add_drivers(CLI::App& app);
+void add_monitor(CLI::App& app);
 void add_replay(CLI::App& app);
 
 }  // namespace ifog::tools

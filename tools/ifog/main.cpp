@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
   ifog::tools::add_allan(app);
 
   ifog::tools::add_convert(app);
+  ifog::tools::add_denoise(app);
   ifog::tools::add_drivers(app);
+  ifog::tools::add_monitor(app);
   ifog::tools::add_replay(app);
 
   try {

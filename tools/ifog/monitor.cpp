@@ -1,0 +1,309 @@
+// ifog monitor: what the daemon publishes, live, as an engineer wants to see it.
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <ifog/rate_t.hpp>
+#include <ifog/status_t.hpp>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/health/status_report.h"
+#include "tools/ifog/commands.h"
+
+namespace ifog::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kDegree = 180.0 / 3.14159265358979323846;
+
+struct Options {
+  std::string sensor, record, url = "udpm://239.255.76.67:7667?ttl=0";
+  double seconds = 0.0;  // 0: until interrupted
+  bool once = false;
+};
+
+// Of one axis, since the last line was shown.
+struct AxisFigures {
+  double mean = 0.0, square = 0.0;  // of denoised
+  double raw_mean = 0.0, raw_square = 0.0;
+  double angle = 0.0, variance = 0.0;
+};
+
+struct Sensor {
+  std::int64_t messages = 0, shown = 0, lost = 0, gaps = 0, gated = 0, last_seq = -1;
+  std::int64_t in_interval = 0;
+  std::vector<AxisFigures> axes;
+  std::string model;
+  bool has_status = false;
+  status_t status{};
+};
+
+// A rate in the unit a person reads: °/h below 0.1 °/s.
+std::string rate_text(double radps) {
+  std::array<char, 48> text{};
+  if (std::abs(radps) * kDegree < 0.1)
+    std::snprintf(text.data(), text.size(), "%+.4f °/h", radps * kDegree * 3600.0);
+  else
+    std::snprintf(text.data(), text.size(), "%+.5f °/s", radps * kDegree);
+  return text.data();
+}
+
+class Recorder {
+ public:
+  explicit Recorder(const std::string& path) : path_(path) {
+    if (path.empty()) return;
+    file_.open(path);
+    if (!file_) throw std::runtime_error(path + ": cannot be written");
+  }
+  void add(const std::string& sensor, const rate_t& message) {
+    if (path_.empty()) return;
+    std::string line;
+    if (std::exchange(header_, false)) {
+      line = "sensor,utime,seq,flags";
+      for (int a = 0; a < message.axes; ++a) {
+        const std::string n = std::to_string(a);
+        line +=
+            ",raw_" + n + "_radps,compensated_" + n + "_radps,denoised_" + n + "_radps,angle_" + n + "_rad";
+      }
+      line += '\n';
+    }
+    line += sensor + ',' + std::to_string(message.utime) + ',' + std::to_string(message.seq) + ',' +
+            std::to_string(message.flags);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(message.axes); ++a)
+      for (const double value :
+           {message.raw[a], message.compensated[a], message.denoised[a], message.angle[a]}) {
+        std::array<char, 32> digits{};
+        line += ',';
+        line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+      }
+    file_ << line << '\n';
+  }
+  void finish() {
+    if (path_.empty()) return;
+    file_.close();
+    if (!file_) throw std::runtime_error(path_ + ": could not be written to the end");
+  }
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+  bool header_ = true;
+};
+
+class Monitor {
+ public:
+  explicit Monitor(const Options& options) : options_(options), recorder_(options.record) {
+    lcm_ = lcm_create(options.url.c_str());
+    if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + options.url + ": LCM cannot use it");
+    std::string name = options.sensor;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    const std::string pattern = name.empty() ? "IFOG_.*" : "IFOG_" + name + "(_STATUS)?";
+    lcm_subscription_t* const subscription = lcm_subscribe(lcm_, pattern.c_str(), &Monitor::received, this);
+    if (subscription == nullptr)
+      throw std::runtime_error("--sensor " + options.sensor + ": no name LCM can listen to");
+    // A terminal that is slow for a moment must not look like lost messages.
+    lcm_subscription_set_queue_capacity(subscription, 100'000);
+  }
+  ~Monitor() { lcm_destroy(lcm_); }
+  Monitor(const Monitor&) = delete;
+  Monitor& operator=(const Monitor&) = delete;
+
+  // False: nothing was heard.
+  bool run();
+
+ private:
+  static void received(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
+    static_cast<Monitor*>(user)->take(*buffer, channel);
+  }
+  void take(const lcm_recv_buf_t& buffer, const std::string& channel);
+  void take_rate(Sensor& sensor, const rate_t& message);
+  void show(double interval_s);
+  [[nodiscard]] bool all_shown() const;
+
+  const Options& options_;
+  Recorder recorder_;
+  lcm_t* lcm_ = nullptr;
+  std::map<std::string, Sensor> sensors_;
+  int lines_drawn_ = 0;
+};
+
+void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
+  constexpr std::string_view kPrefix = "IFOG_", kStatus = "_STATUS";
+  const int size = static_cast<int>(buffer.data_size);
+  std::string name = channel.substr(kPrefix.size());
+  if (name.ends_with(kStatus)) {
+    status_t status{};
+    if (status.decode(buffer.data, 0, size) < 0) return;
+    name.resize(name.size() - kStatus.size());
+    sensors_[name].status = std::move(status);
+    sensors_[name].has_status = true;
+    return;
+  }
+  rate_t message{};
+  if (message.decode(buffer.data, 0, size) < 0) return;
+  take_rate(sensors_[name], message);
+  recorder_.add(name, message);
+}
+
+void Monitor::take_rate(Sensor& sensor, const rate_t& message) {
+  ++sensor.messages;
+  ++sensor.in_interval;
+  sensor.model = message.model;
+  if ((message.flags & rate_t::FLAG_GAP) != 0) ++sensor.gaps;
+  if ((message.flags & rate_t::FLAG_GATED) != 0) ++sensor.gated;
+  // A number passed over without the daemon's own gap flag or a merge was lost on the way here.
+  if (sensor.last_seq >= 0 && (message.flags & rate_t::FLAG_GAP) == 0 &&
+      (message.flags & rate_t::FLAG_MERGED) == 0)
+    sensor.lost += std::max<std::int64_t>(0, message.seq - sensor.last_seq - 1);
+  sensor.last_seq = message.seq;
+  sensor.axes.resize(static_cast<std::size_t>(message.axes));
+  const auto n = static_cast<double>(sensor.in_interval);
+  for (std::size_t a = 0; a < sensor.axes.size(); ++a) {
+    AxisFigures& axis = sensor.axes[a];
+    const auto update = [n](double value, double& mean, double& square) {
+      if (!std::isfinite(value)) return;
+      const double difference = value - mean;
+      mean += difference / n;
+      square += difference * (value - mean);
+    };
+    update(message.denoised[a], axis.mean, axis.square);
+    update(message.raw[a], axis.raw_mean, axis.raw_square);
+    axis.angle = message.angle[a];
+    axis.variance = message.variance[a];
+  }
+}
+
+void Monitor::show(double interval_s) {
+  const bool terminal = isatty(STDOUT_FILENO) == 1;
+  std::string text;
+  int lines = 0;
+  const auto line = [&](const std::string& content) {
+    text += content + (terminal ? "\x1b[K\n" : "\n");
+    ++lines;
+  };
+  for (auto& [name, sensor] : sensors_) {
+    std::array<char, 256> head{};
+    const status_t& status = sensor.status;
+    std::snprintf(head.data(), head.size(),
+                  "%s  %.1f Hz  %lld messages, %lld lost on LCM, %lld gaps, %lld gated%s%s", name.c_str(),
+                  static_cast<double>(sensor.in_interval) / interval_s,
+                  static_cast<long long>(sensor.messages), static_cast<long long>(sensor.lost),
+                  static_cast<long long>(sensor.gaps), static_cast<long long>(sensor.gated),
+                  sensor.model.empty() ? "" : "  model ", sensor.model.c_str());
+    line(head.data());
+    if (sensor.in_interval == 0)
+      line(std::string("  no samples in the last second") +
+           (sensor.has_status ? std::string(": ") + state_name(status.state) : ""));
+    const auto n = static_cast<double>(std::max<std::int64_t>(2, sensor.in_interval));
+    for (std::size_t a = 0; sensor.in_interval > 0 && a < sensor.axes.size(); ++a) {
+      AxisFigures& axis = sensor.axes[a];
+      std::array<char, 256> row{};
+      std::snprintf(row.data(), row.size(), "  axis %zu  %s  noise %.4f °/h (raw %.4f)  angle %+.6f°", a,
+                    rate_text(axis.mean).c_str(), std::sqrt(axis.square / (n - 1.0)) * kDegree * 3600.0,
+                    std::sqrt(axis.raw_square / (n - 1.0)) * kDegree * 3600.0, axis.angle * kDegree);
+      std::string content = row.data();
+      if (sensor.has_status && a < status.nis_mean.size()) {
+        std::snprintf(row.data(), row.size(), "  NIS %.2f  whiteness %+.2f", status.nis_mean[a],
+                      status.whiteness[a]);
+        content += row.data();
+      }
+      line(content);
+      axis = AxisFigures{};
+    }
+    if (sensor.has_status) {
+      std::array<char, 512> row{};
+      std::snprintf(
+          row.data(), row.size(),
+          "  latency p50 %.0f p99 %.0f max %.0f us  crc %lld  skipped %lld bytes  missing %lld  merged %lld  "
+          "kernel drops %lld  stale %lld  clock %+.0f ppm",
+          status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
+          static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
+          static_cast<long long>(status.sequence_missing), static_cast<long long>(status.samples_merged),
+          static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
+          status.clock_offset_ppm);
+      line(row.data());
+      if (!status.fault.empty()) line("  " + status.fault);
+    }
+    sensor.shown = sensor.messages;
+    sensor.in_interval = 0;
+  }
+  if (terminal && lines_drawn_ > 0) std::printf("\x1b[%dA", lines_drawn_);
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+  lines_drawn_ = lines;
+}
+
+bool Monitor::all_shown() const {
+  return !sensors_.empty() && std::all_of(sensors_.begin(), sensors_.end(),
+                                          [](const auto& entry) { return entry.second.shown > 0; });
+}
+
+bool Monitor::run() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  const int stop = signalfd(-1, &set, SFD_CLOEXEC);
+  const auto start = Clock::now();
+  auto shown = start;
+  const auto seconds_since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  };
+  std::array<pollfd, 2> wanted{pollfd{stop, POLLIN, 0}, pollfd{lcm_get_fileno(lcm_), POLLIN, 0}};
+  for (;;) {
+    const int ready = poll(wanted.data(), wanted.size(), 50);
+    if (ready > 0 && (wanted[0].revents & POLLIN) != 0) break;
+    if (ready > 0 && (wanted[1].revents & POLLIN) != 0) lcm_handle(lcm_);
+    if (seconds_since(shown) >= 1.0) {
+      show(seconds_since(shown));
+      shown = Clock::now();
+      if (options_.once && all_shown()) break;
+    }
+    if (options_.seconds > 0.0 && seconds_since(start) >= options_.seconds) break;
+  }
+  close(stop);
+  if (!options_.once && seconds_since(shown) > 0.2) show(seconds_since(shown));
+  recorder_.finish();
+  return std::any_of(sensors_.begin(), sensors_.end(),
+                     [](const auto& entry) { return entry.second.messages > 0; });
+}
+
+}  // namespace
+
+void add_monitor(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("monitor", "Show live what the daemon publishes");
+  auto options = std::make_shared<Options>();
+  command->add_option("--sensor", options->sensor, "Only this sensor")->type_name("NAME");
+  command->add_option("--seconds", options->seconds, "Stop after this long")->check(CLI::PositiveNumber);
+  command->add_flag("--once", options->once, "Stop after one second of every sensor heard");
+  command->add_option("--record", options->record, "Write every message to a CSV file")->type_name("FILE");
+  command->add_option("--lcm-url", options->url, "As in the daemon's configuration")->type_name("URL");
+  command->callback([options] {
+    // Without a time limit, --once waits for a daemon that may never come: give up as a script would want.
+    constexpr double kPatience_s = 10.0;
+    if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
+    if (!Monitor(*options).run()) {
+      std::fprintf(stderr, "ifog monitor: nothing heard on %s\n", options->url.c_str());
+      throw Failed("nothing heard");
+    }
+  });
+}
+
+}  // namespace ifog::tools
