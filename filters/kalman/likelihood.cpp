@@ -27,10 +27,26 @@ LikelihoodTerms sized(const StateModel& model, double process_noise, double meas
   long starting = (diffuse.array() > 0).count();
   const bool at_first = starting > 0;
   bool begun = false;
+  // Over an unbroken stretch the covariance comes to rest; from there on only the state moves, at a fraction
+  // of the cost. At this tolerance the sum differs from the full recursion by less than it rounds to.
+  constexpr double kAtRest = 1e-13;
+  bool frozen = false;
+  double frozen_s = 0.0, frozen_log = 0.0;
 
   LikelihoodTerms terms;
   if (innovations != nullptr) innovations->assign(rate.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < rate.size(); ++k) {
+    if (frozen && std::isfinite(rate[k])) {
+      core.x.col(0) = transition * core.x.col(0);
+      const double innovation = rate[k] - core.rate(0);
+      ++terms.count;
+      terms.sum_log_variance += frozen_log;
+      terms.sum_normalised += innovation * innovation / frozen_s;
+      if (innovations != nullptr) (*innovations)[k] = innovation / std::sqrt(frozen_s);
+      core.update(0, innovation);
+      continue;
+    }
+    frozen = false;
     if (begun) core.predict(transition, driving);
     begun = true;
     if (!std::isfinite(rate[k])) continue;
@@ -46,8 +62,15 @@ LikelihoodTerms sized(const StateModel& model, double process_noise, double meas
       terms.sum_normalised += innovation * innovation / s;
       if (innovations != nullptr) (*innovations)[k] = innovation / std::sqrt(s);
     }
+    const typename KalmanCore<n>::Vector last_gain = core.gain;
     core.correct(s);
     core.update(0, innovation);
+    frozen = starting == 0 && k > 0 && std::isfinite(rate[k - 1]) &&
+             (core.gain - last_gain).cwiseAbs().maxCoeff() <= kAtRest * core.gain.cwiseAbs().maxCoeff();
+    if (frozen) {
+      frozen_s = s;
+      frozen_log = std::log(s);
+    }
   }
   return terms;
 }

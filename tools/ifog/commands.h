@@ -16,10 +16,12 @@ struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void add_compare(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_denoise(CLI::App& app);
 void add_drivers(CLI::App& app);
 void add_monitor(CLI::App& app);
 void add_replay(CLI::App& app);
+void add_tune(CLI::App& app);
 
 }  // namespace ifog::tools

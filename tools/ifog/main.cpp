@@ -12,11 +12,13 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", IFOG_VERSION);
   ifog::tools::add_allan(app);
 
+  ifog::tools::add_compare(app);
   ifog::tools::add_convert(app);
   ifog::tools::add_denoise(app);
   ifog::tools::add_drivers(app);
   ifog::tools::add_monitor(app);
   ifog::tools::add_replay(app);
+  ifog::tools::add_tune(app);
 
   try {
     app.parse(argc, argv);

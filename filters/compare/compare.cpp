@@ -1,0 +1,171 @@
+#include "filters/compare/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "filters/allan/deviation.h"
+#include "filters/compare/figures.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kStepPlaces = 9;     // odd, so that the median is one of them
+constexpr std::size_t kStepRunUp = 2000;   // samples for the rule to settle before the step
+constexpr std::size_t kStepWindow = 4000;  // samples looked at after it
+constexpr int kLongestLag = 2000;          // samples
+
+struct Series {
+  std::vector<std::vector<double>> denoised, innovation, nis;
+};
+
+// Steps between samples; the first is the nominal period.
+std::vector<double> step_times(const ComparisonInput& in) {
+  std::vector<double> dt(in.time_s.size(), in.period_s);
+  for (std::size_t k = 1; k < dt.size(); ++k) dt[k] = in.time_s[k] - in.time_s[k - 1];
+  return dt;
+}
+
+EstimatorInput input_at(const ComparisonInput& in, std::span<const double> dt, std::size_t k, double added) {
+  EstimatorInput sample;
+  sample.sequence = k;
+  sample.dt_s = dt[k];
+  for (std::size_t a = 0; a < in.rate.size(); ++a) {
+    const double rate = in.rate[a][k];
+    if (!std::isfinite(rate)) continue;
+    sample.rate_radps[a] = rate + added;
+    sample.valid_axes |= 1U << a;
+  }
+  return sample;
+}
+
+Series run(const ComparisonInput& in, std::span<const double> dt, const FilterSettings& settings) {
+  const std::size_t axes = in.rate.size();
+  const std::size_t n = in.time_s.size();
+  Series out;
+  for (auto* series : {&out.denoised, &out.innovation, &out.nis})
+    series->assign(axes, std::vector<double>(n));
+  Estimator estimator(settings, static_cast<int>(axes), in.period_s);
+  EstimatorOutput step;
+  for (std::size_t k = 0; k < n; ++k) {
+    const EstimatorInput sample = input_at(in, dt, k, 0.0);
+    estimator.step(sample, step);
+    for (std::size_t a = 0; a < axes; ++a) {
+      const bool there = (sample.valid_axes & (1U << a)) != 0;
+      out.denoised[a][k] = step.denoised_radps[a];
+      out.innovation[a][k] = there ? step.innovation_radps[a] : kMissing;
+      out.nis[a][k] = there && step.innovation_variance[a] > 0.0
+                          ? step.innovation_radps[a] * step.innovation_radps[a] / step.innovation_variance[a]
+                          : kMissing;
+    }
+  }
+  return out;
+}
+
+// The step is the difference between two runs over the same samples, with and without it: what the noise does
+// cancels as far as the rule is linear, and what remains is how the rule answers a real change of rate.
+std::optional<double> step_samples(const ComparisonInput& in, std::span<const double> dt,
+                                   const FilterSettings& settings, std::size_t place, std::size_t axis,
+                                   double size) {
+  const std::size_t begin = place > kStepRunUp ? place - kStepRunUp : 0;
+  const std::size_t end = std::min(in.time_s.size(), place + kStepWindow);
+  Estimator without(settings, static_cast<int>(in.rate.size()), in.period_s);
+  Estimator with(settings, static_cast<int>(in.rate.size()), in.period_s);
+  EstimatorOutput a, b;
+  for (std::size_t k = begin; k < end; ++k) {
+    without.step(input_at(in, dt, k, 0.0), a);
+    with.step(input_at(in, dt, k, k >= place ? size : 0.0), b);
+    if (k >= place && b.denoised_radps[axis] - a.denoised_radps[axis] >= 0.9 * size)
+      return static_cast<double>(k - place + 1);
+  }
+  return std::nullopt;
+}
+
+StepResponse step_response(const ComparisonInput& in, std::span<const double> dt,
+                           const FilterSettings& settings, std::size_t axis, double sigmas) {
+  StepResponse response;
+  response.size_sigma = sigmas;
+  const std::size_t n = in.time_s.size();
+  if (n < kStepRunUp + kStepWindow) return response;
+  std::vector<std::optional<double>> reached;
+  for (std::size_t i = 0; i < kStepPlaces; ++i) {
+    const std::size_t place = kStepRunUp + (n - kStepRunUp - kStepWindow) * i / (kStepPlaces - 1);
+    reached.push_back(
+        step_samples(in, dt, settings, place, axis, sigmas * std::sqrt(settings.measurement_noise)));
+  }
+  response.samples = median_reached(std::move(reached));
+  return response;
+}
+
+void add_series_figures(ComparisonRow& row, const ComparisonInput& in, std::span<const double> output) {
+  const auto axis = static_cast<std::size_t>(row.axis);
+  row.std_radps = spread(output);
+  if (!in.reference.empty() && !in.reference[axis].empty()) {
+    const AgainstReference against = against_reference(output, in.reference[axis], in.period_s, kLongestLag);
+    row.rmse_radps = against.rmse;
+    row.bias_radps = against.bias;
+    row.lag_s = against.lag_s;
+  }
+  const SampleClock clock = sample_clock(in.time_s);
+  const std::vector<Stretch> whole = stretches(in.time_s, output, clock);
+  if (whole.empty()) return;
+  const AngleSum sum(output, whole);
+  for (std::size_t i = 0; i < kComparedTaus.size(); ++i) {
+    const double samples = std::round(kComparedTaus[i] / clock.period_s);
+    if (samples < 1.0 || std::abs(samples * clock.period_s / kComparedTaus[i] - 1.0) > 0.1) continue;
+    const std::size_t m[] = {static_cast<std::size_t>(samples)};
+    const DeviationPoint point = deviation(sum, m).front();
+    if (point.terms > 0) row.adev_radps[i] = std::sqrt(point.variance);
+  }
+}
+
+}  // namespace
+
+Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& options) {
+  const std::size_t n = in.time_s.size();
+  if (n < 2) throw std::invalid_argument("fewer than two samples, expected a record");
+  for (const auto& rate : in.rate)
+    if (rate.size() != n) throw std::invalid_argument("rate columns and time differ in length");
+  const std::vector<double> dt = step_times(in);
+
+  Comparison result;
+  for (std::size_t a = 0; a < in.rate.size(); ++a) {
+    ComparisonRow row;
+    row.rule = "raw";
+    row.axis = static_cast<int>(a);
+    add_series_figures(row, in, in.rate[a]);
+    result.rows.push_back(std::move(row));
+  }
+  std::size_t done = 0;
+  for (const std::string& rule : options.rules) {
+    FilterSettings settings = options.settings;
+    settings.rule = rule;
+    Series series = run(in, dt, settings);
+    for (std::size_t a = 0; a < in.rate.size(); ++a) {
+      ComparisonRow row;
+      row.rule = rule;
+      row.axis = static_cast<int>(a);
+      add_series_figures(row, in, series.denoised[a]);
+      const HeadingClosure closure = heading_closure(series.denoised[a], in.rate[a], dt);
+      row.heading_end_rad = closure.end_rad;
+      row.heading_max_rad = closure.max_rad;
+      const Whiteness white = whiteness(series.innovation[a]);
+      row.whiteness_lag1 = white.lag1;
+      row.whiteness_excess = white.excess;
+      double nis = 0.0;
+      std::size_t count = 0;
+      for (const double v : series.nis[a])
+        if (std::isfinite(v)) nis += (v - nis) / static_cast<double>(++count);
+      row.nis_mean = nis;
+      row.step = {step_response(in, dt, settings, a, 20.0), step_response(in, dt, settings, a, 5.0)};
+      result.rows.push_back(std::move(row));
+    }
+    result.denoised.push_back(std::move(series.denoised));
+    if (options.progress) options.progress(++done, options.rules.size());
+  }
+  return result;
+}
+
+}  // namespace ifog

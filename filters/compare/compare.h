@@ -1,0 +1,69 @@
+// All adaptation rules on one record, with the same settings: what each does at rest, in motion, to the
+// heading, and after a change of rate. The figures are of the causal Estimator the daemon runs, not of a
+// copy.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filters/estimator/estimator.h"
+#include "filters/estimator/settings.h"
+
+namespace ifog {
+
+// One record of a sensor: rates in rad/s, NaN where a sample is missing.
+struct ComparisonInput {
+  std::span<const double> time_s;                  // strictly increasing
+  std::vector<std::span<const double>> rate;       // by axis, as long as time_s
+  std::vector<std::span<const double>> reference;  // by axis; empty where there is none
+  double period_s = 0.0;                           // nominal, > 0
+};
+
+// The averaging times at which the Allan deviation is compared, s.
+inline constexpr std::array<double, 4> kComparedTaus{0.1, 1.0, 10.0, 100.0};
+
+// Samples until the output has made 90 % of a step added to the record, median over the places it was added
+// at.
+struct StepResponse {
+  double size_sigma = 0.0;        // in sigma of one sample, sqrt(R)
+  std::optional<double> samples;  // nothing: not reached within the window looked at
+};
+
+struct ComparisonRow {
+  std::string rule;  // "raw" for the record itself
+  int axis = 0;
+  std::optional<double> rmse_radps, bias_radps, lag_s;  // against the reference, where there is one
+  double std_radps = 0.0;
+  std::array<std::optional<double>, kComparedTaus.size()>
+      adev_radps;                // nothing: the record is too short or too coarse
+  double heading_end_rad = 0.0;  // ∫(denoised − compensated)dt over the record
+  double heading_max_rad = 0.0;  // its largest excursion
+  double whiteness_lag1 = 0.0;   // lag-1 autocorrelation of the innovations, 0 when white
+  double whiteness_excess =
+      0.0;  // Σ n ρ_k² / 20 over lags 1 … 20: 1 when white, larger when not (Box and Pierce)
+  double nis_mean = 0.0;  // innovation² over its own variance, 1 when the rule knows its noise
+  std::array<StepResponse, 2> step{};
+};
+
+struct ComparisonOptions {
+  FilterSettings settings;  // the rule's name is replaced by each of `rules`
+  std::vector<std::string> rules;
+  std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+// Rows in the order of `rules`, "raw" first, by axis within a rule. Also returns the denoised series of each
+// rule.
+struct Comparison {
+  std::vector<ComparisonRow> rows;
+  // by rule (without raw), then axis
+  std::vector<std::vector<std::vector<double>>> denoised;
+};
+
+// Throws std::invalid_argument: a setting the estimator refuses, columns of unequal length.
+Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& options);
+
+}  // namespace ifog

@@ -1,0 +1,123 @@
+#include "filters/compare/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ifog {
+
+double spread(std::span<const double> values) {
+  double mean = 0.0;
+  std::size_t n = 0;
+  for (const double v : values)
+    if (std::isfinite(v)) mean += (v - mean) / static_cast<double>(++n);
+  if (n < 2) return 0.0;
+  double sum = 0.0;
+  for (const double v : values)
+    if (std::isfinite(v)) sum += (v - mean) * (v - mean);
+  return std::sqrt(sum / static_cast<double>(n - 1));
+}
+
+namespace {
+
+// Variance of output[k] − reference[k − shift] over the places where both are there, or over every stride-th
+// of them in a long record: thousands of shifts are tried, and a fraction of the places tells them apart as
+// well.
+double misfit(std::span<const double> output, std::span<const double> reference, int shift, int margin) {
+  double mean = 0.0;
+  double sum = 0.0;
+  std::size_t n = 0;
+  const auto last = static_cast<std::ptrdiff_t>(output.size()) - margin;
+  const std::ptrdiff_t stride = std::max<std::ptrdiff_t>(1, (last - margin) / 20000);
+  for (std::ptrdiff_t k = margin; k < last; k += stride) {
+    const double d = output[static_cast<std::size_t>(k)] - reference[static_cast<std::size_t>(k - shift)];
+    if (!std::isfinite(d)) continue;
+    const double delta = d - mean;
+    mean += delta / static_cast<double>(++n);
+    sum += delta * (d - mean);
+  }
+  return n == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(n);
+}
+
+}  // namespace
+
+AgainstReference against_reference(std::span<const double> output, std::span<const double> reference,
+                                   double period_s, int longest_samples) {
+  AgainstReference result;
+  double square = 0.0;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < output.size(); ++k) {
+    const double d = output[k] - reference[k];
+    if (!std::isfinite(d)) continue;
+    square += d * d;
+    result.bias += (d - result.bias) / static_cast<double>(++n);
+  }
+  if (n == 0) return result;
+  result.rmse = std::sqrt(square / static_cast<double>(n));
+
+  const int longest = std::min(longest_samples, static_cast<int>(output.size() / 4));
+  if (longest < 1) return result;
+  std::vector<double> at(static_cast<std::size_t>(2 * longest + 1));
+  for (int shift = -longest; shift <= longest; ++shift)
+    at[static_cast<std::size_t>(shift + longest)] = misfit(output, reference, shift, longest);
+  const auto best = std::min_element(at.begin(), at.end());
+  const auto worst = std::max_element(at.begin(), at.end());
+  // A reference at rest fits at any shift. Asking for 5 % keeps the figure to records that show the lag.
+  if (best == at.begin() || best + 1 == at.end() || *worst < 1.05 * *best) return result;
+  const double left = *(best - 1), middle = *best, right = *(best + 1);
+  const double curve = left - 2.0 * middle + right;
+  const double fraction = curve > 0.0 ? 0.5 * (left - right) / curve : 0.0;
+  result.lag_s = (static_cast<double>(best - at.begin()) - longest + fraction) * period_s;
+  return result;
+}
+
+HeadingClosure heading_closure(std::span<const double> output, std::span<const double> measured,
+                               std::span<const double> dt_s) {
+  HeadingClosure result;
+  for (std::size_t k = 0; k < output.size(); ++k) {
+    const double d = (output[k] - measured[k]) * dt_s[k];
+    if (!std::isfinite(d)) continue;
+    result.end_rad += d;
+    if (std::abs(result.end_rad) > std::abs(result.max_rad)) result.max_rad = result.end_rad;
+  }
+  return result;
+}
+
+Whiteness whiteness(std::span<const double> innovations) {
+  constexpr std::size_t kLags = 20;
+  double mean = 0.0;
+  std::size_t n = 0;
+  for (const double v : innovations)
+    if (std::isfinite(v)) mean += (v - mean) / static_cast<double>(++n);
+  if (n < 2 * kLags) return {};
+  double power = 0.0;
+  for (const double v : innovations)
+    if (std::isfinite(v)) power += (v - mean) * (v - mean);
+  Whiteness result;
+  if (power <= 0.0) return result;
+  double sum = 0.0;
+  for (std::size_t lag = 1; lag <= kLags; ++lag) {
+    double product = 0.0;
+    for (std::size_t k = lag; k < innovations.size(); ++k) {
+      const double p = (innovations[k] - mean) * (innovations[k - lag] - mean);
+      if (std::isfinite(p)) product += p;
+    }
+    const double rho = product / power;
+    if (lag == 1) result.lag1 = rho;
+    sum += rho * rho;
+  }
+  result.excess = sum * static_cast<double>(n) / static_cast<double>(kLags);
+  return result;
+}
+
+std::optional<double> median_reached(std::vector<std::optional<double>> values) {
+  if (values.empty()) return std::nullopt;
+  std::vector<double> order;
+  for (const auto& v : values) order.push_back(v ? *v : std::numeric_limits<double>::infinity());
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+  std::nth_element(order.begin(), middle, order.end());
+  if (std::isinf(*middle)) return std::nullopt;
+  return *middle;
+}
+
+}  // namespace ifog

@@ -1,0 +1,101 @@
+#include "filters/compare/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "filters/compare/figures.h"
+
+namespace {
+
+std::vector<double> noise(unsigned seed, std::size_t n) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> out(n);
+  for (double& v : out) v = normal(engine);
+  return out;
+}
+
+TEST(CompareFigures, LagOfADelayedSineIsTheDelay) {
+  constexpr double kPeriod = 0.01, kDelay = 0.0537;
+  std::vector<double> reference, output;
+  for (int k = 0; k < 6000; ++k) {
+    reference.push_back(std::sin(2 * std::numbers::pi * 0.5 * k * kPeriod));
+    output.push_back(0.02 + std::sin(2 * std::numbers::pi * 0.5 * (k * kPeriod - kDelay)));
+  }
+  const auto against = ifog::against_reference(output, reference, kPeriod, 300);
+  ASSERT_TRUE(against.lag_s.has_value());
+  EXPECT_NEAR(*against.lag_s, kDelay, 1e-4);
+  EXPECT_NEAR(against.bias, 0.02, 1e-4);
+}
+
+TEST(CompareFigures, AReferenceAtRestTellsNoLag) {
+  const auto output = noise(1, 4000);
+  const std::vector<double> reference(output.size(), 0.0);
+  EXPECT_FALSE(ifog::against_reference(output, reference, 0.01, 200).lag_s.has_value());
+}
+
+// For an AR(1) with coefficient a: rho_k = a^k, so the excess is n a²(1 − a⁴⁰)/(1 − a²)/20.
+TEST(CompareFigures, WhitenessOfWhiteAndOfAutoregressiveNoise) {
+  auto series = noise(2, 100000);
+  const auto white = ifog::whiteness(series);
+  EXPECT_NEAR(white.lag1, 0.0, 4.0 / std::sqrt(1e5));
+  EXPECT_NEAR(white.excess, 1.0, 4.0 * std::sqrt(2.0 / 20.0));
+  for (std::size_t k = 1; k < series.size(); ++k) series[k] += 0.5 * series[k - 1];
+  const auto coloured = ifog::whiteness(series);
+  EXPECT_NEAR(coloured.lag1, 0.5, 0.02);
+  EXPECT_NEAR(coloured.excess, 1e5 * 0.25 / 0.75 / 20.0, 0.1 * 1e5 / 60.0);
+}
+
+TEST(CompareFigures, MissingSamplesCountNeitherForNorAgainst) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> with{1.0, nan, 3.0, 5.0}, without{1.0, 3.0, 5.0};
+  EXPECT_DOUBLE_EQ(ifog::spread(with), ifog::spread(without));
+  EXPECT_DOUBLE_EQ(ifog::spread(without), 2.0);
+}
+
+TEST(CompareFigures, TheMedianIsUnknownWhenMostDidNotArrive) {
+  EXPECT_EQ(ifog::median_reached({3.0, std::nullopt, 1.0}), 3.0);
+  EXPECT_FALSE(ifog::median_reached({std::nullopt, std::nullopt, 1.0}).has_value());
+}
+
+// A conventional filter in its steady state answers a step as 1 − (1 − K)^k, K from the algebraic Riccati
+// equation.
+TEST(Compare, TheConventionalFilterTakesAsLongAsItsClosedFormGainSays) {
+  constexpr double kPeriod = 0.01, kR = 1e-12, kRatio = 1e-3;
+  const std::size_t n = 20000;
+  auto rate = noise(4, n);
+  std::vector<double> time(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    time[k] = static_cast<double>(k) * kPeriod;
+    rate[k] *= std::sqrt(kR);
+  }
+  ifog::ComparisonInput in;
+  in.time_s = time;
+  in.rate = {rate};
+  in.period_s = kPeriod;
+  ifog::ComparisonOptions options;
+  options.rules = {"ckf"};
+  options.settings.process_noise = kRatio * kR / kPeriod;
+  options.settings.measurement_noise = kR;
+  options.settings.follow_manoeuvres = false;
+  options.settings.conserve_angle = false;
+  const auto result = ifog::compare_rules(in, options);
+  ASSERT_EQ(result.rows.size(), 2U);
+  const auto& row = result.rows[1];
+  const double p = 0.5 * (kRatio + std::sqrt(kRatio * kRatio + 4.0 * kRatio));  // predicted variance over R
+  const double gain = p / (p + 1.0);
+  const double expected = std::ceil(std::log(0.1) / std::log(1.0 - gain));
+  ASSERT_TRUE(row.step[0].samples && row.step[1].samples);
+  EXPECT_EQ(*row.step[0].samples, expected);
+  EXPECT_EQ(*row.step[1].samples, expected);
+  // Output of white noise through a first-order filter: variance K/(2 − K) R.
+  EXPECT_NEAR(row.std_radps, std::sqrt(gain / (2.0 - gain) * kR), 0.05 * row.std_radps);
+  EXPECT_EQ(result.rows[0].rule, "raw");
+}
+
+}  // namespace

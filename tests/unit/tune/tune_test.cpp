@@ -1,0 +1,145 @@
+#include "filters/tune/tune.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "filters/tune/candidate.h"
+
+namespace {
+
+using ifog::Tuning;
+
+// mt19937_64 is fixed by the standard; only the normal distribution on it may differ between libraries, and
+// the tests below hold for any normal noise.
+struct Noise {
+  std::mt19937_64 engine;
+  std::normal_distribution<double> normal;
+  explicit Noise(unsigned seed) : engine(seed) {}
+  double operator()() { return normal(engine); }
+};
+
+Tuning tuned(const std::vector<double>& rate, double period, std::vector<std::string> states = {}) {
+  const std::span<const double> axes[] = {rate};
+  ifog::TuneOptions options;
+  options.states = std::move(states);
+  return ifog::tune(axes, period, options);
+}
+
+const ifog::TunedFigure& figure(const ifog::TunedModel& model, const std::string& name) {
+  return *std::find_if(model.figures.begin(), model.figures.end(),
+                       [&](const auto& f) { return f.name == name; });
+}
+
+std::vector<double> random_walk(unsigned seed, std::size_t n, double q_step, double r, double level) {
+  Noise noise(seed);
+  std::vector<double> z;
+  double x = level;
+  for (std::size_t k = 0; k < n; ++k) {
+    x += std::sqrt(q_step) * noise();
+    z.push_back(x + std::sqrt(r) * noise());
+  }
+  return z;
+}
+
+TEST(Tune, RecoversQAndRWithinItsOwnErrors) {
+  constexpr double kPeriod = 0.01, kR = 4e-12, kStep = 4e-15;
+  int inside_q = 0, inside_r = 0;
+  constexpr int kRuns = 40;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    const Tuning t = tuned(random_walk(seed, 4000, kStep, kR, 5e-5), kPeriod, {"random-walk"});
+    const auto& q = figure(t.models[0], "process_noise");
+    const auto& r = figure(t.models[0], "measurement_noise");
+    ASSERT_TRUE(q.std_error && r.std_error) << seed;
+    // ln q is nearly normal where q itself is skewed.
+    if (std::abs(std::log(q.value * kPeriod / kStep)) < 1.96 * *q.std_error / q.value) ++inside_q;
+    if (std::abs(r.value - kR) < 1.96 * *r.std_error) ++inside_r;
+  }
+  // 38 of 40 are expected; fewer than 34 happens by chance once in a hundred.
+  EXPECT_GE(inside_q, 34);
+  EXPECT_GE(inside_r, 34);
+}
+
+// White noise alone: R is the sample variance and its error sqrt(2/n) R, known in closed form.
+TEST(Tune, WhiteNoiseHasTheClosedFormErrorAndALevelAtRest) {
+  Noise noise(7);
+  constexpr std::size_t kN = 10000;
+  std::vector<double> z;
+  double sum = 0.0, square = 0.0;
+  for (std::size_t k = 0; k < kN; ++k) {
+    z.push_back(1e-6 * noise());
+    sum += z.back();
+    square += z.back() * z.back();
+  }
+  const double variance = (square - sum * sum / kN) / (kN - 1);
+  const Tuning t = tuned(z, 0.005, {"random-walk"});
+  const auto& r = figure(t.models[0], "measurement_noise");
+  EXPECT_NEAR(r.value, variance, 1e-3 * variance);
+  ASSERT_TRUE(r.std_error.has_value());
+  EXPECT_NEAR(*r.std_error, std::sqrt(2.0 / kN) * variance, 0.05 * std::sqrt(2.0 / kN) * variance);
+  EXPECT_LT(t.models[0].settings.process_noise * 0.005, 1e-6 * variance);
+}
+
+TEST(Tune, PicksTheModelThatMadeTheData) {
+  // A second-order resonance under white noise and a resting level.
+  Noise noise(3);
+  std::vector<double> z;
+  double y1 = 0.0, y2 = 0.0;
+  for (int k = 0; k < 8000; ++k) {
+    const double y = 1.6 * y1 - 0.8 * y2 + 1e-6 * noise();
+    y2 = y1;
+    y1 = y;
+    z.push_back(3e-5 + y + 1e-6 * noise());
+  }
+  const Tuning t = tuned(z, 0.01,
+                         {"random-walk", "random-walk + gauss-markov", "random-walk + ar(1)",
+                          "random-walk + ar(2)", "random-walk + ar(3)"});
+  EXPECT_EQ(t.models[0].settings.state, "random-walk + ar(2)");
+  const auto& phi1 = figure(t.models[0], "phi_1");
+  const auto& phi2 = figure(t.models[0], "phi_2");
+  ASSERT_TRUE(phi1.std_error && phi2.std_error);
+  EXPECT_NEAR(phi1.value, 1.6, 4.0 * *phi1.std_error);
+  EXPECT_NEAR(phi2.value, -0.8, 4.0 * *phi2.std_error);
+  EXPECT_LT(*phi1.std_error, 0.02);
+
+  const Tuning plain = tuned(random_walk(11, 8000, 1e-15, 1e-12, 0.0), 0.01);
+  EXPECT_EQ(plain.models[0].settings.state, "random-walk");
+}
+
+TEST(Tune, FindsTheCorrelationTimeOfAGaussMarkovProcess) {
+  Noise noise(5);
+  constexpr double kPeriod = 0.1, kTau = 5.0;
+  const double decay = std::exp(-kPeriod / kTau);
+  std::vector<double> z;
+  double y = 0.0;
+  for (int k = 0; k < 40000; ++k) {
+    y = decay * y + 2e-6 * std::sqrt(1.0 - decay * decay) * noise();
+    z.push_back(-1e-5 + y + 3e-6 * noise());
+  }
+  const Tuning t = tuned(z, kPeriod, {"random-walk", "random-walk + gauss-markov"});
+  ASSERT_EQ(t.models[0].settings.state, "random-walk + gauss-markov");
+  const auto& tau = figure(t.models[0], "gauss_markov_correlation_time");
+  ASSERT_TRUE(tau.std_error.has_value());
+  EXPECT_NEAR(tau.value, kTau, 3.0 * *tau.std_error);
+  EXPECT_LT(*tau.std_error, 0.2 * kTau);
+}
+
+// Closed form: partial autocorrelations (a, b) of an AR(2) give phi = (a(1−b), b).
+TEST(Tune, PartialAutocorrelationsGiveTheKnownCoefficients) {
+  const std::vector<double> partial{0.9, -0.5};
+  const auto phi = ifog::ar_from_partial(partial);
+  EXPECT_NEAR(phi[0], 0.9 * 1.5, 1e-15);
+  EXPECT_NEAR(phi[1], -0.5, 1e-15);
+}
+
+TEST(Tune, RefusesWhatItCannotFit) {
+  EXPECT_THROW(tuned(std::vector<double>(100, 1.0), 0.01), std::invalid_argument);
+  EXPECT_THROW(tuned(std::vector<double>(1000, 1.0), 0.01), std::invalid_argument);
+  EXPECT_THROW(tuned(random_walk(1, 1000, 1e-15, 1e-12, 0.0), 0.01, {"random-walk + arma(2,2)"}),
+               std::invalid_argument);
+}
+
+}  // namespace

@@ -1,0 +1,185 @@
+// ifog tune: Q, R and the state model of a sensor at rest, into a model file.
+#include "filters/tune/tune.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "drivers/capture/text_file.h"
+#include "filters/allan/stretches.h"
+#include "filters/model/model.h"
+#include "tools/ifog/capture_input.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/progress.h"
+
+namespace ifog::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDeg = 180.0 / std::numbers::pi;
+
+struct Options {
+  CaptureInput input;
+  std::string capture, model, json_file;
+  std::vector<std::string> states;
+  std::size_t samples = 200000;
+};
+
+// Evenly spaced columns: a sample that is missing from the record becomes a NaN, so that the filter's step
+// stays the period. Returns one column an axis, at most `most` samples of each, and says how many were left
+// out.
+std::vector<std::vector<double>> even(const Capture& capture, double period_s, std::size_t most,
+                                      std::size_t& left) {
+  std::vector<std::vector<double>> out(capture.axes.size());
+  std::size_t row = 0;
+  for (; row < capture.size(); ++row) {
+    // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing.
+    constexpr double kLongestHole = 10000.0;
+    const double steps =
+        row == 0 ? 1.0 : std::round((capture.time_s[row] - capture.time_s[row - 1]) / period_s);
+    const auto missing = static_cast<std::size_t>(std::clamp(steps - 1.0, 0.0, kLongestHole));
+    if (out[0].size() + missing + 1 > most) break;
+    for (std::size_t a = 0; a < out.size(); ++a) {
+      out[a].resize(out[a].size() + missing, std::nan(""));
+      out[a].push_back(capture.rate_radps[a][row]);
+    }
+  }
+  left = capture.size() - row;
+  return out;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+// What people read: deg/sqrt(h), deg/h, deg/h/sqrt(h) beside SI.
+std::string in_field_units(const TunedFigure& figure) {
+  double factor = 0.0;
+  const char* unit = "";
+  if (figure.unit == "rad/s/sqrt(Hz)") factor = kDeg * 60.0, unit = "deg/sqrt(h)";
+  if (figure.unit == "rad/s^2/sqrt(Hz)") factor = kDeg * 3600.0 * 60.0, unit = "deg/h/sqrt(h)";
+  if (figure.unit == "rad/s") factor = kDeg * 3600.0, unit = "deg/h";
+  if (factor == 0.0) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, "   %.4g %s", figure.value * factor, unit);
+  return text;
+}
+
+json model_json(const TunedModel& model) {
+  json figures = json::object();
+  for (const TunedFigure& f : model.figures)
+    figures[f.name] = {{"value", f.value},
+                       {"std_error", f.std_error ? json(*f.std_error) : json(nullptr)},
+                       {"unit", f.unit}};
+  return {{"state", model.settings.state},
+          {"state_parameters", model.settings.state_parameters},
+          {"parameters", model.parameters},
+          {"log_likelihood", model.log_likelihood},
+          {"bic", model.bic},
+          {"figures", figures}};
+}
+
+void print(const Tuning& tuning) {
+  std::printf("%-28s %4s %16s %10s\n", "state model", "free", "ln likelihood", "BIC - best");
+  for (const TunedModel& model : tuning.models)
+    std::printf("%-28s %4d %16.1f %10.1f\n", model.settings.state.c_str(), model.parameters,
+                model.log_likelihood, model.bic - tuning.models.front().bic);
+  std::printf("\n%s\n", tuning.models.front().settings.state.c_str());
+  for (const TunedFigure& f : tuning.models.front().figures) {
+    if (f.std_error)
+      std::printf("  %-30s %12.5g ± %-9.2g %-18s%s\n", f.name.c_str(), f.value, *f.std_error, f.unit.c_str(),
+                  in_field_units(f).c_str());
+    else
+      std::printf("  %-30s %12.5g   %-9s %-18s%s\n", f.name.c_str(), f.value, "unknown", f.unit.c_str(),
+                  in_field_units(f).c_str());
+  }
+}
+
+Model model_of(const Tuning& tuning, const Capture& capture, const std::string& path) {
+  Model model;
+  model.filter = tuning.models.front().settings;
+  for (const std::string& axis : capture.axes)
+    for (const TunedFigure& f : tuning.models.front().figures) {
+      // A figure whose error is unknown lies at its bound: the data do not show it.
+      if (!f.std_error) continue;
+      if (f.name == "angle_random_walk") model.noise[axis].N = f.value;
+      if (f.name == "rate_random_walk") model.noise[axis].K = f.value;
+    }
+  model.source.capture = std::filesystem::path(path).filename().string();
+  model.source.date = today();
+  return model;
+}
+
+void run(const Options& options) {
+  const Capture capture = options.input.read(options.capture);
+  if (capture.size() < 3)
+    throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
+                             " rows, expected at least 200");
+  const double period = sample_clock(capture.time_s).period_s;
+  std::size_t left = 0;
+  const auto columns = even(capture, period, options.samples, left);
+  const std::vector<std::span<const double>> axes(columns.begin(), columns.end());
+  TuneOptions tune_options;
+  tune_options.states = options.states;
+  Progress progress("fitting state models", options.states.empty() ? 7 : options.states.size());
+  tune_options.progress = [&](std::size_t done, std::size_t) { progress.at(done); };
+  Tuning tuning;
+  try {
+    tuning = tune(axes, period, tune_options);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.capture + ": " + error.what());
+  }
+  std::printf("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
+              capture.axes.size() > 1 ? ", all axes under one model" : "");
+  if (left > 0)
+    std::printf("the last %zu rows are left out; --samples %zu takes all\n", left, capture.size() + left);
+  print(tuning);
+  if (!options.json_file.empty()) {
+    json models = json::array();
+    for (const TunedModel& model : tuning.models) models.push_back(model_json(model));
+    write_text_file(options.json_file, json{{"schema", "ifog.tune/1"},
+                                            {"capture", options.capture},
+                                            {"samples", tuning.samples},
+                                            {"left_out", left},
+                                            {"sample_rate_hz", 1.0 / period},
+                                            {"best", tuning.models.front().settings.state},
+                                            {"models", models}}
+                                               .dump(2) +
+                                           "\n");
+  }
+  if (!options.model.empty()) {
+    write_model(model_of(tuning, capture, options.capture), options.model);
+    std::printf("\nwritten: %s\n  ifog denoise %s --model %s --output denoised.csv\n", options.model.c_str(),
+                options.capture.c_str(), options.model.c_str());
+  }
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("tune", "noise and state model of a sensor at rest, by maximum likelihood");
+  auto options = std::make_shared<Options>();
+  command->add_option("capture", options->capture, "a capture at rest")->required();
+  command->add_option("--write-model", options->model, "model file that ifogd and denoise read");
+  command->add_option("--json", options->json_file, "write the figures as JSON");
+  command->add_option("--state", options->states, "state models to try; may stand several times");
+  command->add_option("--samples", options->samples, "most samples of each axis to fit")
+      ->check(CLI::Range(std::size_t{200}, std::size_t{100000000}))
+      ->capture_default_str();
+  options->input.add_to(*command);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ifog::tools
