@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
                "ifog"};
   app.require_subcommand(1);
   app.set_version_flag("--version", IFOG_VERSION);
-  ifog::tools::add_allan(app);
 
+  ifog::tools::add_allan(app);
   ifog::tools::add_compare(app);
   ifog::tools::add_convert(app);
   ifog::tools::add_denoise(app);
