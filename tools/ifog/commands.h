@@ -23,5 +23,6 @@ void add_drivers(CLI::App& app);
 void add_monitor(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_tune(CLI::App& app);
+void add_diagnose(CLI::App& app);
 
 }  // namespace ifog::tools

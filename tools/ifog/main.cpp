@@ -20,6 +20,8 @@ int main(int argc, char** argv) {
   ifog::tools::add_replay(app);
   ifog::tools::add_tune(app);
 
+  ifog::tools::add_diagnose(app);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,56 @@
+// Records cut to means over blocks of equal length, a few thousand in all: slow effects are told from slow
+// noise just as well there, at a thousandth of the cost. Channels keep a finer grid, on which the causal
+// shapes run before they are averaged, so that lags and derivatives are not blurred by the block.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/effects/shape.h"
+
+namespace ifog {
+
+struct BlockGrid {
+  double block_s = 0.0;             // length of a block
+  double fine_s = 0.0;              // of a step of the fine grid
+  std::size_t fine = 1;             // steps a block
+  std::vector<std::size_t> starts;  // first block of each record, and one past the last block at the end
+  std::vector<std::uint8_t> valid;  // by block: enough samples in it
+  std::vector<double> time_s;       // middle of the block, in its record's time
+  Eigen::VectorXd error;            // by block: mean of rate - reference, 0 where not valid
+  double sample_s = 0.0;            // median period of the samples
+  bool dwells = false;              // points of a rate table, no time series: their noise is white
+  double white_variance = 0.0;      // of one sample, from differences of neighbours
+
+  [[nodiscard]] std::size_t size() const { return valid.size(); }
+  [[nodiscard]] std::size_t used() const;  // valid blocks
+};
+
+struct FineChannel {
+  std::string name;
+  std::vector<double> values;  // on the fine grid of all records, missing ones held
+  std::vector<double> power;   // variance within each step of the fine grid; empty when a step is one sample
+  double low = 0.0, high = 0.0;
+  bool varies = false;
+  bool rotates = false;  // follows the sensor's own rotation; a linear use of it would cancel rotation
+};
+
+struct BlockData {
+  BlockGrid grid;
+  std::vector<FineChannel> channels;  // in the order of the first record; the reference, if any, last
+  std::ptrdiff_t reference = -1;      // its index
+};
+
+// Throws std::invalid_argument as diagnose() does.
+BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks = 4096);
+
+// Means over blocks of a shape of a channel, or of the product of two; a record starts it anew.
+Eigen::VectorXd column(const BlockData& data, const ShapeSettings& shape, std::size_t channel);
+Eigen::VectorXd column(const BlockData& data, const ShapeSettings& shape, std::size_t channel,
+                       const ShapeSettings& with, std::size_t with_channel);
+
+}  // namespace ifog

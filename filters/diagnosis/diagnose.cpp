@@ -1,0 +1,478 @@
+#include "filters/diagnosis/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "filters/diagnosis/figures.h"
+#include "filters/diagnosis/lines.h"
+#include "filters/diagnosis/prediction.h"
+#include "filters/diagnosis/search.h"
+#include "filters/diagnosis/separate.h"
+#include "filters/diagnosis/unexplained.h"
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+const double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kFolds = 4;
+constexpr std::size_t kSeriesPoints = 4000;
+
+// The error of one record on its nominal grid: even steps, so that spectra and Allan deviations mean
+// something.
+struct EvenError {
+  std::vector<double> before, after, held_out;
+  double start_s = 0.0;
+};
+
+std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s) {
+  std::vector<EvenError> errors;
+  for (const Record& record : records) {
+    EvenError error;
+    error.start_s = record.time_s.front();
+    const double span = record.time_s.back() - record.time_s.front();
+    error.before.assign(static_cast<std::size_t>(std::floor(span / sample_s + 0.5)) + 1, kMissing);
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+      const auto k =
+          static_cast<std::size_t>(std::floor((record.time_s[i] - error.start_s) / sample_s + 0.5));
+      double value = record.rate_radps[i];
+      if (!record.reference_radps.empty()) value -= record.reference_radps[i];
+      error.before[std::min(k, error.before.size() - 1)] = value;
+    }
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+// Slow enough for block means to carry it; faster lines are fitted to the samples themselves.
+bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz * grid.block_s < 0.4; }
+
+struct FastLine {
+  std::size_t record;
+  SpectralLine line;
+};
+
+struct Lines {
+  std::vector<Candidate> slow;
+  std::vector<FastLine> fast;
+};
+
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance) {
+  Lines found;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    for (const SpectralLine& line :
+         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance)) {
+      if (line.coherence < kCoherent) continue;
+      if (is_slow(line.frequency_hz, grid)) {
+        Candidate candidate;
+        candidate.form = Form::kLine;
+        candidate.record = r;
+        candidate.frequency_hz = line.frequency_hz;
+        found.slow.push_back(candidate);
+      } else {
+        found.fast.push_back({r, line});
+      }
+    }
+  }
+  return found;
+}
+
+FoundEffect line_effect(const SpectralLine& line, double total_variance) {
+  FoundEffect found;
+  Effect& effect = found.effect;
+  effect.form = "line";
+  effect.parameters = {{"cosine", line.cosine, line.std_error, "rad/s"},
+                       {"sine", line.sine, line.std_error, "rad/s"},
+                       {"frequency_hz", line.frequency_hz, line.frequency_std_hz, "Hz"}};
+  effect.meaning = meaning_of(effect);
+  found.p_value = line.p_value;
+  found.likelihood_ratio = 2.0 * line.ratio;
+  const double power = 0.5 * (line.cosine * line.cosine + line.sine * line.sine);
+  found.variance_explained = total_variance > 0.0 ? std::min(1.0, power / total_variance) : 0.0;
+  return found;
+}
+
+double variance_of(std::span<const double> values) {
+  double sum = 0.0;
+  double square = 0.0;
+  double n = 0.0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    n += 1.0;
+  }
+  if (n < 2.0) return 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
+  }
+  return square / n;
+}
+
+class Account {
+ public:
+  Account(const std::vector<Record>& records, const DiagnoseOptions& options)
+      : records_(records),
+        options_(options),
+        data_(cut_to_blocks(records)),
+        errors_(even_errors(records, data_.grid.sample_s)) {}
+
+  Diagnosis run() {
+    for (const Record& record : records_) result_.samples += record.time_s.size();
+    result_.sample_rate_hz = 1.0 / data_.grid.sample_s;
+    SearchOptions search;
+    search.significance = options_.significance;
+    search.most_effects = options_.most_effects;
+    search.progress = options_.progress;
+    found_ = search_effects(data_, search);
+    take_effects();
+    // Lines are looked for in what the effects leave; a slow one then competes with them in a second search.
+    lines_ = coherent_lines(errors_, data_.grid, options_.significance);
+    if (data_.reference >= 0 && data_.channels[static_cast<std::size_t>(data_.reference)].varies) lines_ = {};
+    while (!lines_.slow.empty()) {
+      search.given = lines_.slow;
+      found_ = search_effects(data_, search);
+      const std::size_t before = lines_.slow.size();
+      keep_proven_lines();
+      if (lines_.slow.size() == before) break;
+      if (lines_.slow.empty()) {
+        search.given.clear();
+        found_ = search_effects(data_, search);
+      }
+    }
+    take_effects();
+    write_effects();
+    write_alternatives();
+    write_figures();
+    write_series();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] Eigen::Index constant_columns() const { return static_cast<Eigen::Index>(records_.size()); }
+
+  void take_effects() {
+    std::vector<Candidate> effects;
+    for (const Chosen& chosen : found_.chosen) effects.push_back(chosen.candidate);
+    columns_ = design(data_, effects);
+    subtract();
+  }
+
+  // A peak that slow noise or an effect made is no line once both are in the fit.
+  void keep_proven_lines() {
+    const double tries = 0.5 * static_cast<double>(result_.samples);
+    std::vector<Candidate> kept;
+    for (std::size_t i = 0; i < lines_.slow.size(); ++i) {
+      if (tries * std::exp(-0.5 * found_.chosen[i].likelihood_ratio) < options_.significance)
+        kept.push_back(lines_.slow[i]);
+    }
+    lines_.slow = std::move(kept);
+  }
+
+  // Coefficients for each fold from the blocks of the others.
+  std::vector<Eigen::VectorXd> crossed() const {
+    std::vector<Eigen::VectorXd> coefficients;
+    const std::vector<int> fold = folds_of(data_.grid, kFolds);
+    for (int f = 0; f < kFolds; ++f) {
+      // Whitened on all blocks, then fitted on the rows of the others: a fold is left out of the fit, not cut
+      // out of the filter, which would start anew behind every gap.
+      Columns white = columns_;
+      Whitening(data_.grid, found_.noise.shape).apply(white);
+      const Eigen::Index k = constant_columns();
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(white.middleCols(1, k));
+      const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(white.rows(), k);
+      white -= (q * (q.transpose() * white)).eval();
+      for (Eigen::Index i = 0; i < white.rows(); ++i) {
+        if (fold[static_cast<std::size_t>(i)] == f) white.row(i).setZero();
+      }
+      const Eigen::Index p = white.cols() - 1 - k;
+      const Columns x = white.rightCols(p);
+      const Eigen::VectorXd scale = x.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+      const Eigen::MatrixXd scaled = x * scale.asDiagonal();
+      const Eigen::VectorXd c = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(scaled).solve(white.col(0));
+      coefficients.push_back(scale.asDiagonal() * c);
+    }
+    return coefficients;
+  }
+
+  void subtract() {
+    const Eigen::Index p = columns_.cols() - 1 - constant_columns();
+    const Eigen::VectorXd whole = found_.coefficients.tail(p);
+    const std::vector<Eigen::VectorXd> folds = p > 0 ? crossed() : std::vector<Eigen::VectorXd>{};
+    const std::vector<int> fold = folds_of(data_.grid, kFolds);
+    const BlockGrid& grid = data_.grid;
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(columns_.rows());
+    Eigen::VectorXd held = all;
+    if (p > 0) {
+      all = columns_.rightCols(p) * whole;
+      for (Eigen::Index b = 0; b < held.size(); ++b) {
+        held[b] =
+            columns_.row(b).tail(p).dot(folds[static_cast<std::size_t>(fold[static_cast<std::size_t>(b)])]);
+      }
+    }
+    contribution_ = all;
+    for (std::size_t r = 0; r < errors_.size(); ++r) {
+      EvenError& error = errors_[r];
+      error.after = error.before;
+      for (const FastLine& fast : lines_.fast) {
+        if (fast.record != r) continue;
+        for (std::size_t i = 0; i < error.after.size(); ++i) {
+          const double phase =
+              2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * grid.sample_s);
+          error.after[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+        }
+      }
+      error.held_out = error.after;
+      for (std::size_t i = 0; i < error.after.size(); ++i) {
+        const double at =
+            static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
+        error.after[i] -= between(all, r, at);
+        error.held_out[i] -= between(held, r, at);
+      }
+    }
+  }
+
+  // Linear between the middles of blocks of record r.
+  [[nodiscard]] double between(const Eigen::VectorXd& values, std::size_t r, double at) const {
+    const auto first = static_cast<double>(data_.grid.starts[r]);
+    const auto last = static_cast<double>(data_.grid.starts[r + 1] - 1);
+    const double place = std::clamp(first + at, first, last);
+    const auto low = static_cast<Eigen::Index>(std::floor(place));
+    const auto high = std::min(low + 1, static_cast<Eigen::Index>(last));
+    const double share = place - std::floor(place);
+    return values[low] + share * (values[high] - values[low]);
+  }
+
+  void write_effects() {
+    const BlockGrid& grid = data_.grid;
+    std::vector<double> used;
+    for (std::size_t b = 0; b < grid.size(); ++b) {
+      if (grid.valid[b]) used.push_back(grid.error[static_cast<Eigen::Index>(b)]);
+    }
+    const double total = variance_of(used);
+    Eigen::Index at = constant_columns();
+    std::vector<std::pair<Eigen::Index, std::size_t>> rows;  // column of coefficient, parameter index
+    for (const Chosen& chosen : found_.chosen) {
+      FoundEffect found;
+      found.effect = effect_of(data_, chosen.candidate);
+      found.effect.axis = options_.axis;
+      found.p_value = chosen.p_value;
+      found.likelihood_ratio = chosen.likelihood_ratio;
+      const Eigen::Index width = chosen.candidate.form == Form::kLine ? 2 : 1;
+      Eigen::VectorXd part = Eigen::VectorXd::Zero(columns_.rows());
+      for (Eigen::Index j = 0; j < width; ++j) {
+        ModelParameter& parameter = found.effect.parameters[static_cast<std::size_t>(j)];
+        parameter.value = found_.coefficients[at + j];
+        parameter.std_error = std::sqrt(found_.covariance(at + j, at + j));
+        part += columns_.col(1 + at + j) * parameter.value;
+      }
+      std::vector<double> of_used;
+      for (std::size_t b = 0; b < grid.size(); ++b) {
+        if (grid.valid[b]) of_used.push_back(part[static_cast<Eigen::Index>(b)]);
+      }
+      found.variance_explained = total > 0.0 ? std::min(1.0, variance_of(of_used) / total) : 0.0;
+      parts_.push_back(part);
+      columns_of_.push_back(at);
+      at += width;
+      result_.effects.push_back(std::move(found));
+    }
+    for (const FastLine& fast : lines_.fast) {
+      result_.effects.push_back(line_effect(fast.line, variance_of(errors_[fast.record].before)));
+      result_.effects.back().effect.axis = options_.axis;
+    }
+    time_constant_errors();
+    write_covariance();
+    write_ranges();
+  }
+
+  // Of searched time constants: from the curvature of the likelihood, the coefficients free.
+  void time_constant_errors() {
+    std::vector<Candidate> effects;
+    for (const Chosen& chosen : found_.chosen) effects.push_back(chosen.candidate);
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      if (!effects[i].searched()) continue;
+      constexpr double kStep = 0.05;
+      const auto value = [&](double factor) {
+        std::vector<Candidate> trial = effects;
+        trial[i].time_constant_s *= factor;
+        return fit_whitened(data_.grid, found_.noise.shape, design(data_, trial)).log_likelihood;
+      };
+      const double curve = (2.0 * value(1.0) - value(1.0 + kStep) - value(1.0 - kStep)) / (kStep * kStep);
+      for (ModelParameter& parameter : result_.effects[i].effect.parameters) {
+        if (parameter.name != "time_constant_s") continue;
+        parameter.std_error = curve > 0.0 ? parameter.value / std::sqrt(curve) : parameter.value;
+      }
+    }
+  }
+
+  void write_covariance() {
+    std::size_t n = 0;
+    for (const FoundEffect& found : result_.effects) n += found.effect.parameters.size();
+    result_.covariance.assign(n * n, 0.0);
+    std::vector<Eigen::Index> column(n, -1);
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < result_.effects.size(); ++i) {
+      const auto& parameters = result_.effects[i].effect.parameters;
+      for (std::size_t j = 0; j < parameters.size(); ++j, ++row) {
+        result_.covariance[row * n + row] = parameters[j].std_error * parameters[j].std_error;
+        const std::size_t width = result_.effects[i].effect.form == "line" ? 2 : 1;
+        if (i < columns_of_.size() && j < width) column[row] = columns_of_[i] + static_cast<Eigen::Index>(j);
+      }
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t b = 0; b < n; ++b) {
+        if (column[a] >= 0 && column[b] >= 0)
+          result_.covariance[a * n + b] = found_.covariance(column[a], column[b]);
+      }
+    }
+  }
+
+  void write_ranges() {
+    for (const FineChannel& channel : data_.channels) {
+      const auto uses = [&](const FoundEffect& found) {
+        return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
+      };
+      if (std::any_of(result_.effects.begin(), result_.effects.end(), uses)) {
+        result_.ranges.push_back({channel.name, channel.low, channel.high});
+      }
+    }
+  }
+
+  void write_alternatives() {
+    for (const Alternative& alternative : found_.alternatives) {
+      Indistinguishable pair;
+      const Candidate& mine = found_.chosen[alternative.of].candidate;
+      pair.effects = {result_.effects[alternative.of].effect, effect_of(data_, alternative.candidate)};
+      pair.correlation = alternative.correlation;
+      pair.separate_by = capture_that_separates(data_, mine, alternative.candidate);
+      result_.indistinguishable.push_back(std::move(pair));
+    }
+  }
+
+  void write_figures() {
+    std::vector<std::map<std::string, double>> before;
+    std::vector<std::map<std::string, double>> after;
+    std::vector<double> weight;
+    for (const EvenError& error : errors_) {
+      before.push_back(error_figures(error.before, data_.grid.sample_s));
+      after.push_back(error_figures(error.held_out, data_.grid.sample_s));
+      weight.push_back(static_cast<double>(error.before.size()));
+    }
+    result_.before = pooled(before, weight);
+    result_.after = pooled(after, weight);
+    result_.noise = noise_terms(found_.noise.shape, found_.noise.white_variance, data_.grid.block_s);
+
+    const auto longest = std::max_element(
+        errors_.begin(), errors_.end(),
+        [](const EvenError& a, const EvenError& b) { return a.before.size() < b.before.size(); });
+    std::vector<SpectralLine> peaks;
+    for (const SpectralLine& line :
+         find_lines(longest->after, longest->start_s, data_.grid.sample_s, options_.significance)) {
+      peaks.push_back(line);
+    }
+    result_.unexplained = describe_unexplained(longest->before, longest->after, longest->start_s,
+                                               data_.grid.sample_s, found_.noise, data_.grid, peaks);
+    const double span = static_cast<double>(longest->before.size()) * data_.grid.sample_s;
+    const double aligned = std::min(300.0, span / 10.0);
+    result_.heading =
+        predict_heading(data_.grid, found_.noise, aligned, {60.0, 300.0, 600.0, 1800.0, 3600.0});
+  }
+
+  void write_series() {
+    DiagnosisSeries& series = result_.series;
+    const BlockGrid& grid = data_.grid;
+    const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
+    series.contribution_radps.resize(parts_.size());
+    series.channel.resize(parts_.size());
+    double offset = 0.0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Effect& effect = result_.effects[i].effect;
+      series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));
+    }
+    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+      for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; b += stride) {
+        const auto row = static_cast<Eigen::Index>(b);
+        series.time_s.push_back(offset + grid.time_s[b]);
+        const double value = grid.valid[b] ? grid.error[row] : kMissing;
+        series.before_radps.push_back(value);
+        series.after_radps.push_back(value - contribution_[row]);
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+          series.contribution_radps[i].push_back(parts_[i][row]);
+          const std::size_t channel = found_.chosen[i].candidate.channel;
+          if (channel != Candidate::kNone)
+            series.channel[i].push_back(data_.channels[channel].values[b * grid.fine]);
+        }
+      }
+      offset = series.time_s.back();
+    }
+    const EvenError& first = errors_.front();
+    const Spectrum before = averaged_spectrum(first.before, grid.sample_s);
+    const Spectrum after = averaged_spectrum(first.after, grid.sample_s);
+    series.frequency_hz = before.frequency_hz;
+    for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
+    for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));
+    for (double m = 1.0; m * 4.0 < static_cast<double>(first.before.size()); m *= 1.5) {
+      const auto count = static_cast<std::size_t>(m);
+      const double tau = static_cast<double>(count) * grid.sample_s;
+      if (!series.tau_s.empty() && tau <= series.tau_s.back()) continue;
+      series.tau_s.push_back(tau);
+      series.before_adev_radps.push_back(allan_deviation(first.before, count));
+      series.after_adev_radps.push_back(allan_deviation(first.held_out, count));
+    }
+  }
+
+  const std::vector<Record>& records_;
+  const DiagnoseOptions& options_;
+  BlockData data_;
+  std::vector<EvenError> errors_;
+  Lines lines_;
+  SearchResult found_;
+  Columns columns_;
+  Eigen::VectorXd contribution_;
+  std::vector<Eigen::VectorXd> parts_;
+  std::vector<Eigen::Index> columns_of_;
+  Diagnosis result_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options) {
+  return Account(records, options).run();
+}
+
+void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& model) {
+  std::size_t old = 0;
+  for (const Effect& effect : model.effects) old += effect.parameters.size();
+  std::size_t added = 0;
+  for (const FoundEffect& found : diagnosis.effects) {
+    model.effects.push_back(found.effect);
+    model.effects.back().axis = axis;
+    added += found.effect.parameters.size();
+  }
+  // Axes are fitted apart, so nothing is known of covariances across them: zero.
+  std::vector<double> covariance((old + added) * (old + added), 0.0);
+  for (std::size_t i = 0; i < old && model.covariance.size() == old * old; ++i) {
+    for (std::size_t j = 0; j < old; ++j) covariance[i * (old + added) + j] = model.covariance[i * old + j];
+  }
+  for (std::size_t i = 0; i < added; ++i) {
+    for (std::size_t j = 0; j < added; ++j) {
+      covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[i * added + j];
+    }
+  }
+  model.covariance = std::move(covariance);
+  for (const ChannelRange& range : diagnosis.ranges) {
+    const auto known = std::find_if(model.ranges.begin(), model.ranges.end(), [&](const ChannelRange& other) {
+      return other.channel == range.channel;
+    });
+    if (known == model.ranges.end()) {
+      model.ranges.push_back(range);
+    } else {
+      known->low = std::min(known->low, range.low);
+      known->high = std::max(known->high, range.high);
+    }
+  }
+  model.noise[axis] = diagnosis.noise;
+}
+
+}  // namespace ifog

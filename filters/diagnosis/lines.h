@@ -1,0 +1,39 @@
+// Lines in the spectrum of the error: frequency searched, amplitude against the noise around it, and whether
+// one amplitude and phase hold for the whole record. A resonance or a moving line is a peak too, but not a
+// line.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ifog {
+
+struct SpectralLine {
+  double frequency_hz = 0.0;
+  double cosine = 0.0, sine = 0.0;  // of 2 pi f t, t the record's time, same unit as the error
+  double std_error = 0.0;           // of each of them
+  double frequency_std_hz = 0.0;
+  double ratio = 0.0;      // power over the mean of the noise around it
+  double p_value = 1.0;    // over all frequencies of the record
+  double coherence = 0.0;  // 1: one phase all along, 0: none; see kCoherent
+  double width_hz = 0.0;   // of the peak, 1 / record length for a line
+};
+
+// A line keeps more than this of its power when its quarters are added with their phases.
+inline constexpr double kCoherent = 0.8;
+
+struct Spectrum {
+  std::vector<double> frequency_hz;
+  std::vector<double> density;  // one-sided, unit^2/Hz
+};
+
+// Missing samples (NaN) count as the mean. Peaks above what noise makes once in 1 / significance records,
+// strongest first. error: at even steps of period_s, starting at start_s.
+std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
+                                     double significance, std::size_t most = 12);
+
+// Averaged in logarithmic bands for drawing, at most `points`.
+Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points = 600);
+
+}  // namespace ifog

@@ -1,0 +1,60 @@
+// The loop of the diagnosis: score every candidate in the innovations of the noise model, take the one that
+// also predicts held-out blocks, fit everything anew, until nothing passes.
+#pragma once
+
+#include <functional>
+
+#include "filters/diagnosis/candidates.h"
+#include "filters/diagnosis/noise_fit.h"
+
+namespace ifog {
+
+struct Chosen {
+  Candidate candidate;
+  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, noise fitted anew
+  double p_value = 1.0;           // after correction for everything tried
+};
+
+struct Alternative {
+  std::size_t of;  // index of the chosen effect it could stand for
+  Candidate candidate;
+  double correlation;  // of the whitened regressors, all else projected out
+  double loss;         // twice the log-likelihood lost by taking it instead
+};
+
+struct SearchResult {
+  std::vector<Chosen> chosen;
+  std::vector<Alternative> alternatives;
+  NoiseFit noise;          // with the chosen effects
+  NoiseFit noise_without;  // without any
+  Eigen::VectorXd
+      coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
+  Eigen::MatrixXd covariance;  // of those
+  std::size_t tries = 0;
+};
+
+struct SearchOptions {
+  double significance = 0.01;
+  std::size_t most_effects = 8;
+  std::function<void(std::size_t, std::size_t)> progress;
+  std::vector<Candidate> given;  // lines, found elsewhere; in the fit from the start
+};
+
+SearchResult search_effects(const BlockData& data, const SearchOptions& options);
+
+// One constant a record.
+Columns constants(const BlockGrid& grid);
+
+// Measurement, constants, and the regressors of the effects.
+Columns design(const BlockData& data, const std::vector<Candidate>& effects);
+
+// Which of `folds` each block belongs to: short contiguous pieces in turn, so that every fold sees the whole
+// record.
+std::vector<int> folds_of(const BlockGrid& grid, int folds);
+
+// Coefficients of the columns after the first by generalised least squares, on the rows where `use` says so.
+// Covariance too, when asked for.
+Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
+                      Eigen::MatrixXd* covariance = nullptr);
+
+}  // namespace ifog

@@ -1,0 +1,138 @@
+#include "filters/diagnosis/unexplained.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "filters/diagnosis/figures.h"
+
+namespace ifog {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double variance(std::span<const double> values) {
+  double sum = 0.0;
+  double square = 0.0;
+  double n = 0.0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    n += 1.0;
+  }
+  if (n < 2.0) return 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
+  }
+  return square / n;
+}
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 400> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  return line.data();
+}
+
+// Energy of differences within short pieces, so that slow changes of the rate do not count.
+std::vector<double> energies(std::span<const double> left, std::size_t piece) {
+  std::vector<double> found;
+  for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
+    double square = 0.0;
+    double n = 0.0;
+    for (std::size_t i = from + 1; i < from + piece; ++i) {
+      const double d = left[i] - left[i - 1];
+      if (!std::isfinite(d)) continue;
+      square += d * d;
+      n += 1.0;
+    }
+    found.push_back(n > 0.0 ? square / n : 0.0);
+  }
+  return found;
+}
+
+}  // namespace
+
+Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
+                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
+                                 const std::vector<SpectralLine>& peaks) {
+  Unexplained found;
+  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
+  const double before = variance(means_over(error, second));
+  const double after = variance(means_over(left, second));
+  const double white = noise.white_variance * grid.block_s / (static_cast<double>(second) * period_s);
+  found.fraction = before > 0.0 ? std::clamp((after - white) / before, 0.0, 1.0) : 0.0;
+
+  if (!peaks.empty()) {
+    const SpectralLine& peak = peaks.front();
+    found.kind = "line";
+    found.frequency_hz = peak.frequency_hz;
+    found.hint = text(
+        "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
+        "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
+        peak.frequency_hz, peak.width_hz);
+    return found;
+  }
+  const std::size_t piece = std::max<std::size_t>(8, second / 4);
+  const std::vector<double> energy = energies(left, piece);
+  if (energy.size() >= 16) {
+    const double usual = median(energy);
+    std::size_t bursts = 0;
+    for (std::size_t i = 0; i < energy.size(); ++i) {
+      if (energy[i] < 6.0 * usual + 1e-300) continue;
+      ++bursts;
+      const double t = start_s + static_cast<double>(i * piece) * period_s;
+      if (found.times_s.empty() || t - found.times_s.back() > 2.0) found.times_s.push_back(t);
+    }
+    if (bursts > 0 && bursts * 10 < energy.size() && piece >= 8) {
+      found.kind = "bursts";
+      found.hint = text(
+          "%zu bursts, the first at %.4g s: knocks, radio keying or supply dips. Log an accelerometer and "
+          "the supply at the sensor's own rate.",
+          found.times_s.size(), found.times_s.front());
+      if (found.times_s.size() > 50) found.times_s.resize(50);
+      return found;
+    }
+    found.times_s.clear();
+    const std::size_t part = energy.size() / 8;
+    double least = 1e300;
+    double most = 0.0;
+    for (std::size_t p = 0; p < 8; ++p) {
+      const double level = median({energy.begin() + static_cast<std::ptrdiff_t>(p * part),
+                                   energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part)});
+      least = std::min(least, level);
+      most = std::max(most, level);
+    }
+    if (most > 2.0 * least) {
+      found.kind = "changing_variance";
+      found.hint = text(
+          "the noise of single samples changes by a factor of %.2g in the course of the record: vibration, "
+          "light level or electronics. Log vibration, optical power and the supply.",
+          std::sqrt(most / std::max(least, 1e-300)));
+      return found;
+    }
+  }
+  const bool slow = noise.shape.walk > 0.0 || noise.shape.flicker > 0.0 || noise.shape.markov > 0.0;
+  if (slow && found.fraction > 0.05) {
+    found.kind = "slow";
+    found.hint =
+        "slow drift that follows none of the channels given: the sensor's own random walk or flicker, or an "
+        "environment "
+        "that was not logged. Log the temperature at the coil and at the electronics, and the supply.";
+  } else if (found.fraction > 0.05) {
+    found.kind = "uncorrelated";
+    found.hint = "correlated with nothing that was logged, and with no pattern of its own";
+  } else {
+    found.kind = "nothing";
+    found.hint = "what stays is white noise";
+  }
+  return found;
+}
+
+}  // namespace ifog

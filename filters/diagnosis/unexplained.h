@@ -1,0 +1,16 @@
+// What stays, in words a person can act on.
+#pragma once
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/lines.h"
+#include "filters/diagnosis/noise_fit.h"
+
+namespace ifog {
+
+// error, left: before and after, even steps of period_s, NaN missing, of one record starting at start_s.
+// peaks: spectral peaks of `left` that are no lines of one phase.
+Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
+                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
+                                 const std::vector<SpectralLine>& peaks);
+
+}  // namespace ifog

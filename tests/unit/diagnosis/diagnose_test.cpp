@@ -1,0 +1,125 @@
+#include "filters/diagnosis/diagnose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "filters/effects/compensator.h"
+#include "filters/random/philox.h"
+
+namespace ifog {
+namespace {
+
+double gaussian(std::uint32_t counter, std::uint32_t stream, std::uint32_t seed) {
+  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {seed, 5});
+  const double u = (bits[0] + 0.5) / 4294967296.0;
+  const double v = (bits[1] + 0.5) / 4294967296.0;
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+}
+
+struct Sensor {
+  std::vector<double> time, rate, temperature, supply;
+  [[nodiscard]] Record record() const {
+    Record r;
+    r.name = "sensor";
+    r.time_s = time;
+    r.rate_radps = rate;
+    r.channels = {{"temperature_degC", temperature}, {"supply_V", supply}};
+    return r;
+  }
+};
+
+// White noise and a random walk, a temperature that swings, a supply that wanders: and no effect yet.
+Sensor quiet(std::uint32_t seed) {
+  Sensor s;
+  double walk = 0.0;
+  double supply = 0.0;
+  for (std::uint32_t i = 0; i < 15000; ++i) {
+    const double t = 0.1 * i;
+    walk += 3e-10 * gaussian(i, 1, seed);
+    supply += 1e-3 * gaussian(i, 2, seed) - 1e-3 * supply;
+    s.time.push_back(t);
+    s.rate.push_back(3e-5 + 1e-6 * gaussian(i, 3, seed) + walk);
+    s.temperature.push_back(28.0 + 6.0 * std::sin(2.0 * M_PI * t / 900.0) + t / 300.0 +
+                            0.01 * gaussian(i, 4, seed));
+    s.supply.push_back(12.0 + supply + 0.002 * gaussian(i, 5, seed));
+  }
+  return s;
+}
+
+TEST(Diagnose, QuietSensorsHaveNoEffect) {
+  int false_alarms = 0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    false_alarms += !diagnose({quiet(seed).record()}, {}).effects.empty();
+  }
+  EXPECT_EQ(false_alarms, 0);
+}
+
+TEST(Diagnose, FindsATemperatureEffectAndItsSize) {
+  Sensor s = quiet(21);
+  for (std::size_t i = 0; i < s.rate.size(); ++i) s.rate[i] += 5e-8 * (s.temperature[i] - 25.0);
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].effect.form, "linear");
+  EXPECT_EQ(d.effects[0].effect.channel, "temperature_degC");
+  const ModelParameter& c = d.effects[0].effect.parameters[0];
+  EXPECT_NEAR(c.value, 5e-8, 4.0 * c.std_error);
+  EXPECT_LT(c.std_error, 5e-9);
+  EXPECT_LT(d.after.at("rms_100s_radps"), 0.5 * d.before.at("rms_100s_radps"));
+}
+
+TEST(Diagnose, TwoEffectsAtOnce) {
+  Sensor s = quiet(22);
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    s.rate[i] += 5e-8 * (s.temperature[i] - 25.0) + 4e-6 * (s.supply[i] - 12.0);
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_EQ(d.effects.size(), 2U);
+  EXPECT_NE(d.effects[0].effect.channel, d.effects[1].effect.channel);
+}
+
+// The model it writes corrects the sensor's next record by the code the daemon runs.
+TEST(Diagnose, ItsModelCorrectsTheNextRecord) {
+  Sensor first = quiet(23);
+  Sensor next = quiet(24);
+  for (Sensor* s : {&first, &next}) {
+    for (std::size_t i = 0; i < s->rate.size(); ++i) s->rate[i] += 5e-8 * (s->temperature[i] - 25.0);
+  }
+  Model model;
+  add_to_model(diagnose({first.record()}, {}), "", model);
+  Compensator compensator(model, {""});
+  double left = 0.0;
+  double was = 0.0;
+  for (std::size_t i = 0; i < next.rate.size(); ++i) {
+    CompensatorInput in;
+    in.dt_s = 0.1;
+    in.rate_radps[0] = next.rate[i];
+    const std::vector<double> channel = {next.temperature[i]};
+    in.channels = channel;
+    CompensatorOutput out;
+    compensator.step(in, out);
+    const double effect = 5e-8 * (next.temperature[i] - 25.0);
+    was += effect * effect;
+    left += (effect - out.correction_radps[0]) * (effect - out.correction_radps[0]);
+  }
+  EXPECT_LT(left, 0.02 * was);
+}
+
+TEST(Diagnose, SeveralRecordsHaveASwitchOnBiasEach) {
+  Sensor a = quiet(25);
+  Sensor b = quiet(26);
+  for (double& rate : b.rate) rate += 5e-6;
+  EXPECT_TRUE(diagnose({a.record(), b.record()}, {}).effects.empty());
+}
+
+TEST(Diagnose, RefusesWhatItCannotUse) {
+  EXPECT_THROW(diagnose({}, {}), std::invalid_argument);
+  Sensor s = quiet(27);
+  Record r = s.record();
+  r.rate_radps = r.rate_radps.subspan(1);
+  EXPECT_THROW(diagnose({r}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,103 @@
+#include "filters/diagnosis/whitening.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filters/diagnosis/noise_fit.h"
+#include "filters/diagnosis/prediction.h"
+#include "filters/random/philox.h"
+
+namespace ifog {
+namespace {
+
+BlockGrid even_grid(std::size_t n) {
+  BlockGrid grid;
+  grid.block_s = 1.0;
+  grid.fine_s = 1.0;
+  grid.starts = {0, n};
+  grid.valid.assign(n, 1);
+  for (std::size_t i = 0; i < n; ++i) grid.time_s.push_back(static_cast<double>(i));
+  grid.sample_s = 1.0;
+  return grid;
+}
+
+double gaussian(std::uint32_t counter, std::uint32_t stream) {
+  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {7, 11});
+  const double u = (bits[0] + 0.5) / 4294967296.0;
+  const double v = (bits[1] + 0.5) / 4294967296.0;
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+}
+
+// Covariance of walk plus white, whitened by its Cholesky factor: the second way to the same least squares.
+TEST(Whitening, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
+  constexpr Eigen::Index n = 300;
+  const NoiseShape shape{0.02, 0.0, 0.0, 0.0};
+  Columns columns(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    columns(i, 0) = gaussian(static_cast<std::uint32_t>(i), 1) + 0.01 * static_cast<double>(i);
+    columns(i, 1) = 1.0;
+    columns(i, 2) = std::sin(0.05 * static_cast<double>(i));
+  }
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      // A walk that starts anywhere: a large variance of its start stands for the diffuse one.
+      covariance(i, j) = 1e4 + shape.walk * static_cast<double>(std::min(i, j)) + (i == j ? 1.0 : 0.0);
+    }
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::MatrixXd x = columns.rightCols(2);
+  const Eigen::VectorXd expected = (x.transpose() * factor.solve(x))
+                                       .ldlt()
+                                       .solve(x.transpose() * factor.solve(Eigen::VectorXd(columns.col(0))));
+
+  const BlockGrid grid = even_grid(n);
+  Columns white = columns;
+  Whitening(grid, shape).apply(white);
+  const Eigen::VectorXd found =
+      Eigen::MatrixXd(white.rightCols(2)).colPivHouseholderQr().solve(Eigen::VectorXd(white.col(0)));
+  EXPECT_NEAR(found[1], expected[1], 1e-3 * std::abs(expected[1]));
+}
+
+// Scalar Riccati equation of walk and white: P = (q + sqrt(q^2 + 4 q)) / 2.
+TEST(Whitening, InnovationVarianceOfAWalkIsTheClosedForm) {
+  const BlockGrid grid = even_grid(64);
+  for (const double q : {1e-6, 1e-3, 1.0, 30.0}) {
+    const double p = 0.5 * (q + std::sqrt(q * q + 4.0 * q));
+    EXPECT_NEAR(Whitening(grid, {q, 0.0, 0.0, 0.0}).innovation_variance(), 1.0 + p, 1e-9 * (1.0 + p)) << q;
+  }
+}
+
+TEST(NoiseFit, FindsTheWalkItWasGiven) {
+  constexpr std::size_t n = 4000;
+  const BlockGrid grid = even_grid(n);
+  Columns columns(n, 2);
+  double walk = 0.0;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    walk += 0.03 * gaussian(i, 2);
+    columns(i, 0) = 2.0 * (gaussian(i, 3) + walk);
+    columns(i, 1) = 1.0;
+  }
+  const NoiseFit fit = fit_noise(grid, columns);
+  const NoiseTerms terms = noise_terms(fit.shape, fit.white_variance, grid.block_s);
+  EXPECT_NEAR(*terms.N, 2.0, 0.15);
+  ASSERT_TRUE(terms.K.has_value());
+  EXPECT_NEAR(*terms.K, 0.06, 0.02);
+}
+
+// Integral of white noise less its mean over the alignment: N^2 (T + T^2/A); of a walk held from the end of
+// the alignment onwards K^2 (T^3/3 + T^2 A/3).
+TEST(Prediction, IsTheClosedFormOfWhiteNoiseAndWalk) {
+  const BlockGrid grid = even_grid(64);
+  const double aligned = 200.0;
+  const double horizon = 3600.0;
+  const HeadingPrediction white = predict_heading(grid, {{0.0, 0.0, 0.0, 0.0}, 0.0, 4.0}, aligned, {horizon});
+  EXPECT_NEAR(white.sigma_rad[0], 2.0 * std::sqrt(horizon + horizon * horizon / aligned), 1e-6);
+  NoiseFit walk{{1e12, 0.0, 0.0, 0.0}, 0.0, 1e-12};
+  const double expected = std::sqrt(horizon * horizon * horizon / 3.0 + horizon * horizon * aligned / 3.0);
+  EXPECT_NEAR(predict_heading(grid, walk, aligned, {horizon}).sigma_rad[0], expected, 2e-3 * expected);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,165 @@
+// ifog diagnose: what the error is made of, what to correct, and what stays.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+
+#include "drivers/capture/capture.h"
+#include "drivers/capture/text_file.h"
+#include "filters/diagnosis/diagnose.h"
+#include "filters/effects/compensator.h"
+#include "filters/model/sha256.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/diagnosis_json.h"
+#include "tools/ifog/diagnosis_text.h"
+#include "tools/ifog/progress.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> captures;
+  std::string model, write_model, json;
+  std::vector<std::string> axes;
+  double significance = 0.01;
+  bool quiet = false;
+};
+
+std::string today() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::string text(32, '\0');
+  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
+  return text;
+}
+
+// The model's own effects are subtracted first, by the code that subtracts them online.
+void compensate(Capture& capture, const Model& model) {
+  Compensator compensator(model, capture.axes);
+  std::vector<const CaptureColumn*> columns;
+  for (const std::string& name : compensator.channels()) {
+    const CaptureColumn* found = nullptr;
+    for (const CaptureColumn& column : capture.channels) {
+      if (column.name == name) found = &column;
+    }
+    if (!found)
+      throw std::runtime_error("the model wants channel '" + name + "', which the capture does not have");
+    columns.push_back(found);
+  }
+  CompensatorInput in;
+  CompensatorOutput out;
+  std::vector<double> values(columns.size());
+  for (std::size_t i = 0; i < capture.size(); ++i) {
+    in.dt_s = i ? capture.time_s[i] - capture.time_s[i - 1] : capture.time_s[1] - capture.time_s[0];
+    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c]->values[i];
+    in.channels = values;
+    for (std::size_t a = 0; a < capture.axes.size(); ++a) in.rate_radps[a] = capture.rate_radps[a][i];
+    compensator.step(in, out);
+    for (std::size_t a = 0; a < capture.axes.size(); ++a) capture.rate_radps[a][i] = out.compensated_radps[a];
+  }
+}
+
+Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
+  Record record;
+  record.name = name;
+  record.time_s = capture.time_s;
+  record.rate_radps = capture.rate_radps[axis];
+  if (!capture.reference_rate_radps[axis].empty())
+    record.reference_radps = capture.reference_rate_radps[axis];
+  record.reference_name =
+      capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
+  for (const CaptureColumn& column : capture.channels)
+    record.channels.push_back({column.name, column.values});
+  return record;
+}
+
+std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const Arguments& arguments) {
+  std::vector<AxisDiagnosis> found;
+  const std::vector<std::string>& axes = captures.front().axes;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!arguments.axes.empty() &&
+        std::find(arguments.axes.begin(), arguments.axes.end(), axes[axis]) == arguments.axes.end()) {
+      continue;
+    }
+    std::vector<Record> records;
+    for (std::size_t c = 0; c < captures.size(); ++c) {
+      if (captures[c].axes != axes) {
+        throw std::runtime_error(arguments.captures[c] + ": has other axes than " + arguments.captures[0]);
+      }
+      records.push_back(record_of(captures[c], arguments.captures[c], axis));
+    }
+    DiagnoseOptions options;
+    options.significance = arguments.significance;
+    options.axis = axes[axis];
+    auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
+                                               options.most_effects + 1);
+    options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
+    Diagnosis diagnosis = diagnose(records, options);
+    progress.reset();
+    found.push_back({axes[axis], std::move(diagnosis)});
+  }
+  if (found.empty()) throw std::runtime_error("no such axis in " + arguments.captures[0]);
+  return found;
+}
+
+Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& arguments, Model model) {
+  for (const AxisDiagnosis& each : found) {
+    add_to_model(each.diagnosis, each.axis, model);
+    const std::string prefix = each.axis.empty() ? "" : each.axis + ".";
+    for (const auto& [name, value] : each.diagnosis.before) model.source.before[prefix + name] = value;
+    for (const auto& [name, value] : each.diagnosis.after) model.source.after[prefix + name] = value;
+  }
+  model.source.capture.clear();
+  std::string contents;
+  for (const std::string& path : arguments.captures) {
+    model.source.capture += (model.source.capture.empty() ? "" : ", ") + path;
+    contents += sha256_hex(read_text_file(path));
+  }
+  model.source.sha256 = arguments.captures.size() == 1 ? contents : sha256_hex(contents);
+  model.source.date = today();
+  return model;
+}
+
+void run(const Arguments& arguments) {
+  std::vector<Capture> captures;
+  for (const std::string& path : arguments.captures) captures.push_back(read_capture(path));
+  Model model;
+  if (!arguments.model.empty()) {
+    model = read_model(arguments.model);
+    for (Capture& capture : captures) compensate(capture, model);
+  }
+  const std::vector<AxisDiagnosis> found = all_axes(captures, arguments);
+  if (!arguments.quiet) {
+    for (const AxisDiagnosis& each : found)
+      std::printf("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
+  }
+  if (!arguments.json.empty()) write_text_file(arguments.json, diagnosis_json(found).dump(2) + "\n");
+  if (!arguments.write_model.empty()) write_model(model_of(found, arguments, model), arguments.write_model);
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("diagnose", "trace the error to its effects, with the model that corrects them");
+  command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--axis", arguments->axes, "only these axes");
+  command->add_option("--model", arguments->model, "correct with this model first; find what it leaves")
+      ->check(CLI::ExistingFile);
+  command->add_option("--write-model", arguments->write_model, "write the model with what was found");
+  command->add_option("--json", arguments->json, "write the diagnosis as JSON");
+  command
+      ->add_option("--significance", arguments->significance,
+                   "chance of a false effect, after correction for all tried")
+      ->check(CLI::Range(1e-9, 0.5))
+      ->capture_default_str();
+  command->add_flag("--quiet", arguments->quiet, "no report on the console");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ifog::tools
