@@ -1,5 +1,7 @@
 #include "daemon/config/table_reader.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -24,6 +26,11 @@ std::string describe(Range range) {
 
 std::string as_written(const toml::node& node) {
   if (node.is_table()) return "a table";
+  if (const auto* number = node.as_floating_point()) {
+    // Shortest text that reads back the same: toml++ prints 0.1 with 17 digits.
+    std::array<char, 32> digits{};
+    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr};
+  }
   std::ostringstream out;
   if (const auto* array = node.as_array())
     out << *array;

@@ -1,0 +1,240 @@
+#include "filters/chain/incrementer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+constexpr double kRate_hz = 1000.0;
+constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+
+SensorFacts counting_rate_sensor() {
+  SensorFacts facts;
+  facts.sequence_modulus = 128;
+  facts.nominal_rate_hz = kRate_hz;
+  return facts;
+}
+
+// Sample number n of a device that counts modulo 128 and was switched on at kStart_ns.
+Reading sample(std::uint64_t n, double value) {
+  Reading reading;
+  reading.arrival_ns = kStart_ns + static_cast<std::int64_t>(n) * kPeriod_ns;
+  reading.sequence = static_cast<std::uint32_t>(n % 128);
+  reading.has_sequence = true;
+  reading.valid_axes = 1;
+  reading.value[0] = value;
+  return reading;
+}
+
+TEST(Incrementer, UnwrapsTheCounterOverManyRounds) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  for (std::uint64_t n = 0; n < 1000; ++n) {
+    ASSERT_TRUE(incrementer.next(sample(n, 0.5), increment));
+    EXPECT_EQ(increment.sequence, n);
+    EXPECT_EQ(increment.dt_s, 1e-3);
+    EXPECT_EQ(increment.delta_theta_rad[0], 0.5 * 1e-3);
+    EXPECT_EQ(increment.flags, 0U);
+  }
+  EXPECT_EQ(incrementer.counts().gaps, 0U);
+}
+
+TEST(Incrementer, AGapIsCountedFlaggedAndAddsNoAngle) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 2.0), increment));
+  ASSERT_TRUE(incrementer.next(sample(5, 2.0), increment));
+  EXPECT_EQ(increment.flags, kGapBefore);
+  EXPECT_EQ(increment.sequence, 5U);
+  EXPECT_DOUBLE_EQ(increment.dt_s, 5e-3);
+  EXPECT_DOUBLE_EQ(increment.covered_s[0], 1e-3);
+  EXPECT_DOUBLE_EQ(increment.delta_theta_rad[0], 2.0 * 1e-3);
+  EXPECT_EQ(incrementer.counts().missing, 4U);
+}
+
+TEST(Incrementer, ArrivalTimesSayHowOftenTheCounterWentRoundInAGap) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), increment));
+  ASSERT_TRUE(incrementer.next(sample(3 * 128 + 17, 1.0), increment));
+  EXPECT_EQ(increment.sequence, 3U * 128 + 17);
+  EXPECT_EQ(incrementer.counts().missing, 3U * 128 + 16);
+}
+
+TEST(Incrementer, LateDeliveryIsNoGap) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), increment));
+  for (std::uint64_t n = 1; n < 300; ++n) {
+    Reading late = sample(n, 1.0);
+    late.arrival_ns = std::max(late.arrival_ns, kStart_ns + 250 * kPeriod_ns);  // a reader that was held up
+    ASSERT_TRUE(incrementer.next(late, increment));
+    ASSERT_EQ(increment.sequence, n);
+  }
+  EXPECT_EQ(incrementer.counts().gaps, 0U);
+}
+
+TEST(Incrementer, AfterReopeningTheNextSampleIsFlaggedEvenWhereTheCounterFits) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), increment));
+  incrementer.discontinuity();
+  ASSERT_TRUE(incrementer.next(sample(129, 1.0), increment));
+  EXPECT_EQ(increment.flags, kGapBefore);
+  EXPECT_EQ(increment.sequence, 129U);
+}
+
+TEST(Incrementer, AFrameDeliveredTwiceIsLeftOutAndCounted) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), increment));
+  ASSERT_TRUE(incrementer.next(sample(1, 1.5), increment));
+  EXPECT_FALSE(incrementer.next(sample(1, 1.5), increment));
+  ASSERT_TRUE(incrementer.next(sample(2, 1.0), increment));
+  EXPECT_EQ(increment.sequence, 2U);
+  EXPECT_EQ(incrementer.counts().repeated, 1U);
+}
+
+TEST(Incrementer, ACounterThatStartsAgainIsARestartNotAHugeGap) {
+  SensorFacts facts = counting_rate_sensor();
+  facts.sequence_modulus = 1U << 31;
+  Incrementer incrementer(facts);
+  Increment increment;
+  Reading reading = sample(0, 1.0);
+  reading.sequence = 1'000'000;
+  ASSERT_TRUE(incrementer.next(reading, increment));
+  reading = sample(500, 1.0);
+  reading.sequence = 3;
+  ASSERT_TRUE(incrementer.next(reading, increment));
+  EXPECT_EQ(incrementer.counts().restarts, 1U);
+  EXPECT_EQ(increment.flags, kGapBefore);
+  EXPECT_DOUBLE_EQ(increment.dt_s, 0.5);
+}
+
+TEST(Incrementer, AnInvalidOrMissingValueAddsNoAngleAndIsFlagged) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), increment));
+  ASSERT_TRUE(incrementer.next(sample(1, std::numeric_limits<double>::quiet_NaN()), increment));
+  EXPECT_EQ(increment.flags, kInvalid);
+  EXPECT_EQ(increment.valid_axes, 0U);
+  EXPECT_EQ(increment.delta_theta_rad[0], 0.0);
+  EXPECT_EQ(increment.covered_s[0], 0.0);
+  EXPECT_TRUE(std::isnan(increment.rate_radps[0]));
+  Reading refused = sample(2, 1.0);
+  refused.valid_axes = 0;
+  ASSERT_TRUE(incrementer.next(refused, increment));
+  EXPECT_EQ(incrementer.counts().invalid, 2U);
+}
+
+TEST(Incrementer, TheDevicesClockGivesTheStep) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  Reading reading = sample(0, 1.0);
+  reading.device_time_ns = 5'000'000;
+  ASSERT_TRUE(incrementer.next(reading, increment));
+  reading = sample(1, 1.0);
+  reading.device_time_ns = 5'000'000 + 1'002'000;
+  ASSERT_TRUE(incrementer.next(reading, increment));
+  EXPECT_DOUBLE_EQ(increment.dt_s, 1.002e-3);
+  EXPECT_DOUBLE_EQ(increment.delta_theta_rad[0], 1.002e-3);
+}
+
+TEST(Incrementer, DeltaAnglesPassUnchanged) {
+  SensorFacts facts = counting_rate_sensor();
+  facts.kind = SensorKind::delta_angle;
+  Incrementer incrementer(facts);
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 3e-6), increment));
+  ASSERT_TRUE(incrementer.next(sample(4, 3e-6), increment));
+  EXPECT_EQ(increment.delta_theta_rad[0], 3e-6);
+  EXPECT_DOUBLE_EQ(increment.rate_radps[0], 3e-3);
+}
+
+TEST(Incrementer, AWrappingAngleIsFollowedThroughWrapsAndGaps) {
+  SensorFacts facts = counting_rate_sensor();
+  facts.kind = SensorKind::angle;
+  facts.angle_wrap_rad = 2.0 * std::numbers::pi;
+  Incrementer incrementer(facts);
+  Increment increment;
+  const double step = 0.1;
+  double sum = 0.0;
+  std::uint64_t last = 0;
+  for (std::uint64_t n = 0; n < 2000; ++n) {
+    if (n % 50 > 40) continue;  // nine samples lost in fifty: 1 rad, less than half a wrap
+    const double angle = std::fmod(step * static_cast<double>(n), facts.angle_wrap_rad);
+    ASSERT_TRUE(incrementer.next(sample(n, angle), increment));
+    if (n > 0) {
+      EXPECT_NEAR(increment.covered_s[0], increment.dt_s, 1e-15);
+      EXPECT_NEAR(increment.rate_radps[0], step * kRate_hz, 1e-9);
+    }
+    sum += increment.delta_theta_rad[0];
+    last = n;
+  }
+  EXPECT_NEAR(sum, step * static_cast<double>(last), 1e-10);
+}
+
+TEST(Incrementer, ADeviceWithNeitherCounterNorClockIsTimedByArrival) {
+  SensorFacts facts;
+  facts.nominal_rate_hz = 100.0;
+  Incrementer incrementer(facts);
+  Increment increment;
+  constexpr double kTruePeriod_s = 0.01 * 1.025;  // the sample clock is 2.5 % slow
+  double time_s = 0.0;
+  for (int n = 0; n < 20000; ++n) {
+    Reading reading;
+    const double jitter_s = 0.0004 * ((n * 7919) % 101) / 101.0;
+    reading.arrival_ns = kStart_ns + std::llround((n * kTruePeriod_s + jitter_s) * 1e9);
+    reading.valid_axes = 1;
+    reading.value[0] = 1.0;
+    ASSERT_TRUE(incrementer.next(reading, increment));
+    if (n >= 10000) time_s += increment.dt_s;
+  }
+  EXPECT_NEAR(time_s, 10000 * kTruePeriod_s, 1e-5 * 10000 * kTruePeriod_s);
+  EXPECT_NEAR(incrementer.clock_offset_ppm(), 25000.0, 5.0);
+  EXPECT_EQ(incrementer.counts().gaps, 0U);
+}
+
+TEST(Incrementer, FrameChannelsAreHeldAndAge) {
+  SensorFacts facts = counting_rate_sensor();
+  facts.frame_channels = facts.channels = 1;
+  Incrementer incrementer(facts);
+  Increment increment;
+  Reading reading = sample(0, 1.0);
+  reading.channel[0] = 21.5;
+  reading.fresh_channels = 1;
+  ASSERT_TRUE(incrementer.next(reading, increment));
+  for (std::uint64_t n = 1; n <= 10; ++n) {
+    reading = sample(n, 1.0);
+    reading.channel[0] = std::numeric_limits<double>::quiet_NaN();
+    ASSERT_TRUE(incrementer.next(reading, increment));
+  }
+  EXPECT_EQ(increment.channel[0], 21.5);
+  EXPECT_NEAR(increment.channel_age_s[0], 0.01, 1e-7);
+}
+
+TEST(Merge, AddsAnglesTimesAndCounts) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment sum, next;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), sum));
+  for (std::uint64_t n = 1; n < 10; ++n) {
+    ASSERT_TRUE(incrementer.next(sample(n, 1.0 + static_cast<double>(n)), next));
+    merge(sum, next);
+  }
+  EXPECT_EQ(sum.samples, 10U);
+  EXPECT_EQ(sum.sequence, 9U);
+  EXPECT_NEAR(sum.delta_theta_rad[0], 55e-3, 1e-16);
+  EXPECT_NEAR(sum.dt_s, 10e-3, 1e-16);
+  EXPECT_NEAR(sum.rate_radps[0], 5.5, 1e-13);
+  EXPECT_EQ(sum.flags & kMerged, kMerged);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,168 @@
+#include "filters/chain/signal_chain.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "filters/chain/incrementer.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+ChainSettings settings(double q = 1e-10, double r = 1e-8) {
+  ChainSettings out;
+  out.facts.nominal_rate_hz = 1.0 / kPeriod_s;
+  out.facts.sequence_modulus = 128;
+  out.axes = {""};
+  out.filter.process_noise = q;
+  out.filter.measurement_noise = r;
+  return out;
+}
+
+std::vector<Increment> increments(int n, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0.01, 1e-4);
+  std::vector<Increment> out;
+  Incrementer incrementer(settings().facts);
+  Increment increment;
+  for (int i = 0; i < n; ++i) {
+    Reading reading;
+    reading.sequence = static_cast<std::uint32_t>(i % 128);
+    reading.has_sequence = true;
+    reading.valid_axes = 1;
+    reading.value[0] = normal(engine);
+    incrementer.next(reading, increment);
+    out.push_back(increment);
+  }
+  return out;
+}
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+TEST(SignalChain, TheSameIncrementsGiveTheSameBits) {
+  for (const double q : {1e-10, 0.0}) {  // noise given, and learned from the first seconds
+    SignalChain one(std::make_unique<ChainParts>(settings(q))),
+        other(std::make_unique<ChainParts>(settings(q)));
+    ChainOutput a, b;
+    for (const Increment& increment : increments(6000, 1)) {
+      one.process(increment, a);
+      other.process(increment, b);
+      ASSERT_EQ(bits(a.estimate.denoised_radps[0]), bits(b.estimate.denoised_radps[0]));
+      ASSERT_EQ(bits(a.angle_rad[0]), bits(b.angle_rad[0]));
+    }
+    EXPECT_EQ(a.flags & kNoiseUnknown, 0U);
+  }
+}
+
+TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
+  ChainSettings unknown = settings(0.0, 0.0);
+  unknown.start_up_s = 1.0;
+  SignalChain chain(std::make_unique<ChainParts>(unknown));
+  ChainOutput out;
+  const std::vector<Increment> all = increments(1500, 2);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    chain.process(all[i], out);
+    ASSERT_EQ((out.flags & kNoiseUnknown) != 0, i < 1000) << i;
+    if (i < 1000) {
+      ASSERT_EQ(out.estimate.denoised_radps[0], out.compensated_radps[0]);
+      ASSERT_TRUE(std::isnan(out.estimate.variance_rad2ps2[0]));
+    }
+  }
+  EXPECT_NEAR(chain.parts().filter().measurement_noise, 1e-8, 0.1e-8);
+  EXPECT_LT(std::abs(out.estimate.denoised_radps[0] - 0.01), 5e-5);
+}
+
+TEST(SignalChain, NewPartsGoOnWithTheAngle) {
+  const std::vector<Increment> all = increments(1000, 3);
+  SignalChain swapped(std::make_unique<ChainParts>(settings())),
+      plain(std::make_unique<ChainParts>(settings()));
+  ChainOutput a, b;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % 100 == 50) swapped.swap(std::make_unique<ChainParts>(settings(1e-9)));
+    swapped.process(all[i], a);
+    plain.process(all[i], b);
+    ASSERT_EQ(bits(a.angle_rad[0]), bits(b.angle_rad[0])) << i;
+    ASSERT_EQ((a.flags & kFilterReset) != 0, i == 0 || i % 100 == 50) << i;
+  }
+}
+
+TEST(SignalChain, AModelOnAChannelTheSensorDoesNotHaveIsRefusedByName) {
+  ChainSettings wrong = settings();
+  wrong.channels = {"supply_V"};
+  wrong.facts.frame_channels = wrong.facts.channels = 1;
+  auto model = std::make_shared<Model>();
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "temperature_degC";
+  effect.reference = 25.0;
+  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/degC"}};
+  model->effects.push_back(effect);
+  wrong.model = model;
+  try {
+    ChainParts parts(wrong);
+    FAIL() << "accepted";
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("temperature_degC"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("supply_V"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SignalChain, ALinearEffectIsTakenOutOfRateAndAngle) {
+  ChainSettings with = settings();
+  with.channels = {"temperature_degC"};
+  with.channel_max_age_s = {0.0};
+  with.facts.frame_channels = with.facts.channels = 1;
+  auto model = std::make_shared<Model>();
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "temperature_degC";
+  effect.reference = 25.0;
+  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/degC"}};
+  model->effects.push_back(effect);
+  with.model = model;
+  SignalChain chain(std::make_unique<ChainParts>(with));
+  Incrementer incrementer(with.facts);
+  Increment increment;
+  ChainOutput out;
+  for (int i = 0; i < 1000; ++i) {
+    Reading reading;
+    reading.sequence = static_cast<std::uint32_t>(i % 128);
+    reading.has_sequence = true;
+    reading.valid_axes = 1;
+    reading.fresh_channels = 1;
+    reading.channel[0] = 35.0;
+    reading.value[0] = 0.02 + 1e-5;  // 10 degC above the reference
+    incrementer.next(reading, increment);
+    chain.process(increment, out);
+    ASSERT_NEAR(out.compensated_radps[0], 0.02, 1e-15);
+  }
+  EXPECT_NEAR(out.angle_rad[0], 0.02, 1e-14);
+}
+
+// A tenth of a day at 5 kHz, to a tenth of what a day may lose. The terms are whole multiples of 2^-70, so
+// that 128-bit integers sum them exactly.
+TEST(ExactSum, ATenthOfADayAt5kHzIsExactTo1e10) {
+  ExactSum sum;
+  __int128 exact = 0;
+  std::uint64_t state = 88172645463325252ULL;
+  constexpr long kSamples = 24L * 360 * 5000;
+  for (long i = 0; i < kSamples; ++i) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    const auto units = static_cast<std::int64_t>(state >> 12);  // 52 bits, exact in a double: 0 … 3.8e-6 rad
+    exact += units;
+    sum.add(std::ldexp(static_cast<double>(units), -70));
+  }
+  const auto truth = static_cast<long double>(exact) * 0x1p-70L;
+  EXPECT_LT(std::abs(static_cast<long double>(sum.value()) - truth), 1e-10L)
+      << "of " << sum.value() << " rad";
+}
+
+}  // namespace
+}  // namespace ifog

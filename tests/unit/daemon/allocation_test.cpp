@@ -1,0 +1,187 @@
+// Heap allocations between the first and the last sample of a running pipeline, the send on LCM's UDP
+// included.
+//
+// malloc itself is replaced, so that C libraries (glib in LCM) count, too. LCM is multicast: the program
+// moves into a network namespace of its own first, so that nothing leaves the machine.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <net/route.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "daemon/pipeline/pipeline.h"
+#include "drivers/host/driver_instance.h"
+#include "drivers/transport/file.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define IFOG_SANITIZED 1
+#else
+#define IFOG_SANITIZED 0
+#endif
+
+namespace {
+std::atomic<bool> counting{false};
+std::atomic<std::uint64_t> allocations{0};
+void count() {
+  if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
+}
+}  // namespace
+
+#if !IFOG_SANITIZED
+// glibc's own, under the names it exports for this purpose.
+extern "C" {
+void* __libc_malloc(std::size_t);                 // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t, std::size_t);    // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void*, std::size_t);         // NOLINT(bugprone-reserved-identifier)
+void* __libc_memalign(std::size_t, std::size_t);  // NOLINT(bugprone-reserved-identifier)
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size) {
+  count();
+  return __libc_calloc(n, size);
+}
+void* realloc(void* old, std::size_t size) {
+  count();
+  return __libc_realloc(old, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  count();
+  *out = __libc_memalign(alignment, size);
+  return *out == nullptr ? ENOMEM : 0;
+}
+}
+#endif
+
+namespace ifog {
+namespace {
+
+// "" or why not. As `ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo`.
+std::string enter_private_network() {
+  if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0)
+    return std::string("unshare: ") + std::strerror(errno);
+  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  request.ifr_flags = IFF_UP | IFF_MULTICAST;
+  std::string why;
+  if (ioctl(fd, SIOCSIFFLAGS, &request) != 0) why = std::string("lo up: ") + std::strerror(errno);
+  rtentry route{};
+  char device[] = "lo";
+  route.rt_dev = device;
+  route.rt_flags = RTF_UP;
+  const auto address = [](sockaddr& out, const char* text) {
+    sockaddr_in in{};
+    in.sin_family = AF_INET;
+    inet_pton(AF_INET, text, &in.sin_addr);
+    std::memcpy(&out, &in, sizeof in);
+  };
+  address(route.rt_dst, "224.0.0.0");
+  address(route.rt_genmask, "240.0.0.0");
+  if (why.empty() && ioctl(fd, SIOCADDRT, &route) != 0) why = std::string("route: ") + std::strerror(errno);
+  close(fd);
+  return why;
+}
+
+std::string recording(int count) {
+  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
+  std::vector<std::uint8_t> bytes;
+  for (int n = 0; n < count; ++n) {
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (double& value : sample.value) value = 0.01 + 1e-5 * (n % 17);
+    sample.environment_fresh = ~0U;
+    driver.encode_bytes(sample, bytes);
+  }
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("ifog-allocation-" + std::to_string(getpid()) + ".kvh");
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return path;
+}
+
+TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
+  if (IFOG_SANITIZED) GTEST_SKIP() << "a sanitizer has its own malloc; runs in the release build";
+  if (const std::string why = enter_private_network(); !why.empty())
+    GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
+  constexpr int kCount = 2000;
+  const std::string path = recording(kCount);
+  DriverInstance driver = make_driver("kvh1750", {});
+  PipelinePlan plan;
+  plan.lcm_channel = "IFOG_TEST";
+  plan.facts = sensor_facts(driver.description(), 1000.0, 0);
+  plan.reader.name = "read";
+  plan.filter.name = "filter";
+  ChainSettings chain;
+  chain.facts = plan.facts;
+  chain.axes = {"x", "y", "z"};
+  chain.filter.process_noise = 1e-10;
+  chain.filter.measurement_noise = 1e-8;
+  for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
+    chain.channels.emplace_back(driver.description().environment[i]);
+    chain.channel_max_age_s.push_back(10.0);
+  }
+  FileSettings file;
+  file.path = path;
+  file.pace = FileSettings::Pace::recorded;
+  file.bytes_per_second = 36.0 * 2000.0;
+  file.block_bytes = 36;
+  Pipeline pipeline(plan, make_file_transport(file), std::move(driver), nullptr,
+                    std::make_unique<ChainParts>(chain),
+                    make_lcm_publisher("udpm://239.255.76.67:7667?ttl=0"));
+  pipeline.open();
+  pipeline.start();
+  const Counter& published = pipeline.filter().counters().published;
+  while (published.value() < 1 && !pipeline.ended())
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  counting.store(true);
+  const std::uint64_t from = published.value();
+  FilterSnapshot snapshot;
+  bool answered = false;
+  while (published.value() < kCount - 10 && !pipeline.ended()) {
+    pipeline.filter().ask();  // what housekeeping does must not make the filter thread allocate
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    answered = pipeline.filter().take_snapshot(snapshot) || answered;
+  }
+  counting.store(false);
+  const std::uint64_t to = published.value();
+  pipeline.stop();
+  std::filesystem::remove(path);
+  EXPECT_EQ(allocations.load(), 0U);
+  EXPECT_GT(to - from, static_cast<std::uint64_t>(kCount) / 2);
+  EXPECT_TRUE(answered);
+  EXPECT_EQ(pipeline.filter().counters().lcm_failures.value(), 0U);
+  // The counter does count: what the test rests on.
+  counting.store(true);
+  std::free(std::malloc(100));
+  delete new std::string(100, 'x');
+  counting.store(false);
+  EXPECT_GE(allocations.load(), 2U);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,140 @@
+#include "daemon/config/config.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+namespace ifog {
+namespace {
+
+constexpr const char* kGood = R"(
+[[sensor]]
+name = "nose"
+driver = "kvh1750"
+[sensor.transport]
+type = "file"
+path = "a.kvh"
+)";
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_config(text, "f.toml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Config, ReadsWhatIsThereAndFillsInTheRest) {
+  const Config config = parse_config(std::string(kGood) + R"(
+[sensor.options]
+format = "b"
+rate_hz = 962.5
+[sensor.filter]
+rule = "ckf"
+window = 20
+process_noise = 1e-9
+[sensor.realtime]
+filter_priority = 60
+filter_cpus = [1]
+[[sensor.channel]]
+name = "supply_V"
+source = "file"
+path = "/sys/class/hwmon/hwmon0/in0_input"
+scale = 1e-3
+)",
+                                     "/etc/ifogd/f.toml");
+  ASSERT_EQ(config.sensors.size(), 1U);
+  const SensorConfig& sensor = config.sensors[0];
+  EXPECT_EQ(sensor.lcm_channel(), "IFOG_NOSE");
+  EXPECT_EQ(sensor.transport.path, "/etc/ifogd/a.kvh");  // relative to the configuration
+  EXPECT_EQ(sensor.options.at("rate_hz"), "962.5");
+  EXPECT_EQ(sensor.options.at("format"), "b");
+  EXPECT_EQ(sensor.filter.rule, "ckf");
+  EXPECT_EQ(sensor.filter.window, 20);
+  EXPECT_FALSE(sensor.filter.measurement_noise.has_value());
+  EXPECT_EQ(sensor.realtime.filter_priority, 60);
+  ASSERT_EQ(sensor.channels.size(), 1U);
+  EXPECT_EQ(sensor.channels[0].scale, 1e-3);
+}
+
+struct Wrong {
+  const char* extra;  // after kGood, whose lines are 1 … 7
+  const char* line;
+};
+
+TEST(Config, SaysWhereWhatAndWhatWasExpected) {
+  const Wrong cases[] = {
+      {"colour = 1\n",
+       "f.toml:8: sensor.transport.colour: unknown key; known here: await_writer, block_bytes, "
+       "bytes_per_second, format, interface, pace, path, speed, type"},
+      {"speed = \"fast\"\n", "f.toml:8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
+      {"speed = -1\n", "f.toml:8: sensor.transport.speed = -1: expected a number 0.001 ... 1e+06"},
+      {"pace = \"slow\"\n", "f.toml:8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
+      {"await_writer = 1\n", "f.toml:8: sensor.transport.await_writer = 1: expected true or false"},
+      {"[sensor.filter]\nwindow = 1\n",
+       "f.toml:9: sensor.filter.window = 1: expected a whole number 2 ... 100000"},
+      {"[sensor.filter]\nwindow = 5.5\n",
+       "f.toml:9: sensor.filter.window = 5.5: expected a whole number 2 ... 100000"},
+      {"[sensor.filter]\nprocess_noise = -1e-9\n",
+       "f.toml:9: sensor.filter.process_noise = -1e-09: expected a number >= 0"},
+      {"[sensor.filter]\nprocess_noise = nan\n",
+       "f.toml:9: sensor.filter.process_noise = nan: expected a number >= 0"},
+      {"[sensor.realtime]\nreader_cpus = [0, -1]\n",
+       "f.toml:9: sensor.realtime.reader_cpus = [ 0, -1 ]: expected a list of whole numbers 0 ... 1023"},
+      {"[[sensor.channel]]\nname = \"t_degC\"\n",
+       "f.toml:8: sensor.channel.source: missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\""},
+      {"[[sensor]]\nname = \"NOSE\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
+       "\"can0\"\n",
+       "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE already"},
+      {"[daemon]\nlog_level = \"loud\"\n",
+       "f.toml:9: daemon.log_level = 'loud': expected \"debug\" | \"info\" | \"warning\" | \"error\""},
+  };
+  for (const Wrong& wrong : cases) EXPECT_EQ(complaint(std::string(kGood) + wrong.extra), wrong.line);
+}
+
+TEST(Config, GathersAllErrors) {
+  const std::string all = complaint("[[sensor]]\nname = \"a b\"\nmodle = \"x\"\n");
+  EXPECT_EQ(all,
+            "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
+            "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
+            "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
+            "f.toml:3: sensor.modle: unknown key; known here: channel, driver, filter, model, name, "
+            "nominal_rate_hz, "
+            "options, realtime, transport");
+}
+
+TEST(Config, NothingToDoIsAnError) {
+  EXPECT_EQ(complaint("[daemon]\n"), "f.toml: no [[sensor]]: expected at least one");
+}
+
+TEST(Config, BrokenTomlIsToldByLine) {
+  EXPECT_EQ(complaint("[daemon]\nlock_memory = \n").rfind("f.toml:2: ", 0), 0U)
+      << complaint("[daemon]\nlock_memory = \n");
+}
+
+TEST(Config, AMissingFileIsOneLine) {
+  try {
+    read_config("/nonexistent/ifogd.toml");
+    FAIL();
+  } catch (const ConfigError& error) {
+    const std::string line = error.what();
+    EXPECT_NE(line.find("/nonexistent/ifogd.toml"), std::string::npos);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+  }
+}
+
+TEST(Config, TheExamplesAreGood) {
+  int read = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(IFOG_SOURCE_DIR) + "/daemon/examples")) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_NO_THROW(read_config(entry.path().string())) << entry.path();
+    ++read;
+  }
+  EXPECT_GE(read, 3);
+}
+
+}  // namespace
+}  // namespace ifog
