@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "filters/allan/confidence.h"
@@ -18,7 +19,9 @@ namespace {
 constexpr std::size_t kShortest = 64;
 // What a term must gain in −2 ln(likelihood) to be kept; 9 is three standard deviations.
 constexpr double kPrice = 9.0;
-constexpr double kDoubt = 1.0;
+constexpr double kDoubt = 1.0;  // score from which a term left out keeps its say in the others' error bars
+constexpr double kTolerated = 0.1;  // relative departure of the deviation that the error bars may take up
+
 constexpr double kRampNeeded = 3.0;
 
 using Subset = std::array<bool, kTerms>;
@@ -32,13 +35,16 @@ Subset subset(unsigned bits) {
 // The measured variances, and everything the fit needs of the terms.
 class Problem {
  public:
-  Problem(const std::vector<DeviationPoint>& points, const DifferenceCovariance& covariance)
+  // `use`: which of the points take part, ascending.
+  Problem(const std::vector<DeviationPoint>& points, const DifferenceCovariance& covariance,
+          std::vector<std::size_t> use)
       : covariance_(covariance),
-        size_(static_cast<Eigen::Index>(points.size())),
+        use_(std::move(use)),
+        size_(static_cast<Eigen::Index>(use_.size())),
         measured_(size_),
         form_(size_, kTerms) {
     for (Eigen::Index i = 0; i < size_; ++i) {
-      const DeviationPoint& p = points[static_cast<std::size_t>(i)];
+      const DeviationPoint& p = points[use_[static_cast<std::size_t>(i)]];
       measured_[i] = p.variance;
       for (std::size_t t = 0; t < kTerms; ++t)
         form_(i, static_cast<Eigen::Index>(t)) =
@@ -152,7 +158,11 @@ class Problem {
   [[nodiscard]] Eigen::MatrixXd relative_covariance(const TermVariances& v,
                                                     const Eigen::VectorXd& model) const {
     const std::vector<double> c = covariance_.at(v);
-    const Eigen::Map<const Eigen::MatrixXd> matrix(c.data(), size_, size_);
+    Eigen::MatrixXd matrix(size_, size_);
+    for (Eigen::Index i = 0; i < size_; ++i)
+      for (Eigen::Index j = 0; j < size_; ++j)
+        matrix(i, j) =
+            c[use_[static_cast<std::size_t>(i)] * covariance_.size() + use_[static_cast<std::size_t>(j)]];
     Eigen::MatrixXd relative = model.cwiseInverse().asDiagonal() * matrix * model.cwiseInverse().asDiagonal();
     relative.diagonal().array() += misfit_ * misfit_;
     return relative;
@@ -205,6 +215,7 @@ class Problem {
   }
 
   const DifferenceCovariance& covariance_;
+  std::vector<std::size_t> use_;
   Eigen::Index size_;
   Eigen::VectorXd measured_;
   Eigen::MatrixXd form_;
@@ -218,6 +229,50 @@ struct Chosen {
       score{};  // of a term kept: over the fit without it; of one left out: over the fit
 };
 
+// Makes room in the weights for what all four terms together cannot follow; returns it, relative to the
+// variance.
+double settle_misfit(Problem& problem) {
+  Subset all;
+  all.fill(true);
+  double misfit = 0.0;
+  for (int round = 0; round < 3; ++round) {
+    misfit = problem.misfit_of(problem.solve(all));
+    problem.set_misfit(misfit);
+    if (misfit == 0.0) break;
+  }
+  return misfit;
+}
+
+// A line or a vibration lifts the curve at some τ far above any sum of terms. Those points are left out one
+// by one, the one whose absence helps most first, until the rest is described to kTolerated; never more than
+// half of them.
+std::vector<std::size_t> described(const std::vector<DeviationPoint>& points,
+                                   const DifferenceCovariance& covariance) {
+  std::vector<std::size_t> use(points.size());
+  for (std::size_t i = 0; i < use.size(); ++i) use[i] = i;
+  const auto misfit_with = [&](const std::vector<std::size_t>& some) {
+    Problem problem(points, covariance, some);
+    return settle_misfit(problem);
+  };
+  double misfit = misfit_with(use);
+  const std::size_t fewest = std::max<std::size_t>(6, (points.size() + 1) / 2);
+  while (misfit > 2.0 * kTolerated && use.size() > fewest) {
+    std::vector<std::size_t> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < use.size(); ++i) {
+      std::vector<std::size_t> fewer = use;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      const double found = misfit_with(fewer);
+      if (found >= least) continue;
+      least = found;
+      best = std::move(fewer);
+    }
+    use = std::move(best);
+    misfit = least;
+  }
+  return use;
+}
+
 // Of all sets of terms the one with the best likelihood, each term costing kPrice. Leaving out one term after
 // the other is not enough: where a flicker floor and a random walk can stand for each other, the first to go
 // decides.
@@ -225,13 +280,7 @@ Chosen choose(Problem& problem) {
   Subset all;
   all.fill(true);
   Chosen chosen;
-  chosen.solution = problem.solve(all);
-  for (int round = 0; round < 3; ++round) {
-    const double misfit = problem.misfit_of(chosen.solution);
-    problem.set_misfit(misfit);
-    if (misfit == 0.0) break;
-    chosen.solution = problem.solve(all);
-  }
+  settle_misfit(problem);
   double lowest = std::numeric_limits<double>::infinity();
   for (unsigned bits = 1; bits < (1U << kTerms); ++bits) {
     const Subset allowed = subset(bits);
@@ -284,12 +333,16 @@ NoiseFit fit_noise(const AngleSum& sum, double period_s, unsigned threads) {
     if (!(p.variance > 0.0)) throw std::invalid_argument("the rate never changes; there is no noise to fit");
 
   const DifferenceCovariance covariance(Deviation::kHadamard, m, lengths);
-  Problem problem(points, covariance);
+  const std::vector<std::size_t> use = described(points, covariance);
+  Problem problem(points, covariance, use);
   const Chosen chosen = choose(problem);
   const Problem::Solution& s = chosen.solution;
 
   NoiseFit fit;
-  fit.longest_tau_s = static_cast<double>(m.back()) * period_s;
+  fit.longest_tau_s = static_cast<double>(m[use.back()]) * period_s;
+  for (std::size_t i = 0; i < m.size(); ++i)
+    if (!std::binary_search(use.begin(), use.end(), i))
+      fit.left_out_tau_s.push_back(static_cast<double>(m[i]) * period_s);
   const std::array<double, kTerms> scale{period_s, std::sqrt(period_s), 1.0, 1.0 / std::sqrt(period_s)};
   const std::array<NoiseCoefficient*, kTerms> target{&fit.Q, &fit.N, &fit.B, &fit.K};
   std::array<double, kTerms> error{};
@@ -320,7 +373,7 @@ NoiseFit fit_noise(const AngleSum& sum, double period_s, unsigned threads) {
   // A random walk too weak to be seen, or stronger than estimated, must not pass for a ramp.
   fit.R.score = std::abs(fit.ramp_radps2) / ramp_error(s.value[kK] + 2.0 * error[kK]);
   fit.R.present = fit.R.score >= kRampNeeded;
-  fit.R.std_error = ramp_error(s.value[kK]);
+  fit.R.std_error = ramp_error(s.value[kK] + (doubtful[kK] ? error[kK] : 0.0));
   fit.R.value = fit.R.present ? std::abs(fit.ramp_radps2) : 0.0;
   return fit;
 }

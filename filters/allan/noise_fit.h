@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "filters/allan/deviation.h"
 #include "filters/allan/power_law.h"
@@ -30,7 +31,8 @@ struct NoiseFit {
   // Relative departure of the measured deviation from the sum of terms that chance does not explain; 0 when
   // the terms describe the record. It is part of the error bars.
   double misfit = 0.0;
-  double longest_tau_s = 0.0;  // of the averages the fit rests on
+  double longest_tau_s = 0.0;          // of the averages the fit rests on
+  std::vector<double> left_out_tau_s;  // averages that no sum of the terms comes near: lines, vibration
 };
 
 // Throws std::invalid_argument in words for people: fewer than 64 samples in the longest stretch, or a rate

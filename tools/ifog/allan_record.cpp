@@ -186,6 +186,13 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   } catch (const std::invalid_argument& error) {
     record.notes.push_back(name + ": " + column + ": no coefficients: " + error.what());
   }
+  if (record.fit && !record.fit->left_out_tau_s.empty()) {
+    std::string taus;
+    for (const double tau : record.fit->left_out_tau_s) taus += (taus.empty() ? "" : ", ") + number(tau);
+    record.notes.push_back(name + ": " + column +
+                           ": left out of the fit, because no sum of the terms comes near: τ " + taus +
+                           " s (a line, vibration or a filter)");
+  }
   if (record.fit && record.fit->misfit > 0.0)
     record.notes.push_back(name + ": " + column + ": the five terms miss the curve by " +
                            number(100.0 * record.fit->misfit) +

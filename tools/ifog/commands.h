@@ -10,6 +10,7 @@ class App;
 namespace ifog::tools {
 
 void add_allan(CLI::App& app);
+void add_simulate(CLI::App& app);
 
 // What a command throws after it has told the user why: exit code 1, no further message.
 struct Failed : std::runtime_error {

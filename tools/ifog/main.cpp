@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   ifog::tools::add_tune(app);
 
   ifog::tools::add_diagnose(app);
+  ifog::tools::add_simulate(app);
 
   try {
     app.parse(argc, argv);

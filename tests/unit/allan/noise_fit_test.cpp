@@ -1,0 +1,128 @@
+// Seeded simulations with known coefficients: the error bars are kept as often as they promise, terms that
+// are absent are reported absent, and a ramp is not a random walk.
+#include "filters/allan/noise_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "tools/simulate/noise.h"
+
+namespace {
+
+using ifog::NoiseCoefficient;
+using ifog::NoiseFit;
+using ifog::simulate::NoiseLevels;
+
+constexpr double kRate = 100.0;
+
+NoiseFit fit(const std::vector<double>& rate) {
+  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  return ifog::fit_noise(ifog::AngleSum(rate, all), 1.0 / kRate, 1);
+}
+
+// How often the truth lay within one and within 1.96 error bars, and how often the term was seen.
+struct Coverage {
+  int seen = 0, one = 0, two = 0;
+  double ratio = 0.0;
+
+  void count(const NoiseCoefficient& c, double truth) {
+    if (!c.present) return;
+    ++seen;
+    const double z = (c.value - truth) / c.std_error;
+    one += std::abs(z) <= 1.0;
+    two += std::abs(z) <= 1.959964;
+    ratio += truth > 0.0 ? c.value / truth : 0.0;
+  }
+
+  // Three standard errors of the count on either side.
+  void expect(const char* name, int records) const {
+    ASSERT_GE(seen, records * 97 / 100) << name;
+    const double n = seen;
+    std::printf("%s: seen in %d of %d, within 1 sigma %.3f, within 1.96 sigma %.3f, mean over truth %.4f\n",
+                name, seen, records, one / n, two / n, ratio / n);
+    EXPECT_NEAR(one / n, 0.683, 3.0 * std::sqrt(0.683 * 0.317 / n)) << name;
+    EXPECT_NEAR(two / n, 0.950, 3.0 * std::sqrt(0.950 * 0.050 / n)) << name;
+  }
+};
+
+struct Study {
+  Coverage Q, N, B, K, R;
+};
+
+Study study(const NoiseLevels& levels, int records, std::size_t samples) {
+  Study s;
+  for (int i = 0; i < records; ++i) {
+    const NoiseFit f =
+        fit(ifog::simulate::noise(levels, kRate, samples, 7000 + static_cast<std::uint64_t>(i)));
+    s.Q.count(f.Q, levels.Q);
+    s.N.count(f.N, levels.N);
+    s.B.count(f.B, levels.B);
+    s.K.count(f.K, levels.K);
+    s.R.count(f.R, levels.R);
+  }
+  return s;
+}
+
+TEST(NoiseFit, ErrorBarsAreKeptAsOftenAsTheyPromise) {
+  constexpr int kRecords = 200;
+  const Study s = study({.Q = 2.5e-8, .N = 1e-6, .B = 1.7e-6, .K = 2e-6}, kRecords, 1U << 16U);
+  s.Q.expect("Q", kRecords);
+  s.N.expect("N", kRecords);
+  s.B.expect("B", kRecords);
+  s.K.expect("K", kRecords);
+  EXPECT_LE(s.R.seen, 4);
+}
+
+TEST(NoiseFit, WhiteNoiseAloneShowsNothingElse) {
+  constexpr int kRecords = 200;
+  const Study s = study({.N = 1e-6}, kRecords, 1U << 13U);
+  s.N.expect("N", kRecords);
+  EXPECT_LE(s.Q.seen, 2);
+  EXPECT_LE(s.B.seen, 4);
+  EXPECT_LE(s.K.seen, 4);
+  EXPECT_LE(s.R.seen, 4);
+}
+
+TEST(NoiseFit, ARampIsNoRandomWalkAndARandomWalkNoRamp) {
+  constexpr int kRecords = 200;
+  const Study ramp = study({.N = 1e-6, .R = 1.5e-7}, kRecords, 1U << 13U);
+  ramp.R.expect("R", kRecords);
+  EXPECT_LE(ramp.K.seen, 4);
+  const Study walk = study({.N = 1e-6, .K = 3e-6}, kRecords, 1U << 13U);
+  walk.K.expect("K", kRecords);
+  EXPECT_LE(walk.R.seen, 6);
+}
+
+TEST(NoiseFit, TheSumOfTermsFollowsTheStandard) {
+  NoiseFit f;
+  f.Q.value = 2.0;
+  EXPECT_DOUBLE_EQ(ifog::modelled_deviation(f, 4.0), std::sqrt(3.0) * 2.0 / 4.0);
+  f = {};
+  f.B.value = 1.0;
+  EXPECT_NEAR(ifog::modelled_deviation(f, 9.0), 0.664, 5e-4);  // the standard's own number
+  f = {};
+  f.R.value = 2.0;
+  EXPECT_DOUBLE_EQ(ifog::modelled_deviation(f, 3.0), 2.0 * 3.0 / std::numbers::sqrt2);
+}
+
+TEST(NoiseFit, ALineIsLeftOutAndTheRestStaysRight) {
+  auto rate = ifog::simulate::noise({.N = 1e-6, .K = 2e-7}, kRate, 1U << 16U, 11);
+  for (std::size_t i = 0; i < rate.size(); ++i)
+    rate[i] += 2e-5 * std::sin(2.0 * std::numbers::pi * 3.3 * static_cast<double>(i) / kRate);
+  const NoiseFit f = fit(rate);
+  EXPECT_FALSE(f.left_out_tau_s.empty());
+  for (const double tau : f.left_out_tau_s) EXPECT_LT(tau, 6.0);
+  ASSERT_TRUE(f.K.present);
+  EXPECT_NEAR(f.K.value, 2e-7, 3.0 * f.K.std_error);
+}
+
+TEST(NoiseFit, RefusesWhatCannotBeFitted) {
+  EXPECT_THROW((void)fit(std::vector<double>(63, 1.0)), std::invalid_argument);
+  EXPECT_THROW((void)fit(std::vector<double>(1000, 1.0)), std::invalid_argument);
+}
+
+}  // namespace

@@ -1,0 +1,173 @@
+#include "tools/simulate/simulator.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ifog::simulate::Scenario;
+using ifog::simulate::Simulation;
+
+class ScenarioFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::temp_directory_path() / ("ifog-scenario-" + std::to_string(getpid()) + ".toml");
+  }
+  void TearDown() override { fs::remove(path_); }
+  Scenario read(const std::string& text) const {
+    std::ofstream(path_) << text;
+    return ifog::simulate::read_scenario(path_.string());
+  }
+  Simulation simulate(const std::string& text) const { return ifog::simulate::simulate(read(text)); }
+  std::string refusal(const std::string& text) const {
+    try {
+      (void)simulate(text);
+    } catch (const std::exception& error) {
+      const std::string line = error.what();
+      return line.starts_with(path_.string()) ? line.substr(path_.string().size()) : line;
+    }
+    return "accepted";
+  }
+
+ private:
+  fs::path path_;
+};
+
+const std::string kTemperature =
+    "sample_rate_hz = 10\nduration_s = 100\n[[channel]]\nname = \"temperature_degC\"\nshape = \"ramp\"\nfrom "
+    "= 20\nto = 30\n";
+
+TEST_F(ScenarioFile, EffectIsTheFormOfItsChannel) {
+  const Simulation s = simulate(kTemperature +
+                                "[[effect]]\nform = \"quadratic\"\nchannel = "
+                                "\"temperature_degC\"\ncoefficient = 2e-6\nreference = 25\n");
+  const auto& t = s.capture.channels[0].values;
+  for (std::size_t i = 0; i < s.capture.size(); ++i)
+    EXPECT_NEAR(s.capture.rate_radps[0][i], 2e-6 * (t[i] - 25.0) * (t[i] - 25.0), 1e-18);
+  EXPECT_EQ(s.truth.true_rate_radps[0], std::vector<double>(1000, 0.0));
+}
+
+TEST_F(ScenarioFile, LagOfARampIsItsSlopeTimesTheTimeConstant) {
+  const Simulation s = simulate(kTemperature +
+                                "[[effect]]\nform = \"lagged\"\nchannel = \"temperature_degC\"\ncoefficient "
+                                "= 1\ntime_constant_s = 5\n");
+  const auto& t = s.capture.channels[0].values;
+  EXPECT_NEAR(t.back() - s.capture.rate_radps[0].back(), 0.1 * 5.0,
+              0.1 * 5.0 * 0.02);  // first order in the step
+}
+
+TEST_F(ScenarioFile, BacklashHasTwoBranches) {
+  const Simulation s = simulate(
+      "sample_rate_hz = 10\nduration_s = 200\n[[channel]]\nname = \"t_degC\"\nshape = \"cycle\"\namplitude = "
+      "5\nperiod_s = 100\n"
+      "[[effect]]\nform = \"backlash\"\nchannel = \"t_degC\"\ncoefficient = 1\nwidth = 2\n");
+  const auto& r = s.capture.rate_radps[0];
+  const auto at = [&](double time) { return r[static_cast<std::size_t>(time * 10)]; };
+  EXPECT_NEAR(at(100), -0.0 - 1.0, 0.02);  // rising through zero: half the width behind
+  EXPECT_NEAR(at(150), 0.0 + 1.0, 0.02);   // falling through zero
+}
+
+TEST_F(ScenarioFile, RateTableGivesScaleFactorAndItsReference) {
+  const Simulation s = simulate(
+      "sample_rate_hz = 10\nduration_s = 100\nreference = true\naxes = [\"x\", \"y\"]\n"
+      "[[motion]]\naxis = \"x\"\nkind = \"rate_table\"\nrates_radps = [0.0, 1.0, -1.0]\ndwell_s = 20\n"
+      "[[effect]]\nform = \"linear\"\nchannel = \"rate\"\naxis = \"x\"\ncoefficient = 1e-3\n");
+  EXPECT_EQ(s.capture.axes, (std::vector<std::string>{"x", "y"}));
+  EXPECT_DOUBLE_EQ(s.capture.rate_radps[0][300], 1.001);
+  EXPECT_DOUBLE_EQ(s.capture.reference_rate_radps[0][300], 1.0);
+  EXPECT_DOUBLE_EQ(s.capture.rate_radps[0][500], -1.001);
+  EXPECT_EQ(s.capture.rate_radps[1][300], 0.0);
+}
+
+TEST_F(ScenarioFile, FeedbackRampFollowsTheRotationAndWraps) {
+  const Simulation s = simulate(
+      "sample_rate_hz = 100\nduration_s = 10\n[[motion]]\nkind = \"rest\"\nrate_radps = 0.5\n"
+      "[[channel]]\nname = \"ramp_counts\"\nshape = \"feedback_ramp\"\nmodulus = 1000\ncounts_per_rad = "
+      "20000\n");
+  const auto& ramp = s.capture.channels[0].values;
+  for (std::size_t i = 0; i < ramp.size(); ++i) {
+    EXPECT_EQ(ramp[i], std::floor(ramp[i]));
+    EXPECT_GE(ramp[i], 0.0);
+    EXPECT_LT(ramp[i], 1000.0);
+  }
+  EXPECT_NEAR(std::remainder(ramp[500] - ramp[400], 1000.0), std::remainder(0.5 * 20000, 1000.0), 1.0);
+}
+
+TEST_F(ScenarioFile, SameSeedSameBitsAndPartsDoNotDisturbEachOther) {
+  const std::string noisy = "seed = 5\n" + kTemperature + "noise = 0.1\n[noise]\nN = 1e-6\nB = 1e-7\n";
+  const Simulation a = simulate(noisy), b = simulate(noisy);
+  EXPECT_EQ(a.capture.rate_radps, b.capture.rate_radps);
+  EXPECT_EQ(a.capture.channels[0].values, b.capture.channels[0].values);
+  const Simulation other = simulate("seed = 6\n" + noisy.substr(9));
+  EXPECT_NE(a.capture.rate_radps, other.capture.rate_radps);
+  const Simulation more = simulate(noisy + "[[effect]]\nform = \"outliers\"\nfraction = 0\nsize_radps = 1\n");
+  EXPECT_EQ(a.capture.rate_radps, more.capture.rate_radps);
+}
+
+TEST_F(ScenarioFile, DrawnValuesStandInTheTruth) {
+  const std::string text = kTemperature +
+                           "[[effect]]\nform = \"linear\"\nchannel = \"temperature_degC\"\n"
+                           "coefficient = { between = [1e-8, 1e-6], log = true, either_sign = true }\n";
+  const Simulation s = simulate(text);
+  const auto truth = nlohmann::json::parse(ifog::simulate::truth_json(s.truth));
+  const double drawn = truth["effects"][0]["coefficient"];
+  EXPECT_GE(std::abs(drawn), 1e-8);
+  EXPECT_LE(std::abs(drawn), 1e-6);
+  EXPECT_NEAR(s.capture.rate_radps[0][500], drawn * s.capture.channels[0].values[500], 1e-20);
+  EXPECT_NE(simulate("seed = 2\n" + text).capture.rate_radps[0][500], s.capture.rate_radps[0][500]);
+}
+
+TEST_F(ScenarioFile, GapsAndMissingRowsLeaveTheOthersAlone) {
+  const std::string plain = "seed = 5\nsample_rate_hz = 10\nduration_s = 100\n";
+  const Simulation whole = simulate(plain + "[noise]\nN = 1e-6\n");
+  const Simulation holed = simulate(plain + "gaps = [[20.0, 30.0]]\nmissing_rows = 0.1\n[noise]\nN = 1e-6\n");
+  EXPECT_LT(holed.capture.size(), 850U);
+  for (std::size_t i = 0; i < holed.capture.size(); ++i) {
+    const double t = holed.capture.time_s[i];
+    EXPECT_TRUE(t < 20.0 || t >= 30.0);
+    EXPECT_EQ(holed.capture.rate_radps[0][i],
+              whole.capture.rate_radps[0][static_cast<std::size_t>(std::lround(t * 10))]);
+  }
+}
+
+TEST_F(ScenarioFile, RefusesInOneLine) {
+  EXPECT_EQ(refusal("duration_s = 1\nspeed = 3\n").substr(0, 23), ":2: speed is unknown, e");
+  EXPECT_EQ(refusal("sample_rate_hz = 3\n"), ":1: duration_s is missing, expected seconds");
+  EXPECT_EQ(refusal("duration_s = \"long\"\n"), ":1: duration_s is a string, expected a number");
+  EXPECT_EQ(refusal("duration_s = 10\n[noise]\nN = -1\n"), ":3: noise.N is -1.000000, expected at least 0");
+  EXPECT_EQ(refusal("duration_s = 10\n[noise]\nM = 1\n"), ":3: noise.M is unknown, expected Q, N, B, K or R");
+  EXPECT_EQ(refusal("duration_s = 10\n[[effect]]\nform = \"linear\"\ncoefficient = 1\n"),
+            ":2: [[effect]]: key 'channel' is missing for linear, expected a channel's name, or 'rate'");
+  EXPECT_EQ(
+      refusal("duration_s = 10\n[[effect]]\nform = \"linear\"\ncoefficient = 1\nchannel = \"t_degC\"\n"),
+      "effect linear: channel 't_degC' is not in the scenario, expected one of its channels or 'rate'");
+  EXPECT_EQ(
+      refusal(
+          "duration_s = 10\n[[channel]]\nname = \"t_degC\"\nshape = \"constant\"\nlevel = 1\nlevle = 2\n"),
+      ":2: [[channel]]: key 'levle' is unknown for constant, expected level, noise, resolution, every_s, "
+      "missing");
+  EXPECT_EQ(refusal("duration_s = 10\n[[effect]]\nform = \"magic\"\n").substr(0, 40),
+            ":2: [[effect]]: 'magic' is unknown, expe");
+  EXPECT_EQ(refusal("duration_s = = 3\n").substr(0, 3), ":1:");
+}
+
+TEST(Scenarios, TheExamplesRun) {
+  int found = 0;
+  for (const auto& entry : fs::directory_iterator(IFOG_SOURCE_DIR "/tools/simulate/scenarios")) {
+    Scenario s = ifog::simulate::read_scenario(entry.path().string());
+    s.duration_s = 20.0;
+    s.gaps.clear();
+    EXPECT_GT(ifog::simulate::simulate(s).capture.size(), 10U) << entry.path();
+    ++found;
+  }
+  EXPECT_GE(found, 3);
+}
+
+}  // namespace

@@ -1,0 +1,72 @@
+// ifog simulate: a capture from a scenario file, its truth apart.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "drivers/capture/recording.h"
+#include "drivers/capture/text_file.h"
+#include "tools/ifog/capture_input.h"
+#include "tools/ifog/capture_output.h"
+#include "tools/ifog/commands.h"
+#include "tools/simulate/simulator.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Simulate {
+  CaptureInput encoding;
+  std::string scenario, output, truth, axis;
+  std::uint64_t seed = 0;
+  bool seed_given = false;
+
+  void run() const {
+    simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
+    simulate::Simulation made;
+    try {
+      made = simulate::simulate(s);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(scenario + ": " + error.what());
+    }
+    if (file_kind(output) == FileKind::capture) {
+      if (encoding.has_driver())
+        throw CLI::ValidationError(output,
+                                   "is a CSV capture, which no driver encodes; expected .kvh, .bin or .log");
+      write_capture(made.capture, output);
+      std::printf("%s: %zu samples\n", output.c_str(), made.capture.size());
+    } else {
+      write_recording(made.capture, scenario, output, encoding, axis);
+    }
+    if (truth.empty()) return;
+    if (file_kind(truth) == FileKind::capture)
+      write_capture(simulate::truth_capture(made.truth, made.capture), truth);
+    else
+      write_text_file(truth, simulate::truth_json(made.truth));
+    std::printf("%s: the truth\n", truth.c_str());
+  }
+};
+
+}  // namespace
+
+void add_simulate(CLI::App& app) {
+  auto state = std::make_shared<Simulate>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
+  command->add_option("SCENARIO", state->scenario, "Scenario (.toml)")->required();
+  command
+      ->add_option("--output", state->output, "Capture: .csv, .csv.gz; through a driver .kvh, .bin or .log")
+      ->required();
+  command->add_option(
+      "--truth", state->truth,
+      "Write what the capture does not tell: .json the parameters, .csv the true rate and each effect");
+  CLI::Option* seed = command->add_option("--seed", state->seed, "Instead of the scenario's");
+  state->encoding.add_to(*command);
+  command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
+      ->type_name("NAME");
+  command->footer("Example:\n  ifog simulate rest.toml --output rest.csv.gz --truth rest.truth.json");
+  command->callback([state, seed] {
+    state->seed_given = seed->count() > 0;
+    state->run();
+  });
+}
+
+}  // namespace ifog::tools

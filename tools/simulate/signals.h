@@ -1,0 +1,37 @@
+// Time series of the parts of a scenario, one value a sample.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tools/simulate/draw.h"
+#include "tools/simulate/recipe.h"
+
+namespace ifog::simulate {
+
+struct Grid {
+  double rate_hz = 0.0;
+  std::size_t samples = 0;
+  [[nodiscard]] double period() const { return 1.0 / rate_hz; }
+  [[nodiscard]] double time(std::size_t i) const { return static_cast<double>(i) / rate_hz; }
+  [[nodiscard]] double duration() const { return static_cast<double>(samples) / rate_hz; }
+};
+
+// The channel as it is, and as it is logged: with its sensor's noise, resolution and update interval.
+struct ChannelSignal {
+  std::vector<double> physical, logged;
+};
+// true_rate: of the axis the channel belongs to; only a feedback ramp uses it.
+[[nodiscard]] ChannelSignal channel_signal(const Recipe& recipe, const Grid& grid,
+                                           std::span<const double> true_rate, Draw draw);
+
+[[nodiscard]] std::vector<double> motion_signal(const Recipe& recipe, const Grid& grid, Draw draw);
+
+// The part of the rate that an effect makes from the physical channel. `quantisation` acts on the sum and is
+// not made here: zero.
+[[nodiscard]] std::vector<double> effect_signal(const Recipe& recipe, const Grid& grid,
+                                                std::span<const double> channel,
+                                                std::span<const double> with_channel,
+                                                std::span<const double> true_rate, Draw draw);
+
+}  // namespace ifog::simulate
