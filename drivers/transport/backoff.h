@@ -9,7 +9,7 @@ namespace ifog {
 
 class Backoff {
  public:
-  static constexpr std::int64_t kFirst_ns = 10'000'000, kLongest_ns = 250'000'000;
+  static constexpr std::int64_t kFirst_ns = 10'000'000, kLongest_ns = 100'000'000;
 
   // The device went away at `now_ns`.
   void restart(std::int64_t now_ns) {

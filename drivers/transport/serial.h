@@ -1,5 +1,5 @@
-// The serial transport. Opens the line again whenever it goes away, within a quarter of a second of its
-// return.
+// The serial transport. Opens the line again whenever it goes away, within about a tenth of a second of
+// its return.
 #pragma once
 
 #include <memory>
