@@ -99,8 +99,9 @@ typedef struct ifog_description {
   uint32_t opening_length;
 } ifog_description;
 
-/* One `key = value` of the sensor's [sensor.options] table, value as text. Owned by the host, gone after `create`.
- * The host has refused unknown keys and passes every option of the list, the default where the user gave none. */
+/* One `key = value` of the sensor's [sensor.options] table, value as text. Owned by the host, gone after
+ * `create`. The host has refused unknown keys and passes every option of the list, the default where the user
+ * gave none. */
 typedef struct ifog_setting {
   const char* key;
   const char* value;

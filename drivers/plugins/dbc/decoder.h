@@ -12,9 +12,8 @@ namespace ifog::dbc {
 // sample are told from those of the next by
 //   - the counter, in each frame that carries it;
 //   - an axis that comes a second time;
-//   - where some axis's frame carries no counter: the frame of the lowest id, which begins a sample, because
-//   frames
-//     queued together leave in the order of their ids (arbitration).
+//   - where some axis's frame carries no counter: the frame of the lowest id. It begins a sample, because
+//     frames queued together leave in the order of their ids (arbitration).
 // So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. Environment,
 // status and time may be in frames of their own; they go with the next sample that completes.
 class Decoder {

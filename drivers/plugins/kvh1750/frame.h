@@ -1,13 +1,10 @@
-// One message of a KVH 1725/1750/1775 IMU or DSP-1760, in the units it is sent in. Source: KVH 1750 IMU
-// technical manual, output message formats A, B and C. Everything is big-endian.
+// One message of a KVH 1725/1750/1775 IMU or DSP-1760, in the units it is sent in. Everything is big-endian.
+// Source: 1775 IMU technical manual 56-0298, tables 5-1 to 5-9.
 //
-//   A, 36 bytes: FE 81 FF 55 | 3 gyro floats | 3 accelerometer floats | status | sequence | temperature,
-//   int16 | CRC B, 40 bytes: FE 81 FF 56 | 3 gyro floats | 3 accelerometer floats | time stamp, uint32 |
-//   status | sequence |
-//                temperature, int16 | CRC
-//   C, 38 bytes: FE 81 FF 57 | 3 gyro floats | 3 accelerometer floats | float that is, by sequence modulo
-//   four, the
-//                temperature or the magnetic field along x, y or z in gauss | status | sequence | CRC
+//   A, 36 bytes: FE 81 FF 55, 3 gyro floats, 3 accelerometer floats, status, sequence, int16 temperature, CRC
+//   B, 40 bytes: FE 81 FF 56, the same with a uint32 time stamp in µs behind the accelerometers
+//   C, 38 bytes: FE 81 FF 57, the same as A without the int16, but a float behind the accelerometers that by
+//                the sequence modulo four is the temperature or the magnetic field along x, y, z in gauss
 //
 // The CRC is CRC-32/MPEG-2 over all bytes before it, the header included.
 #pragma once

@@ -1,7 +1,8 @@
 // The driver `kvh1750`: KVH 1725, 1750 and 1775 IMU and DSP-1760, message formats A, B and C.
 //
 // The bytes carry numbers without their meaning: radians or degrees, rate or delta angle, the temperature's
-// scale are set in the device and must be said to the driver. The defaults are the device's own as delivered.
+// scale are set in the device (=ANGUNITS, =ANGFMT, =LINFMT, =TEMPUNITS) and must be said to the driver. Mind
+// that KVH delivers devices that send delta angles, while the default here is rate.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,7 +63,7 @@ constexpr std::array kOptions{
     ifog_option{"angle_unit", "radians | degrees", "radians",
                 "unit of the gyro values, as set in the device"},
     ifog_option{"output", "rate | delta", "rate",
-                "gyro values are rates or delta angles, as set in the device"},
+                "gyro values are rates, or delta angles as KVH delivers it"},
     ifog_option{"acceleration", "specific_force | delta_velocity", "specific_force",
                 "accelerometer values are g, or m/s since the sample before"},
     ifog_option{"temperature", "degC | centi_degC | degF | centi_degF", "degC",

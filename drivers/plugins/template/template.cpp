@@ -4,9 +4,10 @@
 //   1. Copy this file to NAME.cpp and, beside it, write this CMakeLists.txt:
 //        cmake_minimum_required(VERSION 3.25)
 //        project(my_gyro LANGUAGES CXX)
-//        find_package(ifogd REQUIRED)              # installed with ifogd: cmake --install BUILD --component
-//        development ifogd_add_plugin(NAME SOURCES NAME.cpp)   # makes NAME.so, and `cmake --install` puts it
-//        where ifogd looks
+//        find_package(ifogd REQUIRED)
+//        ifogd_add_plugin(NAME SOURCES NAME.cpp)
+//      The package comes with `cmake --install BUILD_OF_IFOGD --component development`; the function makes
+//      NAME.so, and `cmake --install` of your build puts it where ifogd looks.
 //   2. Change what is marked STEP 1 … STEP 6 below.
 //   3. `IFOG_PLUGIN_PATH=BUILD ifog drivers NAME` shows that it loads, and its options; then
 //      `ifog convert RECORDING.bin OUT.csv --driver NAME` decodes what you recorded from the device
@@ -18,8 +19,7 @@
 // options.
 //
 // The device here is invented. It sends 8 bytes a sample, 200 times a second at 115200 baud:
-//   0xA5 | counter, 0 … 255 | rate, int32 big-endian, µdeg/s | temperature, int8, °C | sum of the first seven
-//   bytes
+//   0xA5, counter (0 … 255), rate (int32 big-endian, µdeg/s), temperature (int8, °C), sum of the seven bytes
 
 #include <array>
 #include <cmath>

@@ -1,21 +1,40 @@
+// Finding, loading and refusing plugins, and refusing options.
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "drivers/host/driver_instance.h"
 
 namespace {
 
-std::string refusal(const std::string& name, const ifog::DriverSettings& settings) {
+namespace fs = std::filesystem;
+
+const std::string kRefused = IFOG_REFUSED_PLUGINS;
+
+std::string refusal(const std::string& name, const ifog::DriverSettings& settings,
+                    const std::vector<std::string>& folders = ifog::plugin_folders()) {
   try {
-    ifog::make_driver(name, settings);
+    ifog::make_driver(name, settings, folders);
   } catch (const std::runtime_error& error) {
     return error.what();
   }
   return "accepted";
 }
 
+std::string refused_plugin(const std::string& name) {
+  const std::string line = refusal(name, {}, {kRefused});
+  const std::string path = kRefused + "/" + name + ".so: ";
+  return line.starts_with(path) ? line.substr(path.size()) : line;
+}
+
 TEST(DriverHost, FindsThePluginOfTheBuildTree) {
   const ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "b"}});
   EXPECT_TRUE(driver.takes_bytes());
+  EXPECT_FALSE(driver.takes_can());
   EXPECT_EQ(driver.description().axes, 3U);
   EXPECT_EQ(driver.description().has_device_time, 1U);
   EXPECT_STREQ(driver.description().environment[3], "temperature_degC");
@@ -30,6 +49,70 @@ TEST(DriverHost, NamesKeyValueAndExpectation) {
             "driver kvh1750: format is 'd', expected one of auto, a, b, c");
   EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "-3"}}),
             "driver kvh1750: rate_hz is '-3', expected a number > 0, at most 100000");
+  EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "1000x"}}),
+            "driver kvh1750: rate_hz is '1000x', expected a number > 0, at most 100000");
+  EXPECT_EQ(refusal("dbc", {}),
+            "driver dbc: option 'dbc' is missing, expected a file (Vector DBC file that describes the bus)");
+}
+
+TEST(DriverHost, AnotherInterfaceVersionIsRefusedByBothNumbers) {
+  EXPECT_EQ(refused_plugin("other_version"), "built for interface version 99, this program has version " +
+                                                 std::to_string(IFOG_DRIVER_ABI) +
+                                                 "; build the plugin against this version");
+}
+
+TEST(DriverHost, WhatIsNoDriverIsRefused) {
+  EXPECT_EQ(refused_plugin("without_entry"), "is no ifogd plugin: it has no function ifog_driver_entry");
+  EXPECT_EQ(refused_plugin("misnamed"), "calls itself 'something_else', expected the name of its file");
+  EXPECT_EQ(refused_plugin("without_create"), "its table lacks 'create'");
+  EXPECT_EQ(refused_plugin("too_many_axes"),
+            "driver too_many_axes: describes a number of axes outside 1 … 3");
+}
+
+TEST(DriverHost, AMissingDriverIsNamedWithThoseThereAre) {
+  const std::string line = refusal("kvh", {}, {kRefused});
+  EXPECT_EQ(line,
+            "driver is 'kvh', expected one of: misnamed, other_version, too_many_axes, without_create, "
+            "without_entry (looked in " +
+                kRefused + ")");
+  EXPECT_NE(refusal("../plugins/kvh1750", {}).find("driver is '../plugins/kvh1750'"), std::string::npos);
+}
+
+TEST(DriverHost, AFileThatIsNoObjectIsRefusedAndTheListGoesOn) {
+  const fs::path folder = fs::temp_directory_path() / ("ifog-host-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "broken.so") << "not an object";
+  const std::vector<ifog::FoundPlugin> list =
+      ifog::list_plugins({folder.string(), std::string(IFOG_BINARY_DIR) + "/plugins"});
+  fs::remove_all(folder);
+  ASSERT_GE(list.size(), 3U);
+  EXPECT_EQ(list[0].plugin, nullptr);
+  EXPECT_NE(list[0].refusal.find("broken.so: cannot load: "), std::string::npos) << list[0].refusal;
+  EXPECT_TRUE(std::any_of(list.begin(), list.end(), [](const ifog::FoundPlugin& found) {
+    return found.plugin && std::string(found.plugin->table().name) == "kvh1750";
+  }));
+}
+
+TEST(DriverHost, FoldersOfTheEnvironmentComeBeforeTheBuildTree) {
+  setenv("IFOG_PLUGIN_PATH", ("/nowhere/at/all:" + kRefused).c_str(), 1);
+  const std::vector<std::string> folders = ifog::plugin_folders({"first"});
+  unsetenv("IFOG_PLUGIN_PATH");
+  ASSERT_GE(folders.size(), 3U);
+  EXPECT_EQ(folders[0], "first");
+  EXPECT_EQ(folders[1], kRefused);
+  EXPECT_EQ(folders[2], std::string(IFOG_BINARY_DIR) + "/plugins");
+}
+
+// The encoder gives a sample whole or not at all.
+TEST(DriverHost, WhatCannotBeEncodedLeavesNothingBehind) {
+  ifog::DriverInstance driver = ifog::make_driver("template", {});
+  ifog_sample sample{};
+  sample.value[0] = 100.0;
+  std::vector<std::uint8_t> bytes{1, 2, 3};
+  EXPECT_THROW(driver.encode_bytes(sample, bytes), std::runtime_error);
+  EXPECT_EQ(bytes.size(), 3U);
+  std::vector<ifog_can_frame> frames;
+  EXPECT_THROW(driver.encode_can(sample, frames), std::runtime_error);
 }
 
 }  // namespace

@@ -113,6 +113,24 @@ TEST(Kvh1750, FormatAPackedByHand) {
   EXPECT_TRUE(std::isnan(s.environment[4]));
 }
 
+// The sample output printed in the maker's 1775 IMU technical manual (section 5.2.1), which also breaks it
+// down: delta angles in radians, about −1 g along x, all valid, sequence 61, 40 °C.
+TEST(Kvh1750, TheManualsSampleOutput) {
+  ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"output", "delta"}});
+  const std::vector<ifog_sample> samples = decode(
+      driver, hex("FE81FF55 37A96A6E 38586C1F B75BF862 BF803E78 BB650D28 3B0A37AC 77 3D 0028 4BFA34D8"));
+  ASSERT_EQ(samples.size(), 1U);
+  const ifog_sample& s = samples[0];
+  EXPECT_EQ(driver.description().kind, unsigned{IFOG_DELTA_ANGLE});
+  EXPECT_NEAR(s.value[0], 2.019593e-5, 1e-11);
+  EXPECT_NEAR(s.value[1], 5.159911e-5, 1e-11);
+  EXPECT_NEAR(s.value[2], -1.311125e-5, 1e-11);
+  EXPECT_NEAR(s.environment[0], -1.0019064 * 9.80665, 1e-6);
+  EXPECT_EQ(s.valid_axes, 7U);
+  EXPECT_EQ(s.sequence, 61U);
+  EXPECT_EQ(s.environment[3], 40.0);
+}
+
 TEST(Kvh1750, FormatBPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver(
       "kvh1750", {{"format", "b"}, {"angle_unit", "degrees"}, {"temperature", "centi_degC"}});

@@ -1,0 +1,234 @@
+// Captures to what a device would have sent, and back, through the real plugins.
+#include "drivers/capture/recording.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "drivers/capture/candump.h"
+#include "drivers/capture/capture_builder.h"
+#include "drivers/capture/capture_encoder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using ifog::Capture;
+using ifog::DriverSettings;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const std::string kBus = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/ifogd_gyro.dbc";
+
+// 1000 samples at 200 Hz, with `missing` rows left out after row 500.
+Capture wave(const std::vector<std::string>& axes, int missing = 0) {
+  Capture c;
+  c.axes = axes;
+  c.rate_radps.resize(axes.size());
+  c.reference_rate_radps.resize(axes.size());
+  c.channels = {{"temperature_degC", {}}, {"extra_V", {}}};
+  for (int i = 0; i < 1000; ++i) {
+    const int k = i < 500 ? i : i + missing;
+    c.time_s.push_back(k / 200.0);
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      c.rate_radps[a].push_back(2.0 * std::sin(0.01 * k + static_cast<double>(a)));
+    c.channels[0].values.push_back(i % 10 == 0 ? 20.0 + i / 100 : kNaN);
+    c.channels[1].values.push_back(i);
+  }
+  return c;
+}
+
+class Recording : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ifog-recording-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  // Encodes with one instance of the driver and decodes with another.
+  Capture there_and_back(const Capture& capture, const std::string& driver, const DriverSettings& settings) {
+    const auto plugin = ifog::find_plugin(driver, ifog::plugin_folders());
+    const DriverSettings all = ifog::with_rate_of(capture, *plugin, settings);
+    ifog::DriverInstance out(plugin, all);
+    ifog::CaptureEncoder encoder(capture, out);
+    std::string file;
+    if (out.takes_can()) {
+      file = path("frames.log");
+      std::ofstream log(file);
+      std::vector<ifog_can_frame> frames;
+      while (encoder.next(frames)) {
+      }
+      char line[ifog::kCandumpLineMax];
+      for (const ifog_can_frame& frame : frames)
+        log.write(line, static_cast<std::streamsize>(ifog::format_candump_line(frame, "vcan0", line)));
+    } else {
+      file = path("bytes.bin");
+      std::vector<std::uint8_t> bytes;
+      while (encoder.next(bytes)) {
+      }
+      std::ofstream(file, std::ios::binary)
+          .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    }
+    notices_ = encoder.notices();
+    ifog::DriverInstance in(plugin, all);
+    ifog::CaptureBuilder builder(in.description());
+    counts_ = ifog::decode_recording(file, in, "", [&](const ifog_sample& sample) { builder.add(sample); });
+    missing_ = builder.missing();
+    return builder.finish();
+  }
+
+  // Rates equal to the precision a float keeps (or `tolerance`), times exactly.
+  static void expect_same(const Capture& a, const Capture& b, double tolerance = 0.0) {
+    ASSERT_EQ(a.time_s, b.time_s);
+    ASSERT_EQ(a.rate_radps.size(), b.rate_radps.size());
+    for (std::size_t axis = 0; axis < a.rate_radps.size(); ++axis)
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const double expected = a.rate_radps[axis][i];
+        const double allowed = tolerance > 0.0 ? tolerance : std::abs(expected) * 6e-8;
+        ASSERT_NEAR(b.rate_radps[axis][i], expected, allowed) << "axis " << axis << " row " << i;
+      }
+  }
+
+  fs::path folder_;
+  ifog::RecordingCounts counts_;
+  std::vector<std::string> notices_;
+  std::size_t missing_ = 0;
+};
+
+TEST_F(Recording, KvhFormatsKeepRatesTimesAndGaps) {
+  for (const char* format : {"a", "b", "c"}) {
+    const Capture capture = wave({"x", "y", "z"}, 40);
+    const Capture back = there_and_back(capture, "kvh1750", {{"format", format}});
+    expect_same(capture, back);
+    EXPECT_EQ(back.axes, capture.axes);
+    EXPECT_EQ(counts_.samples, 1000U);
+    EXPECT_EQ(counts_.driver.bytes_skipped, 0U);
+    EXPECT_EQ(missing_, 40U) << format;
+  }
+  ASSERT_EQ(notices_.size(), 2U);
+  EXPECT_EQ(notices_[0], "left out, the format as set up has no place for it: extra_V");
+}
+
+TEST_F(Recording, AnglesAndIncrementsBecomeTheSameRates) {
+  const Capture capture = wave({""}, 3);
+  // A delta angle is rad: a float of 0.01 rad resolves 1e-9 rad, 2e-7 rad/s at 200 Hz.
+  Capture back =
+      there_and_back(wave({"x", "y", "z"}), "kvh1750", {{"output", "delta"}, {"angle_unit", "degrees"}});
+  expect_same(wave({"x", "y", "z"}), back, 4e-7);
+  const std::string dbc = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/goetting_hg_g_84300.dbc";
+  back = there_and_back(capture, "dbc",
+                        {{"dbc", dbc},
+                         {"signal", "Angle"},
+                         {"kind", "angle"},
+                         {"counter", "Cycle"},
+                         {"environment", "temperature_degC=Temperature"}});
+  // A float32 angle near π resolves 2.4e-7 rad, so its difference over 5 ms no better than 5e-5 rad/s.
+  EXPECT_TRUE(std::isnan(back.rate_radps[0][0]));
+  back.rate_radps[0][0] = capture.rate_radps[0][0];
+  expect_same(capture, back, 1e-4);
+}
+
+TEST_F(Recording, DbcKeepsThreeAxesAndSlowChannels) {
+  const Capture capture =
+      wave({"x", "y", "z"}, 70000);  // more than the 16-bit counter: seen in the arrival times
+  const Capture back = there_and_back(capture, "dbc",
+                                      {{"dbc", kBus},
+                                       {"x", "Rate_x"},
+                                       {"y", "Rate_y"},
+                                       {"z", "Rate_z"},
+                                       {"counter", "Counter"},
+                                       {"environment", "temperature_degC=Temperature"}});
+  expect_same(capture, back);
+  EXPECT_EQ(missing_, 70000U);
+  ASSERT_EQ(back.channels.size(), 1U);
+  for (std::size_t i = 0; i < back.size(); ++i)
+    if (i % 10 == 0)
+      EXPECT_EQ(back.channels[0].values[i], capture.channels[0].values[i]);
+    else
+      EXPECT_TRUE(std::isnan(back.channels[0].values[i]));
+}
+
+TEST_F(Recording, AMissingRateStaysMissing) {
+  Capture capture = wave({""});
+  capture.rate_radps[0][10] = kNaN;
+  const Capture back =
+      there_and_back(capture, "dbc", {{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}});
+  ASSERT_EQ(back.size(), 1000U);
+  EXPECT_TRUE(std::isnan(back.rate_radps[0][10]));
+}
+
+TEST_F(Recording, ACutOffFileIsCounted) {
+  const Capture capture = wave({"x", "y", "z"});
+  there_and_back(capture, "kvh1750", {{"format", "a"}});
+  fs::resize_file(path("bytes.bin"), 36 * 500 + 20);
+  ifog::DriverInstance driver = ifog::make_driver("kvh1750", {});
+  const ifog::RecordingCounts counts =
+      ifog::decode_recording(path("bytes.bin"), driver, "", [](const ifog_sample&) {});
+  EXPECT_EQ(counts.samples, 500U);
+  EXPECT_EQ(counts.bytes_at_end, 20U);
+}
+
+TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
+  Capture capture = wave({""});
+  capture.rate_radps[0][4] = 1e6;
+  const auto plugin = ifog::find_plugin("template", ifog::plugin_folders());
+  ifog::DriverInstance driver(plugin, {});
+  ifog::CaptureEncoder encoder(capture, driver);
+  std::vector<std::uint8_t> bytes;
+  try {
+    while (encoder.next(bytes)) {
+    }
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "at 0.020000 s: driver template: rate is 1000000.000000 rad/s, expected within ±37");
+  }
+  EXPECT_EQ(bytes.size(), 4U * 8U);
+}
+
+TEST_F(Recording, TimeThatStandsStillIsRefused) {
+  ifog_description d{};
+  d.axes = 1;
+  ifog::CaptureBuilder builder(d);
+  ifog_sample sample{};
+  sample.arrival_ns = 1'000'000'000;
+  sample.valid_axes = 1;
+  builder.add(sample);
+  EXPECT_THROW(builder.add(sample), std::runtime_error);
+  ifog::CaptureBuilder timeless(d);
+  sample.arrival_ns = 0;
+  EXPECT_THROW(timeless.add(sample), std::runtime_error);
+}
+
+TEST_F(Recording, FileKindsByNameAndContent) {
+  using ifog::file_kind;
+  using ifog::FileKind;
+  EXPECT_EQ(file_kind("a.csv.gz"), FileKind::capture);
+  EXPECT_EQ(file_kind("a.log"), FileKind::candump);
+  EXPECT_EQ(file_kind("a.kvh"), FileKind::bytes);
+  std::ofstream(path("lcmlog-2026-01-01.00"), std::ios::binary) << "\xED\xA1\xDA\x01rest";
+  EXPECT_EQ(file_kind(path("lcmlog-2026-01-01.00")), FileKind::lcm_log);
+  EXPECT_EQ(file_kind("nothing"), FileKind::unknown);
+}
+
+// A real gyro's record through the frames of a device, where the shared captures are at hand.
+TEST_F(Recording, AMeasuredCaptureSurvives) {
+  const std::string file = std::string(IFOG_SHARED_DATA) + "/blueseis_bs1_ramp.csv.gz";
+  if (!fs::exists(file))
+    GTEST_SKIP() << "no captures at ../shared/data beside the project; put them there to run this";
+  const Capture capture = ifog::read_capture(file);
+  expect_same(capture, there_and_back(capture, "kvh1750", {{"format", "b"}}));
+  const Capture back = there_and_back(
+      capture, "dbc",
+      {{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}, {"environment", "ramp_counts=Ramp"}});
+  expect_same(capture, back);
+  EXPECT_EQ(back.channels[0].values, capture.channels[0].values);
+}
+
+}  // namespace
