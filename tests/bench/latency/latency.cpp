@@ -1,0 +1,250 @@
+// From a frame's last byte to the end of its LCM send, and processor time a sample: the daemon's pipeline
+// beside a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
+// ring, plugin or filter. Interleaved rounds in one process. Run it by tests/bench/latency/run, in a network
+// namespace of its own.
+#include <fcntl.h>
+#include <lcm/lcm.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "daemon/pipeline/pipeline.h"
+#include "drivers/host/driver_instance.h"
+#include "drivers/transport/file.h"
+
+namespace {
+
+using namespace ifog;
+
+constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
+constexpr std::size_t kFrame = 36;
+
+std::int64_t cpu_ns(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+// When each frame was written and when its send was done; frame n is message n, as nothing is lost on a FIFO.
+struct Stamps {
+  explicit Stamps(std::size_t n) : written(n), sent(n) {}
+  std::vector<std::atomic<std::int64_t>> written, sent;
+};
+
+class StampingPublisher final : public Publisher {
+ public:
+  explicit StampingPublisher(Stamps& stamps) : lcm_(make_lcm_publisher(kUrl)), stamps_(stamps) {}
+  bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
+    const bool sent = lcm_->publish(channel, message);
+    if (count_ < stamps_.sent.size()) stamps_.sent[count_].store(monotonic_ns(), std::memory_order_relaxed);
+    ++count_;
+    return sent;
+  }
+
+ private:
+  std::unique_ptr<Publisher> lcm_;
+  Stamps& stamps_;
+  std::size_t count_ = 0;
+};
+
+struct Plan {
+  double rate_hz = 1000.0, seconds = 3.0;
+  int sensors = 1, rounds = 5;
+  bool spin = false;
+  std::string rule = "irwe-akfg";
+};
+
+std::vector<std::uint8_t> frames(std::size_t count) {
+  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
+  std::vector<std::uint8_t> out;
+  for (std::size_t n = 0; n < count; ++n) {
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (double& value : sample.value) value = 0.01 + 1e-5 * static_cast<double>(n * 7919 % 101);
+    sample.environment_fresh = ~0U;
+    driver.encode_bytes(sample, out);
+  }
+  return out;
+}
+
+// Writes one frame a period at absolute deadlines, to the FIFO of every sensor in turn.
+void write_frames(const std::vector<int>& fifos, const std::vector<std::uint8_t>& bytes, double rate_hz,
+                  std::vector<std::unique_ptr<Stamps>>& stamps, std::int64_t& used_ns) {
+  const std::int64_t from_ns = cpu_ns(CLOCK_THREAD_CPUTIME_ID);
+  const std::int64_t start_ns = monotonic_ns() + 20'000'000;
+  const std::size_t count = bytes.size() / kFrame;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::int64_t due_ns = start_ns + static_cast<std::int64_t>(static_cast<double>(n) / rate_hz * 1e9);
+    const timespec due{due_ns / 1'000'000'000, due_ns % 1'000'000'000};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+    for (std::size_t s = 0; s < fifos.size(); ++s) {
+      stamps[s]->written[n].store(monotonic_ns(), std::memory_order_relaxed);
+      if (write(fifos[s], bytes.data() + n * kFrame, kFrame) != static_cast<ssize_t>(kFrame)) std::abort();
+    }
+  }
+  used_ns = cpu_ns(CLOCK_THREAD_CPUTIME_ID) - from_ns;
+}
+
+std::size_t message_size() {
+  RateEncoder encoder(3);
+  ChainSettings chain;
+  chain.facts.axes = 3;
+  chain.facts.nominal_rate_hz = 1000.0;
+  chain.axes = {"x", "y", "z"};
+  chain.filter.process_noise = 1e-10;
+  chain.filter.measurement_noise = 1e-8;
+  const ChainParts parts(chain);
+  return encoder.encode(Increment{}, ChainOutput{}, parts).size();
+}
+
+void bare_loop(const std::string& fifo, Stamps& stamps, std::size_t size) {
+  lcm_t* const lcm = lcm_create(kUrl);
+  const int fd = open(fifo.c_str(), O_RDONLY);
+  std::vector<std::uint8_t> message(size);
+  for (std::size_t n = 0; n < stamps.sent.size(); ++n) {
+    for (std::size_t have = 0; have < kFrame;) {
+      const ssize_t got = read(fd, message.data() + have, kFrame - have);
+      if (got <= 0) std::abort();
+      have += static_cast<std::size_t>(got);
+    }
+    lcm_publish(lcm, "IFOG_BARE", message.data(), static_cast<unsigned>(message.size()));
+    stamps.sent[n].store(monotonic_ns(), std::memory_order_relaxed);
+  }
+  close(fd);
+  lcm_destroy(lcm);
+}
+
+struct Result {
+  std::vector<double> latency_us;
+  double cpu_us = 0.0;  // a sample, writer left out
+  std::size_t lost = 0;
+};
+
+std::unique_ptr<Pipeline> make_pipeline(const std::string& fifo, const Plan& plan, Stamps& stamps) {
+  DriverInstance driver = make_driver("kvh1750", {});
+  PipelinePlan pipeline;
+  pipeline.lcm_channel = "IFOG_BENCH";
+  pipeline.facts = sensor_facts(driver.description(), plan.rate_hz, 0);
+  pipeline.reader.name = "read";
+  pipeline.filter.name = "filter";
+  pipeline.spin = plan.spin;
+  ChainSettings chain;
+  chain.facts = pipeline.facts;
+  chain.axes = {"x", "y", "z"};
+  chain.filter.rule = plan.rule;
+  chain.filter.process_noise = 1e-10;
+  chain.filter.measurement_noise = 1e-8;
+  for (std::uint32_t i = 0; i < driver.description().environments; ++i)
+    chain.channels.emplace_back(driver.description().environment[i]);
+  FileSettings file;
+  file.path = fifo;
+  return std::make_unique<Pipeline>(pipeline, make_file_transport(file), std::move(driver), nullptr,
+                                    std::make_unique<ChainParts>(chain),
+                                    std::make_unique<StampingPublisher>(stamps));
+}
+
+void run_round(bool daemon, const Plan& plan, const std::vector<std::string>& paths,
+               const std::vector<std::uint8_t>& bytes, std::size_t size, Result& result) {
+  const std::size_t count = bytes.size() / kFrame;
+  std::vector<std::unique_ptr<Stamps>> stamps;
+  std::vector<std::unique_ptr<Pipeline>> pipelines;
+  std::vector<std::thread> loops;
+  std::vector<int> fifos;
+  for (const std::string& path : paths) {
+    stamps.push_back(std::make_unique<Stamps>(count));
+    if (daemon) {
+      pipelines.push_back(make_pipeline(path, plan, *stamps.back()));
+      pipelines.back()->open();
+      pipelines.back()->start();
+    } else {
+      loops.emplace_back(bare_loop, path, std::ref(*stamps.back()), size);
+    }
+    fifos.push_back(open(path.c_str(), O_WRONLY));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const std::int64_t from_ns = cpu_ns(CLOCK_PROCESS_CPUTIME_ID);
+  std::int64_t writer_ns = 0;
+  std::thread writer(write_frames, std::cref(fifos), std::cref(bytes), plan.rate_hz, std::ref(stamps),
+                     std::ref(writer_ns));
+  writer.join();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  result.cpu_us += 1e-3 * static_cast<double>(cpu_ns(CLOCK_PROCESS_CPUTIME_ID) - from_ns - writer_ns) /
+                   static_cast<double>(count * paths.size()) / plan.rounds;
+  for (auto& pipeline : pipelines) pipeline->stop();
+  for (std::thread& loop : loops) loop.join();
+  for (const int fd : fifos) close(fd);
+  for (const auto& one : stamps)
+    for (std::size_t n = count / 10; n < count; ++n) {  // the first tenth warms caches up
+      const std::int64_t sent_ns = one->sent[n].load();
+      if (sent_ns == 0)
+        ++result.lost;
+      else
+        result.latency_us.push_back(1e-3 * static_cast<double>(sent_ns - one->written[n].load()));
+    }
+}
+
+double percentile(const std::vector<double>& sorted, double p) {
+  return sorted.empty() ? 0.0
+                        : sorted[std::min(sorted.size() - 1,
+                                          static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+}
+
+void print(const char* name, const std::vector<double>& l, double cpu_us, std::size_t lost) {
+  std::printf("%-10s %8.1f %8.1f %8.1f %9.1f %12.2f %6zu\n", name, percentile(l, 0.5), percentile(l, 0.99),
+              percentile(l, 0.999), l.empty() ? 0.0 : l.back(), cpu_us, lost);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Plan plan;
+  CLI::App app{"latency and load of the daemon's pipeline beside a bare read-and-publish loop"};
+  app.add_option("--rate", plan.rate_hz, "frames a second and sensor");
+  app.add_option("--sensors", plan.sensors);
+  app.add_option("--seconds", plan.seconds, "a round");
+  app.add_option("--rounds", plan.rounds);
+  app.add_option("--filter", plan.rule);
+  app.add_flag("--spin", plan.spin, "filter threads never sleep");
+  CLI11_PARSE(app, argc, argv);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("ifog-bench-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  std::vector<std::string> paths;
+  for (int s = 0; s < plan.sensors; ++s) {
+    paths.push_back(folder / ("fifo" + std::to_string(s)));
+    if (mkfifo(paths.back().c_str(), 0600) != 0) return 1;
+  }
+  const std::vector<std::uint8_t> bytes = frames(static_cast<std::size_t>(plan.rate_hz * plan.seconds));
+  const std::size_t size = message_size();
+  Result bare, daemon;
+  for (int round = 0; round < plan.rounds; ++round) {
+    run_round(false, plan, paths, bytes, size, bare);
+    run_round(true, plan, paths, bytes, size, daemon);
+  }
+  std::sort(bare.latency_us.begin(), bare.latency_us.end());
+  std::sort(daemon.latency_us.begin(), daemon.latency_us.end());
+  std::printf("%d sensor(s) at %g Hz, %d interleaved rounds of %g s, filter %s%s, messages of %zu bytes\n",
+              plan.sensors, plan.rate_hz, plan.rounds, plan.seconds, plan.rule.c_str(),
+              plan.spin ? ", spinning" : "", size);
+  std::printf("%-10s %8s %8s %8s %9s %12s %6s\n", "us", "p50", "p99", "p99.9", "max", "CPU/sample", "lost");
+  print("bare loop", bare.latency_us, bare.cpu_us, bare.lost);
+  print("daemon", daemon.latency_us, daemon.cpu_us, daemon.lost);
+  std::printf("%-10s %8.2f %8.2f %8.2f %9s %12.2f\n", "ratio",
+              percentile(daemon.latency_us, 0.5) / percentile(bare.latency_us, 0.5),
+              percentile(daemon.latency_us, 0.99) / percentile(bare.latency_us, 0.99),
+              percentile(daemon.latency_us, 0.999) / percentile(bare.latency_us, 0.999), "",
+              daemon.cpu_us / bare.cpu_us);
+  std::filesystem::remove_all(folder);
+  return 0;
+}
