@@ -11,6 +11,7 @@ namespace ifog {
 namespace {
 
 constexpr double kDiffuse = 1e9;
+constexpr double kSettled = 1e-13;
 
 template <int n>
 LikelihoodTerms sized(const StateModel& model, double process_noise, double measurement_noise,
@@ -25,52 +26,49 @@ LikelihoodTerms sized(const StateModel& model, double process_noise, double meas
   const double noise = measurement_noise + core.variance() + core.h.dot(driving * core.h);
   core.p.diagonal() += kDiffuse * noise * diffuse;
   long starting = (diffuse.array() > 0).count();
-  const bool at_first = starting > 0;
+  bool at_first = starting > 0;
   bool begun = false;
-  // Over an unbroken stretch the covariance comes to rest; from there on only the state moves, at a fraction
-  // of the cost. At this tolerance the sum differs from the full recursion by less than it rounds to.
-  constexpr double kAtRest = 1e-13;
-  bool frozen = false;
-  double frozen_s = 0.0, frozen_log = 0.0;
 
   LikelihoodTerms terms;
   if (innovations != nullptr) innovations->assign(rate.size(), std::numeric_limits<double>::quiet_NaN());
+  bool frozen = false;
+  double s = 0.0, root = 0.0, log_s = 0.0;
   for (std::size_t k = 0; k < rate.size(); ++k) {
-    if (frozen && std::isfinite(rate[k])) {
+    const bool missing = !std::isfinite(rate[k]);
+    if (frozen && !missing) {
       core.x.col(0) = transition * core.x.col(0);
-      const double innovation = rate[k] - core.rate(0);
-      ++terms.count;
-      terms.sum_log_variance += frozen_log;
-      terms.sum_normalised += innovation * innovation / frozen_s;
-      if (innovations != nullptr) (*innovations)[k] = innovation / std::sqrt(frozen_s);
-      core.update(0, innovation);
+    } else if (begun) {
+      core.predict(transition, driving);
+    }
+    begun = true;
+    if (missing) {
+      frozen = false;
       continue;
     }
-    frozen = false;
-    if (begun) core.predict(transition, driving);
-    begun = true;
-    if (!std::isfinite(rate[k])) continue;
-    if (at_first && starting > 0 && terms.count == 0 && core.x.col(0).isZero())
+    if (at_first) {
       core.x.col(0) = model.level() * rate[k];
-    const double s = core.variance() + measurement_noise;
+      at_first = false;
+    }
     const double innovation = rate[k] - core.rate(0);
+    if (!frozen) {
+      const double now = core.variance() + measurement_noise;
+      const typename KalmanCore<n>::Vector gain = core.gain;
+      core.correct(now);
+      frozen = starting == 0 && std::abs(now - s) <= kSettled * now &&
+               (core.gain - gain).norm() <= kSettled * core.gain.norm();
+      s = now;
+      root = std::sqrt(s);
+      log_s = std::log(s);
+    }
+    core.update(0, innovation);
     if (starting > 0) {
       --starting;
-    } else {
-      ++terms.count;
-      terms.sum_log_variance += std::log(s);
-      terms.sum_normalised += innovation * innovation / s;
-      if (innovations != nullptr) (*innovations)[k] = innovation / std::sqrt(s);
+      continue;
     }
-    const typename KalmanCore<n>::Vector last_gain = core.gain;
-    core.correct(s);
-    core.update(0, innovation);
-    frozen = starting == 0 && k > 0 && std::isfinite(rate[k - 1]) &&
-             (core.gain - last_gain).cwiseAbs().maxCoeff() <= kAtRest * core.gain.cwiseAbs().maxCoeff();
-    if (frozen) {
-      frozen_s = s;
-      frozen_log = std::log(s);
-    }
+    ++terms.count;
+    terms.sum_log_variance += log_s;
+    terms.sum_normalised += innovation * innovation / s;
+    if (innovations != nullptr) (*innovations)[k] = innovation / root;
   }
   return terms;
 }
@@ -93,6 +91,11 @@ LikelihoodTerms likelihood(const StateModel& model, double process_noise, double
   constexpr std::array kSized{sized<1>, sized<2>, sized<3>, sized<4>, sized<5>, sized<6>, sized<7>, sized<8>};
   return kSized.at(static_cast<std::size_t>(model.states() - 1))(model, process_noise, measurement_noise,
                                                                  rate, dt_s, innovations);
+}
+
+double log_likelihood(const StateModel& model, double process_noise, double measurement_noise,
+                      std::span<const double> rate, double dt_s) {
+  return likelihood(model, process_noise, measurement_noise, rate, dt_s).log_likelihood();
 }
 
 }  // namespace ifog

@@ -30,4 +30,8 @@ LikelihoodTerms likelihood(const StateModel& model, double process_noise, double
                            std::span<const double> rate, double dt_s,
                            std::vector<double>* innovations = nullptr);
 
+// likelihood().log_likelihood(), for an optimiser.
+double log_likelihood(const StateModel& model, double process_noise, double measurement_noise,
+                      std::span<const double> rate, double dt_s);
+
 }  // namespace ifog

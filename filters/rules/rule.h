@@ -18,10 +18,13 @@ struct RuleInput {
   double noise_scale = 1.0;             // R of this sample over R at the nominal period
   std::span<const double> innovations;  // of the valid axes, one to three
   std::uint64_t sequence = 0;
+  std::size_t hypothesis = 0;  // which core asks, for a rule with several
 };
 
 class Rule {
  public:
+  static constexpr std::size_t kMaxHypotheses = 15;
+
   virtual ~Rule() = default;
 
   // Innovation covariance to be used with this measurement, the measurement included where the rule says so.
@@ -33,6 +36,15 @@ class Rule {
   [[nodiscard]] virtual double measurement_noise() const noexcept = 0;
 
   virtual void restart() noexcept = 0;
+
+  // A bank: the factor on Q of each of its cores, and the weights of their outputs. One core unless
+  // overridden.
+  [[nodiscard]] virtual std::span<const double> hypotheses() const noexcept {
+    static constexpr double kOne = 1.0;
+    return {&kOne, 1};
+  }
+  [[nodiscard]] virtual double weight(std::size_t) const noexcept { return 1.0; }
+  [[nodiscard]] virtual std::size_t likeliest() const noexcept { return 0; }
 
   [[nodiscard]] std::uint64_t floor_hits() const noexcept { return floor_hits_; }
 

@@ -1,0 +1,70 @@
+// Tells a change of rate from noise and from an outlier, by the innovations of the filter at rest.
+//
+// Innovations are divided by their own long-run scale (not by the adaptation rule's covariance, whose window
+// is short and would make a 6 sigma test fire at 4), clipped, and summed over the last m for a ladder of m:
+// the generalised likelihood ratio for a change of mean that began m samples ago (Willsky and Jones, IEEE
+// Trans. AC 21(1), 1976). The clip makes it ask for a sustained change: one sample of any size cannot reach
+// the threshold, two of 5 sigma can.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "filters/estimator/estimator.h"
+
+namespace ifog {
+
+class InnovationMonitor {
+ public:
+  // 6.5 sigma after normalisation: on white noise about 4e-10 per axis, window and sample, see
+  // tests/bench/quality.
+  static constexpr double kThreshold = 6.5;
+  static constexpr double kClip = 5.0;
+  // Innovations before the scale is trusted.
+  static constexpr int kLearning = 64;
+
+  struct Verdict {
+    int changed_since =
+        0;  // > 0: the mean changed and this many samples, the current one included, belong after it
+    bool suspect = false;  // beyond the clip, not confirmed by the sample before
+  };
+
+  // One innovation per axis; axes that are not valid hold zero. Does not learn the scale.
+  Verdict test(std::span<const double> innovations, std::uint32_t valid_axes) noexcept;
+
+  // Learns the scale of an axis from an innovation whose variance is `factor` times that of the filter at
+  // rest. Returns true when this was the sample that armed the monitor and the sensor had moved meanwhile:
+  // innovations up to here are then no evidence of noise.
+  bool learn(std::size_t axis, double innovation, double factor) noexcept;
+  // While the scale is being learned: a measurement of the axis. Third differences (variance 20 R) hardly see
+  // motion, so a sensor that starts up on a moving vehicle does not take its motion for noise.
+  void learn_start(std::size_t axis, double rate) noexcept;
+
+  // Forgets the sums, keeps the scale: the change was dealt with.
+  void rearm() noexcept { length_ = 0; }
+
+  [[nodiscard]] bool armed() const noexcept { return armed_; }
+  // Variance of an innovation at rest, (rad/s)^2.
+  [[nodiscard]] double variance(std::size_t axis) const noexcept { return variance_[axis]; }
+
+ private:
+  static constexpr std::array kLadder{2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+  static constexpr std::size_t kRing = 128;  // a power of two above the longest window
+  static constexpr double kMemory = 1000.0;  // samples; the scale is then good to 2 %
+
+  std::array<std::array<double, kRing>, kMaxAxes> sums_{};  // of clipped innovations, up to each sample
+  std::array<double, kMaxAxes> variance_{};
+  std::array<double, kMaxAxes> learned_{};
+  struct Start {
+    std::array<double, 3> last{};
+    double squares = 0.0;
+    int count = 0;
+  };
+  std::array<Start, kMaxAxes> start_{};
+  std::size_t at_ = 0;
+  int length_ = 0;
+  bool armed_ = false;
+};
+
+}  // namespace ifog

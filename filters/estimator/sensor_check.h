@@ -1,0 +1,45 @@
+// Two faults a rate alone can show: the sensor at the end of its range, and one that repeats its last value.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "filters/estimator/estimator.h"
+
+namespace ifog {
+
+class SensorCheck {
+ public:
+  explicit SensorCheck(double range_radps) : range_radps_(range_radps) {}
+
+  [[nodiscard]] bool saturated(double rate_radps) const noexcept {
+    return range_radps_ > 0.0 && std::abs(rate_radps) >= range_radps_;
+  }
+
+  // A coarsely quantised sensor repeats itself at rest; so a run counts only when it is ten times longer than
+  // any that ended in a new value, and a hundred samples at least.
+  [[nodiscard]] bool stuck(std::size_t axis, double rate_radps) noexcept {
+    Run& run = runs_[axis];
+    if (rate_radps != run.value) {
+      if (run.length > run.longest) run.longest = run.length;
+      run.value = rate_radps;
+      run.length = 0;
+    }
+    ++run.length;
+    return run.length > kShortest && run.length > kTimesLongest * run.longest;
+  }
+
+ private:
+  static constexpr std::int64_t kShortest = 100;
+  static constexpr std::int64_t kTimesLongest = 10;
+
+  struct Run {
+    double value = std::nan("");
+    std::int64_t length = 0, longest = 0;
+  };
+  double range_radps_;
+  std::array<Run, kMaxAxes> runs_{};
+};
+
+}  // namespace ifog
