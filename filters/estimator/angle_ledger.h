@@ -42,8 +42,17 @@ class AngleLedger {
     }
   }
 
-  // After booking, at rest: what the filter at rest owes beyond its lag. rest: its rate without payments.
+  // After booking, at rest: what the filter at rest owes beyond its lag. rest: its rate without payments. The
+  // rate at which nothing is owed follows the output: quickly after a manoeuvre, whose last part may still be
+  // under way, and over a hundred lags at rest, which costs 0.25 % of RMSE (a second pole at r = 1/100 of the
+  // first costs r/4).
   void settle(std::size_t axis, double rest, double lag_s) noexcept {
+    age_[axis] += 1.0;
+    const double samples =
+        std::min(kFirstSamples + kAgeShare * age_[axis], kReferenceLags * lag_s / period_s_ + kQuickSamples);
+    const double moved = (rest - reference_[axis]) / samples;
+    reference_[axis] += moved;
+    manoeuvre_[axis] += lag_s * moved;
     excess_[axis] = owed_[axis] - manoeuvre_[axis] - lag_s * (rest - reference_[axis]);
   }
 
@@ -56,12 +65,12 @@ class AngleLedger {
   void end_manoeuvre(std::size_t axis, double rest) noexcept {
     reference_[axis] = rest;
     manoeuvre_[axis] = owed_[axis];
-    excess_[axis] = 0.0;
+    excess_[axis] = age_[axis] = 0.0;
   }
   // The first rate of an axis.
   void begin(std::size_t axis, double rest) noexcept {
     reference_[axis] = rest;
-    owed_[axis] = manoeuvre_[axis] = excess_[axis] = 0.0;
+    owed_[axis] = manoeuvre_[axis] = excess_[axis] = age_[axis] = 0.0;
   }
   // A sample that was held back as an outlier turned out to be rotation.
   void admit(std::size_t axis, double angle_rad) noexcept { owed_[axis] += angle_rad; }
@@ -72,9 +81,12 @@ class AngleLedger {
   static constexpr double kSlowLags = 20.0;
   static constexpr double kSlowSamples = 100.0;
   static constexpr double kQuickSamples = 64.0;
+  static constexpr double kFirstSamples = 16.0;
+  static constexpr double kAgeShare = 0.25;
+  static constexpr double kReferenceLags = 100.0;
 
   double period_s_;
-  Axes owed_{}, manoeuvre_{}, excess_{}, reference_{};
+  Axes owed_{}, manoeuvre_{}, excess_{}, reference_{}, age_{};
 };
 
 }  // namespace ifog

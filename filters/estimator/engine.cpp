@@ -20,6 +20,7 @@ constexpr int kQuiet = 64;
 constexpr double kSettledExcess = 1.5;
 // Measurements kept for starting the trackers at the beginning of a change.
 constexpr std::size_t kHistory = 16;
+constexpr double kHealthMemory = 512.0;
 // Steps between refreshes of the settled filter's lag, a small linear solve.
 constexpr int kLagEvery = 256;
 
@@ -53,6 +54,9 @@ class SizedEngine final : public Engine {
       follow(in, valid, innovation, dt_s, out);
     } else {
       update_rest(in, valid, true);
+      for (std::size_t a = 0; a < kMaxAxes; ++a) {
+        if (valid >> a & 1U) grade(a, innovation[a], covariance_);
+      }
     }
     guard(in, valid, out);
     publish(in, valid, dt_s, out);
@@ -97,9 +101,15 @@ class SizedEngine final : public Engine {
       const auto a = static_cast<std::size_t>(axis);
       if ((fresh >> a & 1U) == 0) continue;
       rest_.shift_to(axis, in.rate_radps[a]);
-      ledger_.begin(a, in.rate_radps[a]);
+      // After a restart the debt stands; only where the lag is counted from is new.
+      if (booked_ >> a & 1U) {
+        ledger_.end_manoeuvre(a, in.rate_radps[a]);
+      } else {
+        ledger_.begin(a, in.rate_radps[a]);
+      }
     }
     started_ |= fresh;
+    booked_ |= fresh;
   }
 
   double noise_scale(const EstimatorInput& in) const noexcept {
@@ -159,6 +169,7 @@ class SizedEngine final : public Engine {
     for (int axis = 0; axis < axes_; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       if ((valid >> a & 1U) == 0) continue;
+      grade(a, innovation[a], covariance_);
       monitor_.learn_start(a, in.rate_radps[a]);
       if (steps_ > 0 && !settling_ && monitor_.learn(a, innovation[a], noise_scale(in)))
         rest_.rule().restart();
@@ -174,7 +185,8 @@ class SizedEngine final : public Engine {
     covariance_ = rest_.variance() + rest_.rule().measurement_noise();
     held_ = true;
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
-      held_angle_[a] = (valid >> a & 1U) != 0 ? (in.rate_radps[a] - last_output_[a]) * dt_s : 0.0;
+      held_angle_[a] =
+          (valid >> a & 1U) != 0 && !in_manoeuvre_ ? (in.rate_radps[a] - last_output_[a]) * dt_s : 0.0;
     }
   }
 
@@ -263,6 +275,7 @@ class SizedEngine final : public Engine {
     for (int axis = 0; axis < axes_; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       if ((valid >> a & 1U) == 0) continue;
+      grade(a, trackers_.best_innovation(a), trackers_.best_factor() * noises[a]);
       monitor_.learn(a, trackers_.best_innovation(a), trackers_.best_factor() * (1.0 - rest_gain_));
     }
     if (quiet_ >= kQuiet) end_manoeuvre();
@@ -315,7 +328,8 @@ class SizedEngine final : public Engine {
       }
       if (settings_.conserve_angle) {
         rate += ledger_.payment(a, lag_s_);
-        if ((valid >> a & 1U) != 0 && (out.flags & kGated) == 0) {
+        // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
+        if ((valid >> a & 1U) != 0 && ((out.flags & kGated) == 0 || in_manoeuvre_)) {
           ledger_.book(a, in.rate_radps[a], rate, dt_s, in_manoeuvre_);
           if (!in_manoeuvre_) ledger_.settle(a, rest, lag_s_);
         }
@@ -326,6 +340,19 @@ class SizedEngine final : public Engine {
       health_.measurement_noise[a] = rest_.rule().measurement_noise();
     }
     health_.floor_hits = rest_.rule().floor_hits();
+  }
+
+  // Normalised innovation squared and lag-1 autocorrelation, over the last kHealthMemory samples or so.
+  void grade(std::size_t axis, double innovation, double variance) noexcept {
+    if (!(variance > 0.0)) return;
+    const double normalised = innovation / std::sqrt(variance);
+    Grade& grade = grades_[axis];
+    grade.count = std::min(grade.count + 1.0, kHealthMemory);
+    grade.square += (normalised * normalised - grade.square) / grade.count;
+    grade.product += (normalised * grade.last - grade.product) / grade.count;
+    grade.last = normalised;
+    health_.nis_mean[axis] = grade.square;
+    health_.whiteness[axis] = grade.square > 0.0 ? grade.product / grade.square : 0.0;
   }
 
   void refresh_lag() noexcept {
@@ -345,8 +372,12 @@ class SizedEngine final : public Engine {
   FadingTrackers trackers_;
   AngleLedger ledger_;
   EstimatorHealth health_;
+  struct Grade {
+    double count = 0.0, square = 0.0, product = 0.0, last = 0.0;
+  };
+  std::array<Grade, kMaxAxes> grades_{};
 
-  std::uint32_t started_ = 0;
+  std::uint32_t started_ = 0, booked_ = 0;
   bool first_ = true, in_manoeuvre_ = false, held_ = false, settling_ = false;
   int quiet_ = 0, until_lag_ = 0;
   std::int64_t steps_ = 0;

@@ -47,7 +47,7 @@ FadingTrackers::FadingTrackers() {
 }
 
 // Gains of the growing-memory filter (a least-squares parabola through all measurements so far) until the
-// fading ones are larger. Brookner, table 7.3-1 with the first two steps replaced by a point and a line.
+// fading ones are larger. The first two steps are a point and a line.
 FadingTrackers::Gains FadingTrackers::growing(std::size_t tracker) const noexcept {
   if (age_ == 0) return {1.0, 0.0, 0.0, 1e6, 1.0};
   if (age_ == 1) return {1.0, 1.0, 0.0, 1e6, 1.0};

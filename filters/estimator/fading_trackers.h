@@ -2,7 +2,7 @@
 // speeds, and their average under the likelihood each has lately earned.
 //
 // A tracker is the fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
-// Smoothing and Prediction", 1969, ch. 13; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, ch. 7):
+// Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998):
 // three equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. Of rate to
 // output, 1 - H is the cube of a first difference: no lag on a constant slope or curvature, and a gain that
 // departs from one only with the fourth power of frequency. That, not noise, is why the degree is two: the

@@ -7,8 +7,10 @@ namespace ifog {
 namespace {
 
 constexpr std::array kRules{
-    RuleEntry{"ckf", make_ckf},
-    RuleEntry{"irwe-akfg", make_irwe_akfg},
+    RuleEntry{"ckf", make_ckf},   RuleEntry{"irwe-akfg", make_irwe_akfg},
+    RuleEntry{"iae", make_iae},   RuleEntry{"rae", make_rae},
+    RuleEntry{"mmae", make_mmae}, RuleEntry{"sage-husa", make_sage_husa},
+    RuleEntry{"vb", make_vb},
 };
 
 }  // namespace

@@ -75,5 +75,10 @@ std::unique_ptr<Rule> make_rule(const FilterSettings& settings);
 
 std::unique_ptr<Rule> make_ckf(const FilterSettings& settings);
 std::unique_ptr<Rule> make_irwe_akfg(const FilterSettings& settings);
+std::unique_ptr<Rule> make_iae(const FilterSettings& settings);
+std::unique_ptr<Rule> make_rae(const FilterSettings& settings);
+std::unique_ptr<Rule> make_mmae(const FilterSettings& settings);
+std::unique_ptr<Rule> make_sage_husa(const FilterSettings& settings);
+std::unique_ptr<Rule> make_vb(const FilterSettings& settings);
 
 }  // namespace ifog

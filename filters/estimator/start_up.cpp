@@ -1,0 +1,114 @@
+#include "filters/estimator/start_up.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kLeast = 32;
+// Median of the square of a standard normal.
+constexpr double kMedianSquare = 0.4549364;
+
+struct Octave {
+  double block = 1.0;     // samples
+  double variance = 0.0;  // of the second difference of block means
+  double count = 0.0;     // independent ones
+};
+
+// Variance from the median square; where half of the differences are zero (coarse quantisation), from the
+// mean of the lower nine tenths instead.
+double robust_variance(std::vector<double>& squares) {
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  if (*middle > 0.0) return *middle / kMedianSquare;
+  const auto kept = static_cast<std::ptrdiff_t>(squares.size() * 9 / 10);
+  std::nth_element(squares.begin(), squares.begin() + kept, squares.end());
+  double sum = 0.0;
+  for (auto it = squares.begin(); it != squares.begin() + kept; ++it) sum += *it;
+  return sum / static_cast<double>(kept);
+}
+
+std::vector<Octave> octaves(std::span<const double> rate) {
+  std::vector<Octave> all;
+  std::vector<double> means(rate.begin(), rate.end());
+  // Twelve differences are the fewest whose median says something.
+  for (double block = 1.0; means.size() >= 14; block *= 2.0) {
+    std::vector<double> squares;
+    for (std::size_t i = 2; i < means.size(); ++i) {
+      const double second = means[i] - 2.0 * means[i - 1] + means[i - 2];
+      if (std::isfinite(second)) squares.push_back(second * second);
+    }
+    if (squares.size() >= 12) {
+      const auto count = static_cast<double>(squares.size());
+      all.push_back({block, robust_variance(squares), count / 2.0});
+    }
+    std::vector<double> halved(means.size() / 2);
+    for (std::size_t i = 0; i < halved.size(); ++i) halved[i] = 0.5 * (means[2 * i] + means[2 * i + 1]);
+    means = std::move(halved);
+  }
+  return all;
+}
+
+// For a given ratio q dt / R: the R that fits best and the misfit, sum of count (ln S + V / S).
+struct Fit {
+  double noise = 0.0;
+  double misfit = std::numeric_limits<double>::infinity();
+};
+
+Fit fit(const std::vector<Octave>& all, double ratio) {
+  double weighted = 0.0, total = 0.0;
+  for (const Octave& o : all) {
+    weighted += o.count * o.variance / (6.0 / o.block + ratio * o.block);
+    total += o.count;
+  }
+  const double noise = weighted / total;
+  double misfit = total * (std::log(noise) + 1.0);
+  for (const Octave& o : all) misfit += o.count * std::log(6.0 / o.block + ratio * o.block);
+  return {noise, misfit};
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(std::span<const double> rate, double dt_s) {
+  const auto present = static_cast<std::size_t>(
+      std::count_if(rate.begin(), rate.end(), [](double r) { return std::isfinite(r); }));
+  if (present < kLeast) {
+    throw std::invalid_argument("start-up data: " + std::to_string(present) +
+                                " measurements, expected at least " + std::to_string(kLeast));
+  }
+  const auto n = static_cast<double>(present);
+  const std::vector<Octave> all = octaves(rate);
+  double greatest = 0.0;
+  for (const double r : rate) {
+    if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
+  }
+  const double last_digit = std::max(greatest * std::numeric_limits<float>::epsilon(), 1e-12);
+  double spread = 0.0;
+  for (const Octave& o : all) spread += o.variance;
+  if (all.empty() || !(spread > 0.0)) {
+    const double noise = last_digit * last_digit;
+    return {noise / (n * n * dt_s), noise};
+  }
+  const double lowest = std::log(1.0 / (n * n));
+  const double highest = std::log(100.0);
+  constexpr int kGrid = 400;
+  double best_ratio = 0.0;
+  Fit best;
+  for (int i = 0; i <= kGrid; ++i) {
+    const double ratio = std::exp(lowest + (highest - lowest) * i / kGrid);
+    const Fit here = fit(all, ratio);
+    if (here.misfit < best.misfit) {
+      best = here;
+      best_ratio = ratio;
+    }
+  }
+  const double noise = std::max(best.noise, last_digit * last_digit);
+  return {best_ratio * noise / dt_s, noise};
+}
+
+}  // namespace ifog

@@ -1,0 +1,40 @@
+// Innovation-based adaptive estimation: C is the plain average of the last N squared innovations. Mehra, IEEE
+// Trans. AC 15(2), 1970; Mohamed and Schwarz, J. Geodesy 73, 1999. R only; Q is not identifiable beside it.
+#include "filters/rules/rule.h"
+#include "filters/rules/window.h"
+
+namespace ifog {
+namespace {
+
+class Iae final : public Rule {
+ public:
+  explicit Iae(const FilterSettings& settings)
+      : noise_(settings.measurement_noise),
+        least_(settings.floor * settings.measurement_noise),
+        window_(static_cast<std::size_t>(settings.window)),
+        estimate_(noise_) {}
+
+  double innovation_covariance(const RuleInput& in) noexcept override {
+    window_.insert(mean_square(in.innovations) / in.noise_scale);
+    if (!window_.full()) return in.projected + noise_ * in.noise_scale;
+    const double c = floored(window_.mean() * in.noise_scale, in.projected, least_ * in.noise_scale);
+    estimate_ = (c - in.projected) / in.noise_scale;
+    return c;
+  }
+  double measurement_noise() const noexcept override { return estimate_; }
+  void restart() noexcept override {
+    window_.clear();
+    estimate_ = noise_;
+  }
+
+ private:
+  double noise_, least_;
+  Window window_;
+  double estimate_;
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_iae(const FilterSettings& settings) { return std::make_unique<Iae>(settings); }
+
+}  // namespace ifog

@@ -1,0 +1,42 @@
+// Residual-based adaptive estimation: R = mean of the last N squared residuals z - h'x+ plus h'P+h, which is
+// positive by construction. Mohamed and Schwarz, J. Geodesy 73, 1999. The estimate serves the next
+// measurement: the residual of this one is not known before its own gain.
+#include "filters/rules/rule.h"
+#include "filters/rules/window.h"
+
+namespace ifog {
+namespace {
+
+class Rae final : public Rule {
+ public:
+  explicit Rae(const FilterSettings& settings)
+      : noise_(settings.measurement_noise),
+        least_(settings.floor * settings.measurement_noise),
+        window_(static_cast<std::size_t>(settings.window)),
+        estimate_(noise_) {}
+
+  double innovation_covariance(const RuleInput& in) noexcept override {
+    const double c =
+        floored(in.projected + estimate_ * in.noise_scale, in.projected, least_ * in.noise_scale);
+    const double share = 1.0 - in.projected / c;  // residual over innovation, and h'P+h over h'P-h
+    window_.insert((mean_square(in.innovations) * share * share + in.projected * share) / in.noise_scale);
+    if (window_.full()) estimate_ = window_.mean();
+    return c;
+  }
+  double measurement_noise() const noexcept override { return estimate_; }
+  void restart() noexcept override {
+    window_.clear();
+    estimate_ = noise_;
+  }
+
+ private:
+  double noise_, least_;
+  Window window_;
+  double estimate_;
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_rae(const FilterSettings& settings) { return std::make_unique<Rae>(settings); }
+
+}  // namespace ifog

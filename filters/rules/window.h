@@ -1,0 +1,46 @@
+// Mean of the last N values in O(1) a step. The running sum is taken afresh once a window, so that rounding
+// cannot gather in it.
+#pragma once
+
+#include <cstddef>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace ifog {
+
+class Window {
+ public:
+  explicit Window(std::size_t length) : values_(length, 0.0) {}
+
+  void insert(double value) noexcept {
+    if (full()) sum_ -= values_[next_];
+    values_[next_] = value;
+    sum_ += value;
+    if (!full()) ++filled_;
+    if (++next_ == values_.size()) {
+      next_ = 0;
+      sum_ = std::accumulate(values_.begin(), values_.end(), 0.0);
+    }
+  }
+  [[nodiscard]] bool full() const noexcept { return filled_ == values_.size(); }
+  [[nodiscard]] double mean() const noexcept { return sum_ / static_cast<double>(filled_); }
+  void clear() noexcept {
+    next_ = filled_ = 0;
+    sum_ = 0.0;
+  }
+
+ private:
+  std::vector<double> values_;
+  std::size_t next_ = 0, filled_ = 0;
+  double sum_ = 0.0;
+};
+
+// Axes share R, so each step's evidence is the mean over them.
+[[nodiscard]] inline double mean_square(std::span<const double> innovations) noexcept {
+  double sum = 0.0;
+  for (const double v : innovations) sum += v * v;
+  return sum / static_cast<double>(innovations.size());
+}
+
+}  // namespace ifog
