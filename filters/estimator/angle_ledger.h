@@ -42,14 +42,23 @@ class AngleLedger {
     }
   }
 
-  // After booking, at rest: what the filter at rest owes beyond its lag. rest: its rate without payments. The
-  // rate at which nothing is owed follows the output: quickly after a manoeuvre, whose last part may still be
-  // under way, and over a hundred lags at rest, which costs 0.25 % of RMSE (a second pole at r = 1/100 of the
-  // first costs r/4).
+  // After booking, at rest: what the filter at rest owes beyond its lag. rest: its rate without payments.
+  //
+  // The rate at which nothing is owed follows the output: quickly after a manoeuvre, whose last part may
+  // still be under way, and over a hundred lags at rest, which costs 0.25 % of RMSE (a second pole at r =
+  // 1/100 of the first costs r/4). While a filter starts up its gain is not yet one that could owe anything:
+  // nothing is booked for four lags.
   void settle(std::size_t axis, double rest, double lag_s) noexcept {
+    const double lag_samples = lag_s / period_s_;
     age_[axis] += 1.0;
+    if (starting_[axis]) {
+      begin(axis, rest, age_[axis]);
+      if (age_[axis] < kStartLags * lag_samples) return;
+      starting_[axis] = false;
+      age_[axis] = kOld;
+    }
     const double samples =
-        std::min(kFirstSamples + kAgeShare * age_[axis], kReferenceLags * lag_s / period_s_ + kQuickSamples);
+        std::min(kFirstSamples + kAgeShare * age_[axis], kReferenceLags * lag_samples + kQuickSamples);
     const double moved = (rest - reference_[axis]) / samples;
     reference_[axis] += moved;
     manoeuvre_[axis] += lag_s * moved;
@@ -66,11 +75,14 @@ class AngleLedger {
     reference_[axis] = rest;
     manoeuvre_[axis] = owed_[axis];
     excess_[axis] = age_[axis] = 0.0;
+    starting_[axis] = false;
   }
-  // The first rate of an axis.
-  void begin(std::size_t axis, double rest) noexcept {
+  // The first rate of an axis, `age` samples ago.
+  void begin(std::size_t axis, double rest, double age = 0.0) noexcept {
     reference_[axis] = rest;
-    owed_[axis] = manoeuvre_[axis] = excess_[axis] = age_[axis] = 0.0;
+    owed_[axis] = manoeuvre_[axis] = excess_[axis] = 0.0;
+    age_[axis] = age;
+    starting_[axis] = true;
   }
   // A sample that was held back as an outlier turned out to be rotation.
   void admit(std::size_t axis, double angle_rad) noexcept { owed_[axis] += angle_rad; }
@@ -84,9 +96,12 @@ class AngleLedger {
   static constexpr double kFirstSamples = 16.0;
   static constexpr double kAgeShare = 0.25;
   static constexpr double kReferenceLags = 100.0;
+  static constexpr double kStartLags = 4.0;
+  static constexpr double kOld = 1e15;
 
   double period_s_;
   Axes owed_{}, manoeuvre_{}, excess_{}, reference_{}, age_{};
+  std::array<bool, kMaxAxes> starting_{};
 };
 
 }  // namespace ifog

@@ -38,28 +38,23 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
 }  // namespace
 
 struct Estimator::Impl {
-  std::unique_ptr<Engine> engine;
+  explicit Impl(Engine made) : engine(std::move(made)) {}
+  Engine engine;
 };
 
 Estimator::Estimator(const FilterSettings& settings, int axes, double nominal_period_s) {
   check(settings, axes, nominal_period_s);
-  EngineParts parts;
-  parts.settings = settings;
-  parts.model = make_state_model(settings.state, settings.state_parameters, nominal_period_s);
-  parts.rule = make_rule(settings);
-  parts.axes = axes;
-  parts.period_s = nominal_period_s;
-  impl_ = std::make_unique<Impl>(Impl{make_engine(std::move(parts))});
+  auto rest = make_rest_filter(make_state_model(settings.state, settings.state_parameters, nominal_period_s),
+                               make_rule(settings), settings.process_noise, settings.measurement_noise);
+  impl_ = std::make_unique<Impl>(Engine(settings, std::move(rest), axes, nominal_period_s));
 }
 
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
-void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
-  impl_->engine->step(in, out);
-}
-void Estimator::restart() noexcept { impl_->engine->restart(); }
-const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine->health(); }
+void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
+void Estimator::restart() noexcept { impl_->engine.restart(); }
+const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine.health(); }
 
 }  // namespace ifog

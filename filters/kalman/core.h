@@ -22,14 +22,14 @@ struct KalmanCore {
   Vector h = Vector::Zero();
   Vector gain = Vector::Zero();
 
-  // Eqs. (9), (10).
-  void predict(const Matrix& transition, const Matrix& driving) noexcept {
+  // Eqs. (9), (10), with the driving covariance taken `factor` times.
+  void predict(const Matrix& transition, const Matrix& driving, double factor = 1.0) noexcept {
     if constexpr (n == 1) {
       x *= transition(0, 0);
-      p(0, 0) = transition(0, 0) * transition(0, 0) * p(0, 0) + driving(0, 0);
+      p(0, 0) = transition(0, 0) * transition(0, 0) * p(0, 0) + factor * driving(0, 0);
     } else {
-      x = transition * x;
-      p = transition * p * transition.transpose() + driving;
+      x = (transition * x).eval();
+      p = (transition * p * transition.transpose()).eval() + factor * driving;
     }
   }
 

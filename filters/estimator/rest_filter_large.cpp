@@ -1,0 +1,10 @@
+#include "filters/estimator/sized_rest_filter.h"
+
+namespace ifog {
+
+template class SizedRestFilter<5>;
+template class SizedRestFilter<6>;
+template class SizedRestFilter<7>;
+template class SizedRestFilter<8>;
+
+}  // namespace ifog

@@ -1,0 +1,10 @@
+#include "filters/estimator/sized_rest_filter.h"
+
+namespace ifog {
+
+template class SizedRestFilter<1>;
+template class SizedRestFilter<2>;
+template class SizedRestFilter<3>;
+template class SizedRestFilter<4>;
+
+}  // namespace ifog

@@ -1,0 +1,151 @@
+// The filter at rest for one number of states. One core for most rules; for a rule with several hypotheses
+// about the noise, one core each and their weighted mean.
+#pragma once
+
+#include <utility>
+
+#include "filters/estimator/rest_filter.h"
+#include "filters/kalman/core.h"
+
+namespace ifog {
+
+template <int n>
+class SizedRestFilter final : public RestFilter {
+ public:
+  SizedRestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule, double process_noise,
+                  double measurement_noise)
+      : RestFilter(std::move(rule)),
+        model_(std::move(model)),
+        hypotheses_(rule_->hypotheses()),
+        process_noise_(process_noise),
+        measurement_noise_(measurement_noise),
+        level_(model_->level()),
+        start_(process_noise * model_->stationary()) {
+    // Large enough to be forgotten after one measurement, small enough to leave the covariance ten digits.
+    constexpr double kDiffuse = 1e6;
+    start_.diagonal() += kDiffuse * measurement_noise * model_->diffuse();
+    for (Core& core : cores_) core.h = model_->measurement();
+    restart();
+  }
+
+  void restart() noexcept override {
+    for (Core& core : cores_) {
+      core.x.setZero();
+      core.p = start_;
+    }
+    rule_->restart();
+    refresh();
+  }
+
+  void predict(double dt_s) noexcept override {
+    if (dt_s != discretised_dt_s_) {
+      discretised_dt_s_ = dt_s;
+      model_->discretise(dt_s, transition_, driving_);
+      driving_ *= process_noise_;
+    }
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
+      cores_[j].predict(transition_, driving_, hypotheses_[j]);
+    refresh();
+  }
+
+  void update(const Axes& rate, std::uint32_t valid, double noise_scale, std::uint64_t sequence,
+              bool learn) noexcept override {
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      Core& core = cores_[j];
+      Axes innovations{};
+      std::array<int, kMaxAxes> axes{};
+      std::size_t count = 0;
+      for (int axis = 0; axis < Core::kAxes; ++axis) {
+        if ((valid >> static_cast<unsigned>(axis) & 1U) == 0) continue;
+        axes[count] = axis;
+        innovations[count++] = rate[static_cast<std::size_t>(axis)] - core.rate(axis);
+      }
+      const double projected = core.variance();
+      const double c = learn ? rule_->innovation_covariance(
+                                   {projected, noise_scale, {innovations.data(), count}, sequence, j})
+                             : projected + rule_->measurement_noise() * noise_scale;
+      core.correct(c);
+      for (std::size_t i = 0; i < count; ++i) core.update(axes[i], innovations[i]);
+      if (j == 0) covariance_ = c;
+    }
+    refresh();
+  }
+
+  void skip() noexcept override {
+    for (Core& core : cores_) core.gain.setZero();
+    gain_ = 0.0;
+    covariance_ = variance_ + rule_->measurement_noise();
+  }
+
+  void shift_to(const Axes& rate, std::uint32_t which) noexcept override {
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      for (int axis = 0; axis < Core::kAxes; ++axis) {
+        if ((which >> static_cast<unsigned>(axis) & 1U) == 0) continue;
+        cores_[j].x.col(axis) += level_ * (rate[static_cast<std::size_t>(axis)] - cores_[j].rate(axis));
+      }
+    }
+    refresh();
+  }
+
+  void raise_to(double variance) noexcept override {
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      const double missing = variance - cores_[j].variance();
+      if (missing > 0.0) cores_[j].p += missing * level_ * level_.transpose();
+    }
+    refresh();
+  }
+
+  Settled settled() const noexcept override {
+    const Core& core = cores_[rule_->likeliest()];
+    return ifog::settled<n>(transition_, core.h, core.gain, core.p);
+  }
+
+  bool sound() const noexcept override {
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      const double v = cores_[j].variance();
+      if (!(v >= 0.0 && v < 1e300) || !cores_[j].x.allFinite()) return false;
+    }
+    return true;
+  }
+
+ private:
+  using Core = KalmanCore<n>;
+
+  void refresh() noexcept {
+    if (hypotheses_.size() == 1) {
+      for (int axis = 0; axis < Core::kAxes; ++axis)
+        rate_[static_cast<std::size_t>(axis)] = cores_[0].rate(axis);
+      variance_ = cores_[0].variance();
+      gain_ = cores_[0].h.dot(cores_[0].gain);
+      return;
+    }
+    rate_ = {};
+    variance_ = gain_ = 0.0;
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      const double weight = rule_->weight(j);
+      for (int axis = 0; axis < Core::kAxes; ++axis) {
+        rate_[static_cast<std::size_t>(axis)] += weight * cores_[j].rate(axis);
+      }
+      variance_ += weight * cores_[j].variance();
+      gain_ += weight * cores_[j].h.dot(cores_[j].gain);
+    }
+  }
+
+  std::unique_ptr<StateModel> model_;
+  std::span<const double> hypotheses_;
+  double process_noise_, measurement_noise_;
+  std::array<Core, Rule::kMaxHypotheses> cores_;
+  typename Core::Vector level_;
+  typename Core::Matrix start_, transition_, driving_;
+  double discretised_dt_s_ = -1.0;
+};
+
+template <int n>
+std::unique_ptr<RestFilter> make_sized_rest_filter(std::unique_ptr<StateModel> model,
+                                                   std::unique_ptr<Rule> rule, double process_noise,
+                                                   double measurement_noise) {
+  return std::make_unique<SizedRestFilter<n>>(std::move(model), std::move(rule), process_noise,
+                                              measurement_noise);
+}
+
+}  // namespace ifog
