@@ -166,7 +166,7 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
   }
 }
 
-void plot_allan(const std::string& path, const std::vector<AllanRecord>& records) {
+Panel allan_panel(const std::vector<AllanRecord>& records) {
   static const std::array<const char*, 6> kColors{"#1f77b4", "#d62728", "#2ca02c",
                                                   "#9467bd", "#ff7f0e", "#17becf"};
   const bool several_files = std::any_of(records.begin(), records.end(), [&](const AllanRecord& r) {
@@ -251,7 +251,11 @@ void plot_allan(const std::string& path, const std::vector<AllanRecord>& records
       panel.curves.push_back(std::move(line));
     }
   }
-  plot(path, {panel}, 1000, 640);
+  return panel;
+}
+
+void plot_allan(const std::string& path, const std::vector<AllanRecord>& records) {
+  plot(path, {allan_panel(records)}, 1000, 640);
 }
 
 }  // namespace ifog::tools

@@ -1,6 +1,7 @@
 #include "tools/ifog/lcm_log.h"
 
 #include <algorithm>
+#include <functional>
 #include <ifog/rate_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <set>
@@ -26,15 +27,23 @@ std::string chosen_channel(const std::string& path) {
                                        : ": has several channels, expected --channel with one of " + list));
 }
 
-}  // namespace
+// The message carries no names; three axes are x, y, z.
+std::vector<std::string> axis_names(std::size_t axes) {
+  if (axes == 1) return {""};
+  std::vector<std::string> names{"x", "y", "z"};
+  names.resize(std::min(names.size(), axes));
+  return names;
+}
 
-Capture read_lcm_log(const std::string& path, const std::string& channel) {
+// Hands each message of the channel to `sink` with its time in s from the first, later than the one before.
+void for_each_rate(const std::string& path, const std::string& channel,
+                   const std::function<void(const rate_t&, double)>& sink) {
   if (!lcm::LogFile(path, "r").good()) throw std::runtime_error(path + ": cannot open as an LCM log");
   const std::string wanted = channel.empty() ? chosen_channel(path) : channel;
   lcm::LogFile log(path, "r");
-  Capture capture;
   std::int64_t start_ns = 0;
-  std::size_t number = 0;
+  std::size_t number = 0, axes = 0;
+  double last_s = -1.0;
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     ++number;
     if (event->channel != wanted) continue;
@@ -44,25 +53,52 @@ Capture read_lcm_log(const std::string& path, const std::string& channel) {
     rate_t message;
     if (message.decode(event->data, 0, event->datalen) < 0) refuse("is no ifog.rate_t of this version");
     const std::int64_t now_ns = message.sensor_time_ns >= 0 ? message.sensor_time_ns : message.utime * 1000;
-    if (capture.time_s.empty()) {
+    if (last_s < 0.0) {
       start_ns = now_ns;
-      const auto axes = static_cast<std::size_t>(message.axes);
-      // The message carries no names; three axes are x, y, z.
-      if (axes == 1) capture.axes = {""};
-      if (axes > 1) capture.axes.assign({"x", "y", "z"});
-      capture.axes.resize(std::min(capture.axes.size(), axes));
-      capture.rate_radps.resize(axes);
-      capture.reference_rate_radps.resize(axes);
+      axes = static_cast<std::size_t>(message.axes);
     }
-    if (static_cast<std::size_t>(message.axes) != capture.axes.size()) refuse("has another number of axes");
+    if (static_cast<std::size_t>(message.axes) != axes) refuse("has another number of axes");
     const double time_s = static_cast<double>(now_ns - start_ns) / 1e9;
-    if (!capture.time_s.empty() && time_s <= capture.time_s.back())
-      refuse("is not later than the one before");
+    if (time_s <= last_s) refuse("is not later than the one before");
+    last_s = time_s;
+    sink(message, time_s);
+  }
+  if (last_s < 0.0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+}
+
+}  // namespace
+
+Capture read_lcm_log(const std::string& path, const std::string& channel) {
+  Capture capture;
+  for_each_rate(path, channel, [&capture](const rate_t& message, double time_s) {
+    if (capture.time_s.empty()) {
+      capture.axes = axis_names(static_cast<std::size_t>(message.axes));
+      capture.rate_radps.resize(capture.axes.size());
+      capture.reference_rate_radps.resize(capture.axes.size());
+    }
     capture.time_s.push_back(time_s);
     for (std::size_t i = 0; i < capture.axes.size(); ++i) capture.rate_radps[i].push_back(message.raw[i]);
-  }
-  if (capture.time_s.empty()) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  });
   return capture;
+}
+
+Table read_published(const std::string& path, const std::string& channel) {
+  Table table;
+  for_each_rate(path, channel, [&table](const rate_t& message, double time_s) {
+    if (table.time_s.empty()) {
+      for (const std::string& axis : axis_names(static_cast<std::size_t>(message.axes)))
+        for (const std::string what : {"raw", "compensated", "denoised", "variance"})
+          table.columns.push_back(
+              {what + (axis.empty() ? "" : "_" + axis) + (what == "variance" ? "_rad2ps2" : "_radps"), {}});
+    }
+    table.time_s.push_back(time_s);
+    auto column = table.columns.begin();
+    for (std::size_t i = 0; column != table.columns.end(); ++i)
+      for (const double value :
+           {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
+        (column++)->values.push_back(value);
+  });
+  return table;
 }
 
 }  // namespace ifog::tools

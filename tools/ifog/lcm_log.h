@@ -13,4 +13,8 @@ namespace ifog::tools {
 // does not go on.
 Capture read_lcm_log(const std::string& path, const std::string& channel);
 
+// What the daemon published, in the columns of `ifog denoise`: raw, compensated and denoised rate and
+// variance by axis. Throws as above.
+Table read_published(const std::string& path, const std::string& channel);
+
 }  // namespace ifog::tools

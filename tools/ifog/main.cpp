@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   ifog::tools::add_denoise(app);
   ifog::tools::add_drivers(app);
   ifog::tools::add_monitor(app);
+  ifog::tools::add_picture(app);
   ifog::tools::add_replay(app);
   ifog::tools::add_tune(app);
 
