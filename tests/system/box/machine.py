@@ -120,13 +120,13 @@ class Machine:
     def plug(self, device, **properties):
         self.qmp("device_add", driver=device, **properties)
 
-    def run(self, command, seconds=60, check=True):
+    def run(self, command, seconds=180, check=True):
         """Runs a shell command in the machine: its output, or a Failure when it fails and check is set."""
         self.shell.link.sendall(base64.b64encode(command.encode()) + b"\n")
         status, _, output = self.shell.read(seconds).decode().partition(" ")
         output = base64.b64decode(output).decode(errors="replace")
         if check and status != "0":
-            raise Failure(f"`{command}` exited {status}: {output.strip()[-2000:]}")
+            raise Failure(f"`{command[:200]}` exited {status}: {output.strip()[-1500:]}")
         return output
 
     def stop(self):

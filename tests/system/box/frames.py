@@ -1,0 +1,59 @@
+"""Frames as the makers describe them, packed here by hand: nothing of the project's own encoders is used."""
+import math
+import struct
+import time
+
+CAN_ID = 0x120
+DBC = f"""VERSION ""
+BS_:
+BU_: GYRO
+BO_ {CAN_ID} Gyro: 8 GYRO
+ SG_ Rate : 0|32@1- (1E-09,0) [-2|2] "rad/s" GYRO
+ SG_ Counter : 32|16@1+ (1,0) [0|65535] "" GYRO
+ SG_ Status : 48|8@1+ (1,0) [0|255] "" GYRO
+ SG_ Temperature : 56|8@1- (1,0) [-128|127] "degC" GYRO
+"""
+
+
+def crc32_mpeg2(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte << 24
+        for _ in range(8):
+            crc = (crc << 1 ^ 0x04C11DB7 if crc & 0x80000000 else crc << 1) & 0xFFFFFFFF
+    return crc
+
+
+assert crc32_mpeg2(b"123456789") == 0x0376E6E7
+
+
+def rate(sample, hertz):
+    """Something that turns, 0.1 rad/s at 0.5 Hz, with a noise of 3e-5 rad/s (Knuth's multiplicative hash)."""
+    noise = (sample * 2654435761 % 2**32 / 2**32 - 0.5) * 1e-4
+    return 0.1 * math.sin(math.pi * sample / hertz) + noise
+
+
+def kvh1750(sample, hertz):
+    """Format A of the KVH 1750 IMU, 36 bytes; all sensors valid."""
+    values = struct.pack(">6f", rate(sample, hertz), 0.001, -0.001, 0.0, 0.0, 1.0)
+    body = b"\xfe\x81\xff\x55" + values + struct.pack(">BBh", 0x77, sample % 128, 25)
+    return body + struct.pack(">I", crc32_mpeg2(body))
+
+
+def candump(samples, hertz, interface, start=1_700_000_000.0):
+    """A candump log of the gyro DBC describes."""
+    lines = []
+    for sample in range(samples):
+        data = struct.pack("<iHBb", round(rate(sample, hertz) / 1e-9), sample % 65536, 0, 25)
+        lines.append(f"({start + sample / hertz:.6f}) {interface} {CAN_ID:03X}#{data.hex().upper()}\n")
+    return "".join(lines)
+
+
+def send_paced(link, frames, hertz):
+    """Sends each frame at its own time, against absolute deadlines."""
+    begin = time.monotonic()
+    for index, frame in enumerate(frames):
+        ahead = begin + index / hertz - time.monotonic()
+        if ahead > 0:
+            time.sleep(ahead)
+        link.sendall(frame)

@@ -1,0 +1,314 @@
+#!/usr/bin/env python3
+"""The Debian package under its real unit in an emulated navigation computer: kernel, systemd, SocketCAN, serial lines.
+
+usage: run.py BUILD PACKAGE.deb WORK
+
+Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and what was seen. IFOG_CABLE_PULLS (5) says how
+often the USB cable is pulled, IFOG_BOX_SECONDS (60) how long the sensors run.
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+import traceback
+
+import frames
+from machine import Failure, Machine, connect
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+CHANNELS = {"serial": "IFOG_SERIAL", "usb": "IFOG_USB", "can": "IFOG_CAN"}
+SECONDS = float(os.environ.get("IFOG_BOX_SECONDS", "60"))
+PULLS = int(os.environ.get("IFOG_CABLE_PULLS", "5"))
+# 36 bytes of 10 bits each at 115200 baud make 320 frames a second at most.
+SERIAL_LIMIT = 300
+RATES = (200, 300, 400, 500, 700, 1000)
+HIGHEST_EXPOSURE = 2.0
+
+
+def configuration(hertz):
+    """Three gyros at once. The ring is longer than a computer of its own needs: the host may stop this whole machine for a
+    second, and then all that was due comes at once. Each sender stays on one processor: Linux may deliver on
+    the loopback in another order what was sent from two."""
+    def sensor(name, transport, options):
+        return f'[[sensor]]\nname = "{name}"\ndriver = "{"dbc" if name == "can" else "kvh1750"}"\n' \
+               f'[sensor.transport]\n{transport}\n[sensor.options]\n{options}\n' \
+               f'[sensor.realtime]\nreader_priority = 50\nfilter_priority = 49\nring_slots = 16384\nfilter_cpus = [0]\n'
+    return "\n".join([
+        sensor("serial", 'type = "serial"\ndevice = "/dev/ttyS1"\nbaud = 115200', f'rate_hz = {min(hertz, SERIAL_LIMIT)}'),
+        sensor("usb", 'type = "serial"\ndevice = "/dev/ttyUSB0"\nbaud = 921600', f'rate_hz = {hertz}'),
+        sensor("can", 'type = "can"\ninterface = "vcan0"', 'dbc = "/etc/ifogd/gyro.dbc"\nsignal = "Rate"\ncounter = "Counter"\n'
+               f'status = "Status"\nenvironment = "temperature_degC=Temperature"\nrate_hz = {hertz}')])
+
+
+class Line:
+    """The host's end of a serial line; a sequence that goes on from one sending to the next."""
+
+    def __init__(self, path):
+        self.link, self.next = connect(path, 10), 0
+
+    def send(self, count, hertz):
+        packed = [frames.kvh1750(self.next + i, hertz) for i in range(count)]
+        self.next += count
+        sending = threading.Thread(target=frames.send_paced, args=(self.link, packed, hertz), daemon=True)
+        sending.start()
+        return sending
+
+
+class Box:
+    def __init__(self, build, package, work):
+        self.build, self.package, self.work = build, package, work
+        self.machine, self.lines = None, {}
+        self.hertz = RATES[0]
+
+    def overlay(self):
+        """What is laid over the image: the way in, the package, and what feeds and watches it."""
+        root = os.path.join(self.work, "overlay")
+        shutil.rmtree(root, ignore_errors=True)
+
+        def put(source, target, mode=0o644):
+            target = os.path.join(root, target)
+            os.makedirs(os.path.dirname(target), exist_ok=True)
+            shutil.copyfile(source, target)
+            os.chmod(target, mode)
+
+        put(os.path.join(HERE, "guest", "ifog-shell"), "usr/local/sbin/ifog-shell", 0o755)
+        put(os.path.join(HERE, "guest", "ifog-shell.service"), "etc/systemd/system/ifog-shell.service")
+        wants = os.path.join(root, "etc/systemd/system/multi-user.target.wants")
+        os.makedirs(wants)
+        os.symlink("../ifog-shell.service", os.path.join(wants, "ifog-shell.service"))
+        put(self.package, "opt/test/ifogd.deb")
+        put(os.path.join(self.build, "tests/system/lcm_count"), "opt/test/lcm_count", 0o755)
+        with open(os.path.join(root, "opt/test/gyro.dbc"), "w") as file:
+            file.write(frames.DBC)
+        return root
+
+    def configure(self, hertz):
+        self.hertz = hertz
+        self.machine.run(f"cat >/etc/ifogd/ifogd.toml <<'END'\n{configuration(hertz)}\nEND")
+
+    def counting(self, *names):
+        """Starts the subscriber in the machine; the returned function ends it and gives its counts."""
+        channels = " ".join(CHANNELS[name] for name in names)
+        self.machine.run(f"rm -f /tmp/count; (/opt/test/lcm_count 600 {channels} >/tmp/count.part 2>&1; mv /tmp/count.part /tmp/count) "
+                         "</dev/null >/dev/null 2>&1 &\nfor i in $(seq 50); do pgrep -x lcm_count >/dev/null && break; sleep 0.1; done; sleep 0.5")
+
+        def counts():
+            said = self.machine.run("pkill -TERM -x lcm_count; for i in $(seq 100); do [ -e /tmp/count ] && break; sleep 0.1; done; cat /tmp/count")
+            got = json.loads(said)
+            return {name: got.get(CHANNELS[name], {"messages": 0}) for name in names}
+
+        return counts
+
+    def send_can(self, count, hertz, player):
+        """Frames onto vcan0 by `canplayer` or by `ifog replay`; returns a function that waits for the end."""
+        self.machine.run(f"cat >/tmp/can.log <<'END'\n{frames.candump(count, hertz, 'vcan0')}END", 120)
+        command = {"canplayer": "canplayer -I /tmp/can.log", "ifog replay": "ifog replay /tmp/can.log --to can:vcan0"}[player]
+
+        def started():
+            self.machine.run(f"rm -f /tmp/played; (chrt -f 60 {command}; echo $? >/tmp/played) </dev/null >/tmp/player 2>&1 &")
+
+        def ended():
+            self.machine.run(f"for i in $(seq {int(count / hertz) + 60}); do [ -e /tmp/played ] && break; sleep 1; done; "
+                             "[ \"$(cat /tmp/played)\" = 0 ] || { cat /tmp/player; exit 1; }", count / hertz + 100)
+
+        return started, ended
+
+    def all_sensors(self, seconds, hertz, player):
+        """Sends for some seconds on every line; returns by sensor what was sent and what the subscriber counted."""
+        slow = min(hertz, SERIAL_LIMIT)
+        counts = self.counting(*CHANNELS)
+        start, ended = self.send_can(int(seconds * hertz), hertz, player)
+        start()
+        sending = [self.lines["serial"].send(int(seconds * slow), slow), self.lines["usb"].send(int(seconds * hertz), hertz)]
+        ended()
+        for thread in sending:
+            thread.join(60)
+        time.sleep(2)
+        sent = {"serial": int(seconds * slow), "usb": int(seconds * hertz), "can": int(seconds * hertz)}
+        return {name: (sent[name], got) for name, got in counts().items()}
+
+    # --- the checks, in order ------------------------------------------------------------------------------------
+
+    def check_systemd_comes_up(self):
+        state = self.machine.run("systemctl is-system-running --wait", 400, check=False).strip()
+        if state != "running":
+            raise Failure(f"the system is {state}, expected running: " + self.machine.run("systemctl --failed --no-legend", check=False))
+        # LCM needs a route for its multicast; here it must not leave the machine.
+        # The receive buffer is what LCM's documentation advises for receivers.
+        self.machine.run("ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo; "
+                         "sysctl -q net.core.rmem_max=8388608 net.core.rmem_default=8388608")
+        return self.machine.run("uname -r").strip()
+
+    def check_package_installs(self):
+        self.machine.run("dpkg -i /opt/test/ifogd.deb", 300)
+        self.machine.run("install -D -m 644 /opt/test/gyro.dbc /etc/ifogd/gyro.dbc")
+        return self.machine.run("dpkg-query -W ifogd; id ifogd").strip().replace("\n", ", ")
+
+    def check_virtual_can_by_networkd(self):
+        self.machine.run("cp /usr/share/doc/ifogd/examples/network/80-ifogd-vcan0.* /etc/systemd/network/ && systemctl start systemd-networkd && "
+                         "for i in $(seq 100); do ip -br link show vcan0 2>/dev/null | grep -q UP && break; sleep 0.2; done; ip -br link show vcan0 | grep UP", 200)
+        return self.machine.run("(sleep 5; cansend vcan0 123#1122334455667788) & timeout 30 candump -n 1 vcan0").strip()
+
+    def check_unit_verifies(self):
+        said = self.machine.run("systemd-analyze verify ifogd.service 2>&1", 60).strip()
+        if said:
+            raise Failure(said)
+        return "systemd-analyze verify has nothing to say"
+
+    def check_exposure(self):
+        said = self.machine.run("systemd-analyze security --offline=true /usr/lib/systemd/system/ifogd.service --no-pager | tail -n 1", 200)
+        level = float(re.search(r"([0-9.]+) [A-Z]+", said).group(1))
+        if level > HIGHEST_EXPOSURE:
+            raise Failure(f"exposure {level}, expected at most {HIGHEST_EXPOSURE}")
+        return f"exposure {level}"
+
+    def check_wrong_configuration_is_one_line(self):
+        self.machine.run("printf '[[sensor]]\\nname = \"a\"\\ndriver = \"kvh1750\"\\nspeed = 3\\n[sensor.transport]\\ntype = \"can\"\\ninterface = \"vcan0\"\\n' >/tmp/wrong.toml")
+        said = self.machine.run("ifogd --config /tmp/wrong.toml --check; echo exit $?", check=False).strip().splitlines()
+        if said[-1] == "exit 0" or not any("wrong.toml:4" in line and "speed" in line for line in said):
+            raise Failure(f"expected a line that names wrong.toml:4 and speed, and a non-zero exit; got {said}")
+        return said[0]
+
+    def check_service_starts(self):
+        self.configure(RATES[0])
+        self.machine.run("systemctl start ifogd", 200)
+        properties = dict(line.split("=", 1) for line in self.machine.run(
+            "systemctl show ifogd -p Type -p ActiveState -p SubState -p User -p MainPID -p WatchdogUSec").split())
+        if (properties["Type"], properties["ActiveState"], properties["SubState"]) != ("notify", "active", "running"):
+            raise Failure(f"{properties}")
+        threads = self.machine.run(f"chrt -a -p {properties['MainPID']} | grep -c SCHED_FIFO || true").strip()
+        if int(threads) < 2 * len(CHANNELS):
+            raise Failure(f"{threads} threads run under SCHED_FIFO, expected two a sensor")
+        return f"Type=notify, user {properties['User']}, {threads} threads under SCHED_FIFO, watchdog {properties['WatchdogUSec']}"
+
+    def check_highest_rate(self):
+        """Not judged beyond 200 Hz: finds the rate at which the long runs are made."""
+        carried = 0
+        for hertz in RATES:
+            self.configure(hertz)
+            self.machine.run("systemctl restart ifogd", 200)
+            time.sleep(1)
+            result = self.all_sensors(6, hertz, "canplayer")
+            if any(complaints(*each) for each in result.values()):
+                break
+            carried = hertz
+        if carried < RATES[0]:
+            raise Failure("; ".join(f"{name}: {complaints(*each)}" for name, each in result.items()))
+        self.hertz = carried
+        self.configure(carried)
+        self.machine.run("systemctl restart ifogd", 200)
+        return f"{carried} Hz on USB and CAN, {min(carried, SERIAL_LIMIT)} Hz on the 8250"
+
+    def check_every_sample_with_canplayer(self):
+        return judged(self.all_sensors(SECONDS, self.hertz, "canplayer"), self.hertz)
+
+    def check_every_sample_with_ifog_replay(self):
+        return judged(self.all_sensors(SECONDS, self.hertz, "ifog replay"), self.hertz)
+
+    def check_killed_service_is_back(self):
+        before = self.machine.run("systemctl show -P MainPID ifogd").strip()
+        self.machine.run(f"kill -9 {before}")
+        took = self.machine.run("for i in $(seq 300); do p=$(systemctl show -P MainPID ifogd); [ \"$(systemctl is-active ifogd)\" = active ] && "
+                                f"[ $p != 0 ] && [ $p != {before} ] && break; sleep 0.1; done; systemctl show -P MainPID ifogd; systemctl show -P NRestarts ifogd").split()
+        if took[0] in ("0", before) or took[1] != "1":
+            raise Failure(f"main process and restarts are {took}, before {before}")
+        counts = self.counting("serial")
+        self.lines["serial"].send(200, 200).join(30)
+        time.sleep(1)
+        got = counts()["serial"]
+        if complaints(200, got):
+            raise Failure(complaints(200, got))
+        return f"pid {before} killed, {took[0]} reads on"
+
+    def check_pulled_cable_is_back(self):
+        for pull in range(PULLS):
+            self.machine.pull("usbserial")
+            self.machine.run("for i in $(seq 100); do [ -e /dev/ttyUSB0 ] || break; sleep 0.1; done; [ ! -e /dev/ttyUSB0 ]")
+            self.machine.plug("usb-serial", id="usbserial", chardev="usbline", **{"always-plugged": True})
+            # The daemon has the line again when the kernel counts its open file.
+            self.machine.run("for i in $(seq 300); do ls -l /proc/$(pidof ifogd)/fd | grep -q /dev/ttyUSB0 && break; sleep 0.1; done")
+            counts = self.counting("usb")
+            self.lines["usb"].send(200, 200).join(60)
+            time.sleep(1)
+            got = counts()["usb"]
+            if complaints(200, got):
+                raise Failure(f"pull {pull + 1}: {complaints(200, got)}")
+        journal = self.machine.run("journalctl -b --no-pager -o short-monotonic")
+        there = [float(t) for t in re.findall(r"\[ *([0-9.]+)\].* now attached to ttyUSB0", journal)][-PULLS:]
+        back = [float(t) for t in re.findall(r"\[ *([0-9.]+)\].* usb: reopened", journal)][-PULLS:]
+        slowest = max(b - t for t, b in zip(there, back, strict=True))
+        return f"{PULLS} pulls, every sample afterwards; counted as reopened at most {slowest:.1f} s after the kernel had it (logged once a second)"
+
+    def check_stop_drains(self):
+        count = 2000
+        counts = self.counting("can")
+        start, ended = self.send_can(count, 5 * self.hertz, "canplayer")
+        start()
+        ended()
+        self.machine.run("systemctl stop ifogd", 30)
+        got = counts()["can"]
+        if complaints(count, got):
+            raise Failure(complaints(count, got))
+        result = self.machine.run("systemctl show -P Result ifogd").strip()
+        if result != "success":
+            raise Failure(f"the service ended with {result}")
+        return f"{count} frames, stopped at once, all published"
+
+
+def complaints(sent, got):
+    """What is wrong with a count, or nothing."""
+    wrong = []
+    if got["messages"] != sent:
+        wrong.append(f"{got['messages']} messages of {sent} sent")
+    wrong += [f"{name} {got[name]}" for name in ("missing", "out_of_order", "merged") if got.get(name)]
+    return ", ".join(wrong)
+
+
+def judged(result, hertz):
+    wrong = [f"{name}: {complaints(*each)}" for name, each in result.items() if complaints(*each)]
+    if wrong:
+        raise Failure("; ".join(wrong))
+    return f"at {hertz} Hz: " + ", ".join(f"{name} {sent} of {sent}" for name, (sent, _) in result.items())
+
+
+def main():
+    build, package, work = sys.argv[1:4]
+    os.makedirs(work, exist_ok=True)
+    image = os.path.join(work, "image")
+    subprocess.run([os.path.join(HERE, "make_image"), image], check=True, timeout=900)
+    box = Box(build, package, work)
+    passed = failed = 0
+    box.machine = Machine(image, box.overlay(), os.path.join(work, "machine"))
+    try:
+        box.lines = {"serial": Line(box.machine.path("ttyS1")), "usb": Line(box.machine.path("ttyUSB0"))}
+        for name in [name for name in vars(Box) if name.startswith("check_")]:
+            title = name.removeprefix("check_").replace("_", " ")
+            began = time.monotonic()
+            try:
+                seen = getattr(box, name)()
+                passed += 1
+                print(f"ok       {title}: {seen} ({time.monotonic() - began:.0f} s)", flush=True)
+            except Exception as error:  # pylint: disable=broad-except
+                failed += 1
+                what = str(error) if isinstance(error, Failure) else traceback.format_exc()
+                print(f"FAILED   {title}: {what}", flush=True)
+                if box.machine.process.poll() is not None or "systemd comes up" in title or "package installs" in title:
+                    print("the machine is not usable; the other checks were not made", flush=True)
+                    break
+    finally:
+        if box.machine.process.poll() is None:
+            try:
+                with open(os.path.join(work, "journal.txt"), "w") as file:
+                    file.write(box.machine.run("journalctl -b --no-pager -o short-monotonic", 120, check=False))
+            except Failure:
+                pass
+        box.machine.stop()
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""The daemon on a virtual CAN bus at full speed, in a real kernel that runs as a process (user-mode Linux).
+
+usage: run.py BUILD WORK [FOLDER_WITH_REAL_CAPTURES]
+
+Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and what was seen. IFOG_UML_SECONDS (30) says how
+long each player sends at 1 kHz.
+"""
+import csv
+import gzip
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+import traceback
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "box"))
+import frames  # noqa: E402
+
+HERTZ = 1000
+SECONDS = float(os.environ.get("IFOG_UML_SECONDS", "30"))
+# What one count of the DBC's Rate below stands for, and how long a recording is sent, how much faster than it was made.
+RESOLUTION = 1e-11
+CAPTURE_SAMPLES = 24000
+SPEED = 5
+
+
+class Failure(Exception):
+    """A check that did not hold."""
+
+
+class Skipped(Exception):
+    """A check that could not be made here; the text says what would make it run."""
+
+
+def dbc(factor, limit):
+    return frames.DBC.replace("(1E-09,0) [-2|2]", f"({factor:G},0) [-{limit}|{limit}]")
+
+
+def options(folder, hertz):
+    return {"dbc": os.path.join(folder, "gyro.dbc"), "signal": "Rate", "counter": "Counter", "rate_hz": f"{hertz:g}"}
+
+
+class Bus:
+    def __init__(self, build, work, captures):
+        self.build, self.work, self.captures = os.path.abspath(build), os.path.abspath(work), captures
+        self.ifog = os.path.join(self.build, "tools/ifog/ifog")
+
+    def folder(self, name, factor, limit, hertz):
+        path = os.path.join(self.work, name)
+        shutil.rmtree(path, ignore_errors=True)
+        os.makedirs(path)
+        with open(os.path.join(path, "gyro.dbc"), "w") as file:
+            file.write(dbc(factor, limit))
+        lines = [f'[daemon]\nplugin_folder = "{self.build}/plugins"', '[[sensor]]\nname = "gyro"\ndriver = "dbc"',
+                 '[sensor.transport]\ntype = "can"\ninterface = "vcan0"', "[sensor.options]"]
+        lines += [f'{key} = "{value}"' for key, value in options(path, hertz).items()]
+        # The host may stop this whole machine for seconds, then all that was due comes at once: a longer ring than a
+        # computer of its own needs (1024).
+        lines += ["[sensor.realtime]", "reader_priority = 50", "filter_priority = 49", "ring_slots = 16384"]
+        with open(os.path.join(path, "ifogd.toml"), "w") as file:
+            file.write("\n".join(lines) + "\n")
+        return path
+
+    def boot(self, seconds, *script):
+        ran = subprocess.run([os.path.join(HERE, "boot"), self.build, str(int(seconds)), *script], stdin=subprocess.DEVNULL,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if ran.returncode != 0:
+            raise Failure(ran.stdout.strip()[-1500:])
+        return ran.stdout
+
+    def stream(self, folder, seconds, *player):
+        self.boot(4 * seconds + 120, os.path.join(HERE, "stream"), self.build, folder, *player)
+        with open(os.path.join(folder, "count.json")) as file:
+            return json.load(file).get("IFOG_GYRO", {"messages": 0})
+
+    def every_sample(self, name, *player):
+        folder = self.folder(name, 1e-9, 2, HERTZ)
+        sent = int(SECONDS * HERTZ)
+        log = os.path.join(folder, "can.log")
+        with open(log, "w") as file:
+            file.write(frames.candump(sent, HERTZ, "vcan0"))
+        got = self.stream(folder, SECONDS, *[part.replace("LOG", log) for part in player])
+        wrong = [f"{key} {got[key]}" for key in ("missing", "out_of_order", "merged") if got.get(key)]
+        if got["messages"] != sent or wrong:
+            raise Failure(f"{got['messages']} messages of {sent} sent {' '.join(wrong)}")
+        return f"{sent} of {sent} at {HERTZ} Hz, in order"
+
+    def check_can_transport_tests(self):
+        """The unit tests that skip where there is no CAN."""
+        said = self.boot(200, os.path.join(self.build, "tests/unit/transport/transport_test"), "--gtest_filter=Vcan.*", "--gtest_color=no")
+        passed = re.search(r"\[  PASSED  \] (\d+) test", said)
+        if not passed or int(passed.group(1)) == 0 or "SKIPPED" in said:
+            raise Failure(said[-1500:])
+        return f"{passed.group(1)} tests of the CAN transport pass on vcan0"
+
+    def check_every_sample_with_canplayer(self):
+        return self.every_sample("canplayer", "canplayer", "-I", "LOG")
+
+    def check_every_sample_with_ifog_replay(self):
+        return self.every_sample("replay", self.ifog, "replay", "LOG", "--to", "can:vcan0")
+
+    def check_published_equals_offline_bit_for_bit(self):
+        """capture → frames → vcan → daemon → LCM → lcm-logger, against `ifog denoise` of the same frames."""
+        folder = self.folder("bits", RESOLUTION, 0.02, 200)
+        name, capture = self.capture(folder)
+        log = os.path.join(folder, "can.log")
+        driver = ["--driver", "dbc"] + [part for key, value in options(folder, 200).items() for part in ("--option", f"{key}={value}")]
+        self.tool("convert", capture, log, *driver)
+        got = self.stream(folder, CAPTURE_SAMPLES / 200 / SPEED, self.ifog, "replay", log, "--to", "can:vcan0", "--speed", str(SPEED))
+        if got["messages"] != CAPTURE_SAMPLES:
+            raise Failure(f"{got['messages']} messages of {CAPTURE_SAMPLES} sent")
+        denoised = os.path.join(folder, "denoised.csv")
+        self.tool("denoise", log, "--output", denoised, *driver)
+        compared = subprocess.run([os.path.join(self.build, "tests/system/log_equals"), os.path.join(folder, "log.lcm"), "IFOG_GYRO", denoised,
+                                   capture, str(RESOLUTION)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if compared.returncode != 0:
+            raise Failure(compared.stdout.strip()[-1500:])
+        return f"{name}: {compared.stdout.strip()}"
+
+    def tool(self, *arguments):
+        ran = subprocess.run([self.ifog, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if ran.returncode != 0:
+            raise Failure(f"ifog {' '.join(arguments)}: {ran.stdout.strip()[-800:]}")
+
+    def capture(self, folder):
+        """A real gyro's capture where there is one, else a simulated one; the rate column alone, on an even clock."""
+        target = os.path.join(folder, "capture.csv")
+        real = os.path.join(self.captures or "", "blueseis_bs1_ramp.csv.gz")
+        rates = []
+        if os.path.exists(real):
+            with gzip.open(real, "rt") as file:
+                rows = csv.DictReader(line for line in file if not line.startswith("#"))
+                for row in rows:
+                    rates.append(row["rate_radps"])
+                    if len(rates) == CAPTURE_SAMPLES:
+                        break
+            name = "blueseis_bs1_ramp"
+        else:
+            import random
+            generator = random.Random(1)
+            rates = [repr(7e-5 + generator.gauss(0.0, 6e-7)) for _ in range(CAPTURE_SAMPLES)]
+            name = "a simulated gyro (real captures are not beside this tree)"
+        with open(target, "w") as file:
+            file.write("time_s,rate_radps\n")
+            for index, rate in enumerate(rates):
+                file.write(f"{index / 200!r},{rate}\n")
+        return name, target
+
+
+def main():
+    bus = Bus(sys.argv[1], sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else None)
+    failed = 0
+    for name in [name for name in vars(Bus) if name.startswith("check_")]:
+        title = name.removeprefix("check_").replace("_", " ")
+        began = time.monotonic()
+        try:
+            print(f"ok       {title}: {getattr(bus, name)()} ({time.monotonic() - began:.0f} s)", flush=True)
+        except Skipped as why:
+            print(f"skipped  {title}: {why}", flush=True)
+        except Exception as error:  # pylint: disable=broad-except
+            failed += 1
+            print(f"FAILED   {title}: {error if isinstance(error, Failure) else traceback.format_exc()}", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
