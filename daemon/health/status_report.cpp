@@ -150,6 +150,11 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
     now_.whiteness[i] = snapshot.health.whiteness[i];
     now_.measurement_noise[i] = snapshot.health.measurement_noise[i];
   }
+  now_.octaves = snapshot.allan_octaves;
+  now_.allan_tau0_s = snapshot.allan_period_s;
+  for (std::size_t i = 0; i < now_.allan_rate_radps.size(); ++i)
+    now_.allan_rate_radps[i].assign(snapshot.allan_radps[i].begin(),
+                                    snapshot.allan_radps[i].begin() + now_.octaves);
   for (std::size_t i = 0; i < now_.channel_value.size(); ++i) {
     now_.channel_value[i] = snapshot.channel[i];
     now_.channel_age_s[i] = static_cast<double>(snapshot.channel_age_s[i]);

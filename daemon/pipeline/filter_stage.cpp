@@ -85,8 +85,20 @@ void FilterStage::process(const Increment& in) noexcept {
                     .a = parts.filter().process_noise,
                     .b = parts.filter().measurement_noise});
   }
+  follow_noise(in);
   std::copy_n(in.channel.begin(), facts_.channels, current_.channel.begin());
   std::copy_n(in.channel_age_s.begin(), facts_.channels, current_.channel_age_s.begin());
+}
+
+void FilterStage::follow_noise(const Increment& in) noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
+    if ((in.flags & kGapBefore) != 0) allan_[i].restart();
+    // A merged sample is a mean over another time than its neighbours': no difference may use it.
+    if (in.samples == 1 && ((in.valid_axes >> i) & 1U) != 0)
+      allan_[i].add(out_.compensated_radps[i]);
+    else
+      allan_[i].restart();
+  }
 }
 
 void FilterStage::adopt(std::uint64_t sequence) noexcept {
@@ -112,6 +124,13 @@ void FilterStage::answer() noexcept {
   current_.has_health = parts.health() != nullptr;
   if (current_.has_health) current_.health = *parts.health();
   current_.angle_rad = out_.angle_rad;
+  current_.allan_period_s = 1.0 / facts_.nominal_rate_hz;
+  current_.allan_octaves = StreamingAllan::kOctaves;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
+    current_.allan_octaves = std::min(current_.allan_octaves, allan_[i].octaves());
+    for (int k = 0; k < StreamingAllan::kOctaves; ++k)
+      current_.allan_radps[i][static_cast<std::size_t>(k)] = allan_[i].deviation(k);
+  }
   const std::string& identity = parts.model_identity();
   current_.model.fill('\0');
   std::copy_n(identity.begin(), std::min(identity.size(), current_.model.size() - 1), current_.model.begin());

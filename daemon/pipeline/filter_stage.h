@@ -13,6 +13,7 @@
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
+#include "filters/allan/streaming.h"
 #include "filters/chain/signal_chain.h"
 
 namespace ifog {
@@ -26,6 +27,10 @@ struct FilterSnapshot {
   std::array<float, kMaxChannels> channel_age_s{};
   std::array<double, kMaxAxes> angle_rad{};
   std::array<char, 64> model{};
+  // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.
+  double allan_period_s = 0.0;
+  int allan_octaves = 0;
+  std::array<std::array<double, StreamingAllan::kOctaves>, kMaxAxes> allan_radps{};
 };
 
 struct FilterCounters {
@@ -58,6 +63,7 @@ class FilterStage {
   enum class Ask : std::uint32_t { none, asked, answered };
   void process(const Increment& in) noexcept;
   void adopt(std::uint64_t sequence) noexcept;
+  void follow_noise(const Increment& in) noexcept;
   void answer() noexcept;
 
   SensorFacts facts_;
@@ -70,6 +76,7 @@ class FilterStage {
   bool measure_latency_;
   bool noise_known_;
   ChainOutput out_;
+  std::array<StreamingAllan, kMaxAxes> allan_;
   FilterSnapshot current_;   // filled as samples go by
   FilterSnapshot snapshot_;  // belongs to housekeeping while ask_ is answered
   std::atomic<Ask> ask_{Ask::none};

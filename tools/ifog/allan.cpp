@@ -5,6 +5,7 @@
 
 #include "drivers/capture/text_file.h"
 #include "tools/ifog/allan_record.h"
+#include "tools/ifog/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/progress.h"
 
@@ -12,10 +13,25 @@ namespace ifog::tools {
 namespace {
 
 struct Arguments {
+  CaptureInput input;
   std::vector<std::string> captures;
   AllanOptions options;
   std::string estimator = "overlapping", gaps = "part", json, picture;
 };
+
+// Read through a driver, a recording becomes the columns that a CSV capture of it would have.
+Table as_table(Capture capture) {
+  Table table;
+  table.time_s = std::move(capture.time_s);
+  for (std::size_t i = 0; i < capture.axes.size(); ++i)
+    table.columns.push_back({capture.axes[i].empty() ? "rate_radps" : "rate_" + capture.axes[i] + "_radps",
+                             std::move(capture.rate_radps[i])});
+  return table;
+}
+
+Table table_of(const Arguments& a, const std::string& path) {
+  return a.input.is_csv(path) ? read_table(path) : as_table(a.input.read(path));
+}
 
 void run(Arguments& a) {
   a.options.kind = a.estimator == "modified"   ? Deviation::kModified
@@ -26,7 +42,7 @@ void run(Arguments& a) {
   {
     Progress progress("Allan", a.captures.size());
     for (std::size_t i = 0; i < a.captures.size(); ++i) {
-      for (AllanRecord& record : allan_records(a.captures[i], read_table(a.captures[i]), a.options))
+      for (AllanRecord& record : allan_records(a.captures[i], table_of(a, a.captures[i]), a.options))
         records.push_back(std::move(record));
       progress.at(i + 1);
     }
@@ -44,6 +60,7 @@ void add_allan(CLI::App& app) {
       "allan",
       "Overlapping Allan deviation with confidence intervals, and the noise coefficients Q, N, B, K, R");
   command->add_option("capture", a->captures, "Captures, or files written by ifog denoise")->required();
+  a->input.add_to(*command);
   command->add_option("--axis", a->options.axis, "Only this axis (x, y, …)");
   command
       ->add_option("--tau", a->options.tau_s,

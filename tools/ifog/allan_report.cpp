@@ -71,6 +71,16 @@ std::string with_error(double value, double error) {
   return line.data();
 }
 
+// Of a curve at x, between its points on the logarithmic picture; 0 outside.
+double height_at(const Curve& curve, double x) {
+  const auto above = std::lower_bound(curve.x.begin(), curve.x.end(), x);
+  if (curve.x.empty() || above == curve.x.end()) return 0.0;
+  const auto i = static_cast<std::size_t>(above - curve.x.begin());
+  if (i == 0) return *above == x ? curve.y[0] : 0.0;
+  const double part = std::log(x / curve.x[i - 1]) / std::log(curve.x[i] / curve.x[i - 1]);
+  return curve.y[i - 1] * std::pow(curve.y[i] / curve.y[i - 1], part);
+}
+
 std::string title_of(const AllanRecord& record, bool several_files) {
   std::string title = record.label();
   if (several_files || title.empty()) {
@@ -210,7 +220,7 @@ Panel allan_panel(const std::vector<AllanRecord>& records) {
   const double bottom = low / 4.0, top = high * 2.5;
   panel.extra.push_back(text("set yrange [%.6g:%.6g]", bottom, top));
   // The fitted terms as straight lines, for as many records as the eye can take.
-  int label = 0;
+  std::vector<std::pair<double, double>> labels;
   for (std::size_t r = 0; r < records.size() && r < 3; ++r) {
     const AllanRecord& record = records[r];
     if (!record.fit) continue;
@@ -222,32 +232,37 @@ Panel allan_panel(const std::vector<AllanRecord>& records) {
       Curve line;
       line.color = kColors[r % kColors.size()];
       line.style = "lines dt 2 lw 1";
+      // The label stands where the line is farthest from every curve, away from the frame.
       constexpr int kSteps = 200;
-      double best = std::numeric_limits<double>::infinity(), at = first, height = 0.0;
+      double best = -1.0, at = first, height = 0.0;
       for (int i = 0; i <= kSteps; ++i) {
-        const double tau = first * std::pow(last / first, static_cast<double>(i) / kSteps);
+        const double place = static_cast<double>(i) / kSteps;
+        const double tau = first * std::pow(last / first, place);
         const double sigma = modelled_deviation(alone, tau) * kDegreesPerHour;
         const double share = modelled_deviation(alone, tau) / modelled_deviation(*record.fit, tau);
         if (sigma < bottom || sigma > top || share < 0.1) continue;
         line.x.push_back(tau);
         line.y.push_back(sigma);
-        // The label stands where the line has left the curve, so that it hides nothing.
-        const double distance = std::abs(share - 0.4);
-        if (distance < best) {
-          best = distance;
-          at = tau;
-          height = sigma;
-        }
+        if (place < 0.08 || place > 0.92 || sigma < bottom * 1.6 || sigma > top / 1.6) continue;
+        double clear = 0.4 - 0.1 * std::abs(place - 0.5);
+        for (const Curve& curve : panel.curves)
+          if (const double y = height_at(curve, tau); y > 0.0)
+            clear = std::min(clear, std::abs(std::log10(sigma / 1.3 / y)));
+        for (const auto& [x, y] : labels)
+          clear = std::min(clear, std::hypot(std::log10(tau / x) / 4.0, std::log10(sigma / y)));
+        if (clear <= best) continue;
+        best = clear;
+        at = tau;
+        height = sigma;
       }
       if (line.x.size() < 2) continue;
       const std::string words =
           std::string(named.letter) + " = " + text("%.3g ", c.value * named.factor) + named.unit;
-      // Beside the middle of the axis the text runs inwards, so that it stays in the frame.
+      labels.emplace_back(at, height);
       const bool right_half = at > std::sqrt(first * last);
-      panel.extra.push_back("set label " + std::to_string(++label) + " \"" + words + "\" at " +
-                            text("%.6g,%.6g", at, height / 1.15) + (right_half ? " right" : " left") +
-                            " offset " + (right_half ? "-0.5" : "0.5") + ",-0.6 textcolor rgb '" +
-                            line.color + "' front noenhanced");
+      panel.extra.push_back("set label " + std::to_string(labels.size()) + " \"" + words + "\" at " +
+                            text("%.6g,%.6g", at, height / 1.2) + (right_half ? " right" : " left") +
+                            " textcolor rgb '" + line.color + "' front noenhanced");
       panel.curves.push_back(std::move(line));
     }
   }

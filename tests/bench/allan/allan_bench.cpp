@@ -1,0 +1,49 @@
+// Overlapping Allan deviation of a file of doubles (rad/s, native byte order) at the averaging times of a
+// second file (whole numbers as text). Prints seconds of the analysis alone, bytes of the samples, peak bytes
+// of the process before and after, then one deviation a line.
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "filters/allan/deviation.h"
+
+namespace {
+
+long peak_kib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fputs("expected: SAMPLES TIMES\n", stderr);
+    return 2;
+  }
+  std::vector<double> rate(std::filesystem::file_size(argv[1]) / sizeof(double));
+  std::ifstream samples(argv[1], std::ios::binary);
+  samples.read(reinterpret_cast<char*>(rate.data()),
+               static_cast<std::streamsize>(rate.size() * sizeof(double)));
+  std::vector<std::size_t> m;
+  std::ifstream times(argv[2]);
+  for (std::size_t value = 0; times >> value;) m.push_back(value);
+  if (!samples || m.empty()) {
+    std::fputs("cannot read samples or times\n", stderr);
+    return 1;
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  const ifog::AngleSum sum(rate, all);
+  const auto points = ifog::deviation(sum, m);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::printf("%.6f %zu %ld\n", seconds, rate.size() * sizeof(double), peak_kib() * 1024);
+  for (const auto& point : points) std::printf("%.17g\n", std::sqrt(point.variance));
+}
