@@ -243,7 +243,7 @@ Panel allan_panel(const std::vector<AllanRecord>& records) {
         if (sigma < bottom || sigma > top || share < 0.1) continue;
         line.x.push_back(tau);
         line.y.push_back(sigma);
-        if (place < 0.08 || place > 0.92 || sigma < bottom * 1.6 || sigma > top / 1.6) continue;
+        if (place < 0.2 || place > 0.85 || sigma < bottom * 1.6 || sigma > top / 1.6) continue;
         double clear = 0.4 - 0.1 * std::abs(place - 0.5);
         for (const Curve& curve : panel.curves)
           if (const double y = height_at(curve, tau); y > 0.0)
@@ -259,10 +259,12 @@ Panel allan_panel(const std::vector<AllanRecord>& records) {
       const std::string words =
           std::string(named.letter) + " = " + text("%.3g ", c.value * named.factor) + named.unit;
       labels.emplace_back(at, height);
-      const bool right_half = at > std::sqrt(first * last);
+      // Below a falling line on its left, below a rising one on its right: clear of the line itself.
+      const char letter = named.letter[0];
+      const char* side = letter == 'Q' || letter == 'N' ? " right" : letter == 'B' ? " center" : " left";
       panel.extra.push_back("set label " + std::to_string(labels.size()) + " \"" + words + "\" at " +
-                            text("%.6g,%.6g", at, height / 1.2) + (right_half ? " right" : " left") +
-                            " textcolor rgb '" + line.color + "' front noenhanced");
+                            text("%.6g,%.6g", at, height / 1.35) + side + " textcolor rgb '" + line.color +
+                            "' front noenhanced");
       panel.curves.push_back(std::move(line));
     }
   }
