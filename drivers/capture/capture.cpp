@@ -99,8 +99,7 @@ void append(std::string& out, double value) {
 
 }  // namespace
 
-Table read_table(const std::string& path) {
-  const std::string text = read_text_file(path);
+Table parse_table(std::string_view text, const std::string& path) {
   Table table;
   Lines lines(text);
   std::string_view line;
@@ -187,8 +186,12 @@ std::size_t line_of_row(const std::string& path, std::size_t row) {
   return 0;
 }
 
-Capture read_capture(const std::string& path) {
-  Table table = read_table(path);
+Table read_table(const std::string& path) { return parse_table(read_text_file(path), path); }
+
+Capture read_capture(const std::string& path) { return parse_capture(read_text_file(path), path); }
+
+Capture parse_capture(std::string_view text, const std::string& path) {
+  Table table = parse_table(text, path);
   Capture capture;
   capture.comments = std::move(table.comments);
   capture.time_s = std::move(table.time_s);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ifog {
@@ -45,6 +46,10 @@ std::size_t line_of_row(const std::string& path, std::size_t row);
 // Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line
 // with another number of cells, a .gz that ends early.
 Capture read_capture(const std::string& path);
+
+// The same of a text already at hand; `path` stands for the file in messages.
+Table parse_table(std::string_view text, const std::string& path);
+Capture parse_capture(std::string_view text, const std::string& path);
 
 // Shortest text that reads back as the same double. Writes beside the target, fsyncs, renames.
 void write_capture(const Capture& capture, const std::string& path);
