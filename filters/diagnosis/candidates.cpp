@@ -184,10 +184,12 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   } else {
     effect.parameters = {{"coefficient", 0.0, 0.0, coefficient_unit(effect)}};
   }
-  if (candidate.searched())
-    effect.parameters.push_back({"time_constant_s", candidate.time_constant_s, 0.0, "s"});
+  if (candidate.searched()) {
+    effect.parameters.push_back(
+        {std::string(time_constant_name(candidate.form)), candidate.time_constant_s, 0.0, "s"});
+  }
   if (candidate.second_time_constant_s > 0.0) {
-    effect.parameters.push_back({"second_time_constant_s", candidate.second_time_constant_s, 0.0, "s"});
+    effect.parameters.push_back({"second_lag_s", candidate.second_time_constant_s, 0.0, "s"});
   }
   if (candidate.form == Form::kStep) effect.parameters.push_back({"time_s", candidate.time_s, 0.0, "s"});
   effect.meaning = meaning_of(effect);

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
+#include "filters/diagnosis/judge.h"
 #include "filters/diagnosis/lines.h"
+#include "filters/diagnosis/moving_line.h"
 #include "filters/diagnosis/prediction.h"
+#include "filters/diagnosis/ramp.h"
 #include "filters/diagnosis/search.h"
 #include "filters/diagnosis/separate.h"
 #include "filters/diagnosis/unexplained.h"
@@ -19,32 +24,6 @@ namespace {
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFolds = 4;
 constexpr std::size_t kSeriesPoints = 4000;
-
-// The error of one record on its nominal grid: even steps, so that spectra and Allan deviations mean
-// something.
-struct EvenError {
-  std::vector<double> before, after, held_out;
-  double start_s = 0.0;
-};
-
-std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s) {
-  std::vector<EvenError> errors;
-  for (const Record& record : records) {
-    EvenError error;
-    error.start_s = record.time_s.front();
-    const double span = record.time_s.back() - record.time_s.front();
-    error.before.assign(static_cast<std::size_t>(std::floor(span / sample_s + 0.5)) + 1, kMissing);
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-      const auto k =
-          static_cast<std::size_t>(std::floor((record.time_s[i] - error.start_s) / sample_s + 0.5));
-      double value = record.rate_radps[i];
-      if (!record.reference_radps.empty()) value -= record.reference_radps[i];
-      error.before[std::min(k, error.before.size() - 1)] = value;
-    }
-    errors.push_back(std::move(error));
-  }
-  return errors;
-}
 
 // Slow enough for block means to carry it; faster lines are fitted to the samples themselves.
 bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz * grid.block_s < 0.4; }
@@ -112,11 +91,25 @@ double variance_of(std::span<const double> values) {
 
 class Account {
  public:
-  Account(const std::vector<Record>& records, const DiagnoseOptions& options)
-      : records_(records),
-        options_(options),
-        data_(cut_to_blocks(records)),
-        errors_(even_errors(records, data_.grid.sample_s)) {}
+  // records: as given. clean: with what the ramps explain taken out of the rate, and the ramps out of the
+  // channels.
+  Account(const std::vector<Record>& records, const std::vector<Record>& clean,
+          const std::vector<RampFit>& ramps, const DiagnoseOptions& options)
+      : records_(records), options_(options), ramps_(ramps), data_(cut_to_blocks(clean)) {
+    const double sample_s = data_.grid.sample_s;
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      EvenError error;
+      error.start_s = records[r].time_s.front();
+      error.before = on_even_grid(records[r], sample_s, error_of(records[r]));
+      clean_.push_back(on_even_grid(records[r], sample_s, error_of(clean[r])));
+      std::vector<double> held = error_of(records[r]);
+      for (const RampFit& ramp : ramps) {
+        for (std::size_t i = 0; i < held.size(); ++i) held[i] -= ramp.held_out[r][i];
+      }
+      clean_held_out_.push_back(on_even_grid(records[r], sample_s, held));
+      errors_.push_back(std::move(error));
+    }
+  }
 
   Diagnosis run() {
     for (const Record& record : records_) result_.samples += record.time_s.size();
@@ -130,6 +123,7 @@ class Account {
     // Lines are looked for in what the effects leave; a slow one then competes with them in a second search.
     lines_ = coherent_lines(errors_, data_.grid, options_.significance);
     if (data_.reference >= 0 && data_.channels[static_cast<std::size_t>(data_.reference)].varies) lines_ = {};
+    blame_rotation();
     while (!lines_.slow.empty()) {
       search.given = lines_.slow;
       found_ = search_effects(data_, search);
@@ -157,6 +151,44 @@ class Account {
     for (const Chosen& chosen : found_.chosen) effects.push_back(chosen.candidate);
     columns_ = design(data_, effects);
     subtract();
+  }
+
+  // Lines that follow the rotation are the loop's own. Fixed lines cannot stand for them: they are reported,
+  // with the channel to log, and not put into the model.
+  void blame_rotation() {
+    for (std::size_t r = 0; r < errors_.size() && !moving_; ++r) {
+      const std::vector<SpectralLine> peaks =
+          find_lines(errors_[r].after, errors_[r].start_s, data_.grid.sample_s, options_.significance);
+      if (peaks.empty()) continue;
+      const std::vector<double> rate(records_[r].rate_radps.begin(), records_[r].rate_radps.end());
+      const std::vector<double> even = on_even_grid(records_[r], data_.grid.sample_s, rate);
+      moving_ = find_moving_line(errors_[r].after, even, data_.grid.sample_s, peaks);
+    }
+    if (!moving_) return;
+    const auto harmonic = [&](double frequency) {
+      const double times = frequency / moving_->frequency_hz;
+      return times > 0.5 && std::abs(times - std::round(times)) < 0.01 * std::max(1.0, times);
+    };
+    std::erase_if(lines_.slow, [&](const Candidate& line) { return harmonic(line.frequency_hz); });
+    std::erase_if(lines_.fast, [&](const FastLine& line) { return harmonic(line.line.frequency_hz); });
+  }
+
+  void write_ramps() {
+    for (const RampFit& ramp : ramps_) {
+      FoundEffect found;
+      found.effect = ramp.effect;
+      found.effect.axis = options_.axis;
+      found.p_value = ramp.p_value;
+      found.likelihood_ratio = ramp.ratio;
+      double explained = 0.0;
+      double total = 0.0;
+      for (std::size_t r = 0; r < errors_.size(); ++r) {
+        explained += variance_of(ramp.correction[r]);
+        total += variance_of(errors_[r].before);
+      }
+      found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+      result_.effects.push_back(std::move(found));
+    }
   }
 
   // A peak that slow noise or an effect made is no line once both are in the fit.
@@ -214,16 +246,18 @@ class Account {
     contribution_ = all;
     for (std::size_t r = 0; r < errors_.size(); ++r) {
       EvenError& error = errors_[r];
-      error.after = error.before;
+      error.after = clean_[r];
+      error.held_out = clean_held_out_[r];
       for (const FastLine& fast : lines_.fast) {
         if (fast.record != r) continue;
         for (std::size_t i = 0; i < error.after.size(); ++i) {
           const double phase =
               2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * grid.sample_s);
-          error.after[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+          const double value = fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+          error.after[i] -= value;
+          error.held_out[i] -= value;
         }
       }
-      error.held_out = error.after;
       for (std::size_t i = 0; i < error.after.size(); ++i) {
         const double at =
             static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
@@ -282,6 +316,7 @@ class Account {
       result_.effects.back().effect.axis = options_.axis;
     }
     time_constant_errors();
+    write_ramps();
     write_covariance();
     write_ranges();
   }
@@ -300,7 +335,7 @@ class Account {
       };
       const double curve = (2.0 * value(1.0) - value(1.0 + kStep) - value(1.0 - kStep)) / (kStep * kStep);
       for (ModelParameter& parameter : result_.effects[i].effect.parameters) {
-        if (parameter.name != "time_constant_s") continue;
+        if (parameter.name != time_constant_name(effects[i].form)) continue;
         parameter.std_error = curve > 0.0 ? parameter.value / std::sqrt(curve) : parameter.value;
       }
     }
@@ -373,6 +408,7 @@ class Account {
     }
     result_.unexplained = describe_unexplained(longest->before, longest->after, longest->start_s,
                                                data_.grid.sample_s, found_.noise, data_.grid, peaks);
+    if (moving_) describe_moving(*moving_, result_.unexplained);
     const double span = static_cast<double>(longest->before.size()) * data_.grid.sample_s;
     const double aligned = std::min(300.0, span / 10.0);
     result_.heading =
@@ -424,9 +460,12 @@ class Account {
 
   const std::vector<Record>& records_;
   const DiagnoseOptions& options_;
+  const std::vector<RampFit>& ramps_;
   BlockData data_;
   std::vector<EvenError> errors_;
+  std::vector<std::vector<double>> clean_, clean_held_out_;  // by record: less the ramps
   Lines lines_;
+  std::optional<MovingLine> moving_;
   SearchResult found_;
   Columns columns_;
   Eigen::VectorXd contribution_;
@@ -438,7 +477,41 @@ class Account {
 }  // namespace
 
 Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options) {
-  return Account(records, options).run();
+  const bool partly = options.fit_from > 0.0 || options.fit_to < 1.0;
+  const std::vector<Record> fitted = partly ? fitted_part(records, options) : records;
+  std::vector<RampFit> ramps;
+  std::vector<Record> clean = fitted;
+  std::vector<std::vector<double>> rates;
+  if (!fitted.empty()) {
+    for (const RecordChannel& channel : fitted.front().channels) {
+      const auto wraps = [&](const Record& record) {
+        return std::any_of(record.channels.begin(), record.channels.end(), [&](const RecordChannel& other) {
+          return other.name == channel.name && wrap_period(other.values) > 0.0;
+        });
+      };
+      if (!std::any_of(fitted.begin(), fitted.end(), wraps)) continue;
+      // A counter that wraps is no environment: as a function of its value or slope it would take rotation
+      // away.
+      for (Record& record : clean) {
+        std::erase_if(record.channels,
+                      [&](const RecordChannel& other) { return other.name == channel.name; });
+      }
+      if (auto ramp = fit_ramp(fitted, channel.name, options.significance)) ramps.push_back(std::move(*ramp));
+    }
+  }
+  if (!ramps.empty()) {
+    for (std::size_t r = 0; r < clean.size(); ++r) {
+      std::vector<double> rate(clean[r].rate_radps.begin(), clean[r].rate_radps.end());
+      for (const RampFit& ramp : ramps) {
+        for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
+      }
+      rates.push_back(std::move(rate));
+    }
+    for (std::size_t r = 0; r < clean.size(); ++r) clean[r].rate_radps = rates[r];
+  }
+  Diagnosis diagnosis = Account(fitted, clean, ramps, options).run();
+  if (partly) judge(records, options, diagnosis);
+  return diagnosis;
 }
 
 void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& model) {

@@ -112,10 +112,13 @@ double allan_deviation(std::span<const double> error, std::size_t count) {
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s) {
   std::map<std::string, double> figures;
   figures["residual_rms_radps"] = rms_about_mean(error);
-  for (const int tau : {1, 10, 100}) {
+  for (const double tau : {0.1, 1.0, 10.0, 100.0}) {
     const auto count = static_cast<std::size_t>(std::floor(tau / period_s + 0.5));
     if (count < 1 || error.size() < 10 * count) continue;
-    const std::string name = std::to_string(tau) + "s_radps";
+    std::string name = std::to_string(tau);
+    name.erase(name.find_last_not_of('0') + 1);
+    if (name.ends_with('.')) name.pop_back();
+    name += "s_radps";
     figures["rms_" + name] = rms_about_mean(means_over(error, count));
     figures["adev_" + name] = allan_deviation(error, count);
   }

@@ -8,11 +8,10 @@
 
 namespace ifog {
 
-// Even steps of period_s; NaN missing. Keys: residual_rms_radps, rms_1s_radps, rms_10s_radps, rms_100s_radps,
-// adev_1s_radps, adev_10s_radps, adev_100s_radps, heading_drift_rad, whiteness. Averaging times that the
-// record does not hold ten of are left out. Heading drift: error of the angle at the end when the bias is the
-// mean of the first tenth. Whiteness: lag-1 autocorrelation of 1 s means (of samples, if those are longer); 0
-// for white noise.
+// Even steps of period_s; NaN missing. Keys: residual_rms_radps, rms_<T>s_radps and adev_<T>s_radps for T of
+// 0.1, 1, 10 and 100, heading_drift_rad, whiteness. Averaging times that the record does not hold ten of are
+// left out. Heading drift: error of the angle at the end when the bias is the mean of the first tenth.
+// Whiteness: lag-1 autocorrelation of 1 s means (of samples, if those are longer); 0 for white noise.
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s);
 
 // Several records of one sensor: squares averaged by length, whiteness by length.

@@ -135,4 +135,15 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
   return found;
 }
 
+void describe_moving(const MovingLine& line, Unexplained& found) {
+  found.kind = "moving_line";
+  found.frequency_hz = line.frequency_hz;
+  found.times_s.clear();
+  found.hint = text(
+      "a line near %.4g Hz, with its harmonics, whose frequency moves with the rate: %.4g cycles a radian "
+      "turned. That is the closed loop's own doing, most likely the feedback ramp (phase modulator, 2 pi "
+      "reset), and no channel given shows it. Log the feedback ramp at the sensor's own rate.",
+      line.frequency_hz, line.cycles_per_rad);
+}
+
 }  // namespace ifog

@@ -3,6 +3,7 @@
 
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/lines.h"
+#include "filters/diagnosis/moving_line.h"
 #include "filters/diagnosis/noise_fit.h"
 
 namespace ifog {
@@ -12,5 +13,8 @@ namespace ifog {
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
                                  const std::vector<SpectralLine>& peaks);
+
+// A line that follows the rotation takes the description's place.
+void describe_moving(const MovingLine& line, Unexplained& found);
 
 }  // namespace ifog

@@ -81,6 +81,11 @@ double parameter(const Effect& effect, std::string_view name) {
   return 0.0;
 }
 
+std::string_view time_constant_name(Form form) {
+  if (form == Form::kLagged) return "lag_s";
+  return form == Form::kWarmUp ? "time_constant_s" : "bandwidth_s";
+}
+
 bool is_reference_rate(std::string_view channel) { return channel.starts_with("reference_rate"); }
 
 }  // namespace ifog

@@ -61,6 +61,10 @@ std::string_view name_of(Form form);
 // 0 when the effect has no parameter of that name.
 [[nodiscard]] double parameter(const Effect& effect, std::string_view name);
 
+// What a form's time constant is called: "lag_s" of lagged, "time_constant_s" of warm_up, "bandwidth_s" of
+// the others.
+[[nodiscard]] std::string_view time_constant_name(Form form);
+
 // The reference rate, known on a rate table; online its place is taken by the rate itself.
 [[nodiscard]] bool is_reference_rate(std::string_view channel);
 

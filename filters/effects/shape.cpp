@@ -41,8 +41,8 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.form = *form == Form::kProduct || *form == Form::kEarthRate ? Form::kLinear : *form;
   settings.reference = effect.reference;
   if (*form == Form::kProduct) return settings;
-  settings.time_constant_s = parameter(effect, "time_constant_s");
-  settings.second_time_constant_s = parameter(effect, "second_time_constant_s");
+  settings.time_constant_s = parameter(effect, time_constant_name(*form));
+  settings.second_time_constant_s = parameter(effect, "second_lag_s");
   settings.table_x = effect.table_x;
   settings.table_y = effect.table_y;
   settings.period = effect.period;
@@ -59,8 +59,8 @@ ShapeSettings with_shape_settings(const Effect& effect) {
   ShapeSettings settings;
   settings.form = *form;
   settings.reference = effect.with_reference;
-  settings.time_constant_s = parameter(effect, "time_constant_s");
-  settings.second_time_constant_s = parameter(effect, "second_time_constant_s");
+  settings.time_constant_s = parameter(effect, time_constant_name(*form));
+  settings.second_time_constant_s = parameter(effect, "second_lag_s");
   return settings;
 }
 

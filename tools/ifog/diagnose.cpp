@@ -23,6 +23,7 @@ struct Arguments {
   std::string model, write_model, json;
   std::vector<std::string> axes;
   double significance = 0.01;
+  double fit_from = 0.0, fit_to = 1.0;
   bool quiet = false;
 };
 
@@ -93,6 +94,8 @@ std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const 
     DiagnoseOptions options;
     options.significance = arguments.significance;
     options.axis = axes[axis];
+    options.fit_from = arguments.fit_from;
+    options.fit_to = arguments.fit_to;
     auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
                                                options.most_effects + 1);
     options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
@@ -158,6 +161,14 @@ void add_diagnose(CLI::App& app) {
                    "chance of a false effect, after correction for all tried")
       ->check(CLI::Range(1e-9, 0.5))
       ->capture_default_str();
+  command
+      ->add_option("--fit-from", arguments->fit_from,
+                   "fit from this share of each capture's time; the rest judges")
+      ->check(CLI::Range(0.0, 0.9));
+  command
+      ->add_option("--fit-to", arguments->fit_to,
+                   "fit up to this share of each capture's time; the rest judges")
+      ->check(CLI::Range(0.1, 1.0));
   command->add_flag("--quiet", arguments->quiet, "no report on the console");
   command->callback([arguments] { run(*arguments); });
 }

@@ -64,11 +64,13 @@ struct FigureName {
   double scale;
 };
 
-constexpr std::array<FigureName, 9> kFigures = {{
+constexpr std::array<FigureName, 11> kFigures = {{
     {"residual_rms_radps", "single samples, RMS", "°/h", kDegPerHour},
+    {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", kDegPerHour},
     {"rms_1s_radps", "1 s means, RMS", "°/h", kDegPerHour},
     {"rms_10s_radps", "10 s means, RMS", "°/h", kDegPerHour},
     {"rms_100s_radps", "100 s means, RMS", "°/h", kDegPerHour},
+    {"adev_0.1s_radps", "Allan deviation, 0.1 s", "°/h", kDegPerHour},
     {"adev_1s_radps", "Allan deviation, 1 s", "°/h", kDegPerHour},
     {"adev_10s_radps", "Allan deviation, 10 s", "°/h", kDegPerHour},
     {"adev_100s_radps", "Allan deviation, 100 s", "°/h", kDegPerHour},

@@ -122,7 +122,7 @@ TEST(Compensator, TakesOverTheStateOfTheModelBefore) {
   Model model;
   Effect lagged = linear(1e-6);
   lagged.form = "lagged";
-  lagged.parameters.push_back({"time_constant_s", 100.0, 0.0, "s"});
+  lagged.parameters.push_back({"lag_s", 100.0, 0.0, "s"});
   model.effects = {lagged};
   Compensator first(model, {""});
   step(first, 0.0, {25.0});

@@ -1,0 +1,33 @@
+// The feedback ramp of a closed-loop sensor, if a channel is one: a counter that wraps and whose slope is the
+// loop's own measure of the rotation. Its nonlinearity is an error of the angle, f(ramp), so that of the rate
+// is the difference of f from sample to sample over dt. f is bounded: this correction cannot swallow
+// rotation, whatever the ramp's speed, which no function of the ramp's slope could promise.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/diagnose.h"
+
+namespace ifog {
+
+// The period, a power of two, when the values lie in [0, period) and jump by about a period; 0 otherwise.
+double wrap_period(std::span<const double> values);
+
+struct RampFit {
+  Effect effect;       // an angle lookup; the table's ends may differ: the flyback is not exactly 2 pi
+  double ratio = 0.0;  // twice the log-likelihood gained in white noise
+  double p_value = 1.0;
+  std::vector<std::vector<double>> correction;  // by record and sample, rad/s, of the fit to all
+  std::vector<std::vector<double>> held_out;    // each part from the fit to the other parts
+};
+
+// Of one channel of the records; nothing when the table does not predict the parts held out of its fit, or by
+// chance would do as well more often than `significance`.
+std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
+                                double significance);
+
+}  // namespace ifog

@@ -1,0 +1,122 @@
+#include "filters/diagnosis/ramp.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "filters/effects/compensator.h"
+#include "filters/random/philox.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kPeriod = 32768.0;
+constexpr double kStep_s = 0.005;
+constexpr double kPerCount = 79.2e-9;  // rad/s of one count a sample
+
+double gaussian(std::uint32_t counter) {
+  const PhiloxBlock bits = philox({counter, 9, 0, 0}, {3, 1});
+  const double u = (bits[0] + 0.5) / 4294967296.0;
+  const double v = (bits[1] + 0.5) / 4294967296.0;
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+}
+
+double nonlinearity(double ramp) {
+  const double x = ramp / kPeriod;
+  return 3e-9 * std::sin(2.0 * M_PI * x) + 1e-9 * std::sin(6.0 * M_PI * x) + 2e-9 * x;
+}
+
+struct Loop {
+  std::vector<double> time, rate, ramp;
+};
+
+// A loop at rest under the Earth's rate, whose ramp has the nonlinearity above.
+Loop loop(std::uint32_t n, double rate, double noise) {
+  Loop made;
+  double position = 1000.0;
+  double before = nonlinearity(position);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    position = std::fmod(position + rate / kPerCount, kPeriod);
+    const double ramp = std::floor(position);
+    const double now = nonlinearity(ramp);
+    made.time.push_back(kStep_s * i);
+    made.ramp.push_back(ramp);
+    made.rate.push_back(rate + noise * gaussian(i) + (now - before) / kStep_s);
+    before = now;
+  }
+  return made;
+}
+
+Record record_of(const Loop& made) {
+  Record record;
+  record.name = "loop";
+  record.time_s = made.time;
+  record.rate_radps = made.rate;
+  record.channels = {{"ramp_counts", made.ramp}};
+  return record;
+}
+
+TEST(Ramp, WrapsAreRecognised) {
+  EXPECT_EQ(wrap_period(loop(4000, 5.4e-5, 0.0).ramp), kPeriod);
+  EXPECT_EQ(wrap_period(std::vector<double>{20.0, 21.0, 22.0, 21.5, 20.0}), 0.0);
+}
+
+TEST(Ramp, TheTableIsTheNonlinearity) {
+  const Loop made = loop(40000, 5.4e-5, 4e-7);
+  const auto fit = fit_ramp({record_of(made)}, "ramp_counts", 0.01);
+  ASSERT_TRUE(fit.has_value());
+  double left = 0.0;
+  double was = 0.0;
+  for (std::size_t i = 1; i < made.rate.size(); ++i) {
+    const double truth = (nonlinearity(made.ramp[i]) - nonlinearity(made.ramp[i - 1])) / kStep_s;
+    was += truth * truth;
+    left += (truth - fit->held_out[0][i]) * (truth - fit->held_out[0][i]);
+  }
+  EXPECT_LT(left, 0.02 * was);
+}
+
+TEST(Ramp, ACounterWithoutNonlinearityIsNotBlamed) {
+  Loop made = loop(40000, 5.4e-5, 4e-7);
+  for (std::uint32_t i = 0; i < 40000; ++i) made.rate[i] = 5.4e-5 + 4e-7 * gaussian(i);
+  EXPECT_FALSE(fit_ramp({record_of(made)}, "ramp_counts", 0.01).has_value());
+}
+
+// Rotation put into the rate and, as the loop would, into the ramp's slope comes out with its gain and phase,
+// from a stalled ramp to many wraps a sample and up to 0.8 of the Nyquist frequency.
+TEST(Ramp, TheCorrectionIsTransparentToRotation) {
+  const auto fit = fit_ramp({record_of(loop(40000, 5.4e-5, 4e-7))}, "ramp_counts", 0.01);
+  ASSERT_TRUE(fit.has_value());
+  Model model;
+  model.effects = {fit->effect};
+  for (const double bias : {0.0, 5.4e-5, 2.6e-3, 9.7e-3}) {
+    for (const double frequency : {0.05, 1.0, 20.0, 80.0}) {
+      const double amplitude = 1e-4;
+      Compensator compensator(model, {""});
+      double position = 500.0;
+      std::complex<double> in_sum;
+      std::complex<double> out_sum;
+      for (int i = 0; i < 8000; ++i) {
+        const double w = bias + amplitude * std::sin(2.0 * M_PI * frequency * kStep_s * i);
+        position += w / kPerCount;
+        position -= kPeriod * std::floor(position / kPeriod);
+        CompensatorInput in;
+        in.dt_s = kStep_s;
+        in.rate_radps[0] = w;
+        const std::vector<double> channel = {std::floor(position)};
+        in.channels = channel;
+        CompensatorOutput out;
+        compensator.step(in, out);
+        const std::complex<double> carrier = std::polar(1.0, -2.0 * M_PI * frequency * kStep_s * i);
+        in_sum += w * carrier;
+        out_sum += out.compensated_radps[0] * carrier;
+      }
+      EXPECT_NEAR(std::abs(out_sum / in_sum), 1.0, 0.02) << bias << " rad/s, " << frequency << " Hz";
+      EXPECT_NEAR(std::arg(out_sum / in_sum), 0.0, 2.0 * M_PI / 180.0)
+          << bias << " rad/s, " << frequency << " Hz";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ifog
