@@ -1,0 +1,128 @@
+// A diagnosis to make a page of: a gyro whose bias follows its temperature and, through a table of angle, its
+// feedback ramp; filled in by hand, so that the page is tested without the search.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/random/philox.h"
+
+namespace ifog::example {
+
+inline double noise(std::uint32_t k) {
+  const PhiloxBlock b = philox({k, 0, 0, 0}, {1, 2});
+  double sum = -2.0;
+  for (const std::uint32_t v : b) sum += v / 4294967296.0;
+  return sum * std::sqrt(3.0);
+}
+
+struct Example {
+  std::vector<double> time_s, rate, temperature, ramp;
+  Diagnosis diagnosis;
+
+  [[nodiscard]] std::vector<Record> records() const {
+    Record r;
+    r.name = "bench.csv";
+    r.time_s = time_s;
+    r.rate_radps = rate;
+    r.channels = {{"temperature_degC", temperature}, {"ramp_counts", ramp}};
+    return {r};
+  }
+};
+
+inline constexpr double kPerDegree = 2e-8;  // rad/s per degC
+inline double ramp_angle(double counts) { return 2e-7 * std::sin(2.0 * std::numbers::pi * counts / 32768.0); }
+
+inline Example make() {
+  Example e;
+  const std::size_t n = 40000;
+  const double dt = 0.05;
+  double counts = 100.0, previous = ramp_angle(counts);
+  std::vector<double> after(n), part_t(n), part_r(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double t = static_cast<double>(k) * dt;
+    e.time_s.push_back(t);
+    e.temperature.push_back(25.0 + 12.0 * std::sin(t / 300.0));
+    counts = std::fmod(counts + 701.3, 32768.0);
+    e.ramp.push_back(counts);
+    after[k] = 6e-7 * noise(static_cast<std::uint32_t>(k));
+    part_t[k] = kPerDegree * (e.temperature[k] - 25.0);
+    part_r[k] = (ramp_angle(counts) - previous) / dt;
+    previous = ramp_angle(counts);
+    e.rate.push_back(after[k] + part_t[k] + part_r[k] + 5e-5);
+  }
+  Diagnosis& d = e.diagnosis;
+  d.samples = n;
+  d.sample_rate_hz = 1.0 / dt;
+  d.noise.N = 6e-7 * std::sqrt(dt);
+  FoundEffect linear;
+  linear.effect.form = "linear";
+  linear.effect.channel = "temperature_degC";
+  linear.effect.reference = 25.0;
+  linear.effect.meaning = "bias follows the temperature";
+  linear.effect.parameters = {{"coefficient", kPerDegree, 3e-10, "rad/s/degC"}};
+  linear.p_value = 1e-12;
+  linear.variance_explained = 0.8;
+  FoundEffect lookup;
+  lookup.effect.form = "lookup";
+  lookup.effect.channel = "ramp_counts";
+  lookup.effect.angle = true;
+  lookup.effect.period = 32768.0;
+  for (int i = 0; i <= 32; ++i) {
+    lookup.effect.table_x.push_back(1024.0 * i);
+    lookup.effect.table_y.push_back(ramp_angle(1024.0 * i));
+  }
+  lookup.effect.meaning = "nonlinearity of the closed loop's feedback ramp <2 pi reset>";
+  lookup.p_value = 0.0004;
+  lookup.variance_explained = 0.1;
+  d.effects = {linear, lookup};
+  const double r = 1e-6;
+  d.before = {{"residual_rms_radps", 1.4 * r}, {"rms_1s_radps", 0.4 * r},   {"rms_10s_radps", 0.2 * r},
+              {"adev_1s_radps", 0.13 * r},     {"heading_drift_rad", 2e-4}, {"whiteness", 0.7}};
+  d.after = {{"residual_rms_radps", 0.6 * r}, {"rms_1s_radps", 0.13 * r},    {"rms_10s_radps", 0.04 * r},
+             {"adev_1s_radps", 0.13 * r},     {"heading_drift_rad", 1.1e-5}, {"whiteness", 0.01}};
+  Effect lagged = linear.effect;
+  lagged.form = "lagged";
+  d.indistinguishable = {{{linear.effect, lagged}, 0.993, "a capture with faster changes of temperature"}};
+  d.unexplained.kind = "bursts";
+  d.unexplained.fraction = 0.04;
+  d.unexplained.hint = "isolated samples far outside the noise";
+  d.unexplained.times_s = {444.0};
+  d.heading.aligned_s = 120.0;
+  for (int i = 1; i <= 60; ++i) {
+    d.heading.after_s.push_back(60.0 * i);
+    d.heading.sigma_rad.push_back(3e-8 * 60.0 * i + 2e-7 * std::sqrt(60.0 * i));
+  }
+  DiagnosisSeries& s = d.series;
+  const std::size_t block = 20;
+  s.names = {"linear temperature_degC", "lookup ramp_counts"};
+  s.contribution_radps.resize(2);
+  for (std::size_t k = 0; k + block <= n; k += block) {
+    double a = 0.0, t = 0.0, q = 0.0;
+    for (std::size_t i = k; i < k + block; ++i) a += after[i], t += part_t[i], q += part_r[i];
+    const auto m = static_cast<double>(block);
+    s.time_s.push_back(e.time_s[k]);
+    s.after_radps.push_back(a / m);
+    s.before_radps.push_back((a + t + q) / m);
+    s.contribution_radps[0].push_back(t / m);
+    s.contribution_radps[1].push_back(q / m);
+  }
+  for (double f = 1e-3; f < 10.0; f *= 1.05) {
+    const double white = 2e-7, slow = 3e-9 / f,
+                 line = 4e-6 * std::exp(-std::pow((std::log(f) + 0.85) / 0.03, 2.0));
+    s.frequency_hz.push_back(f);
+    s.after_radps_rthz.push_back(white);
+    s.before_radps_rthz.push_back(white + slow + line);
+  }
+  for (double tau = 0.05; tau < 400.0; tau *= 1.4) {
+    s.tau_s.push_back(tau);
+    s.after_adev_radps.push_back(1.34e-7 / std::sqrt(tau));
+    s.before_adev_radps.push_back(std::hypot(1.34e-7 / std::sqrt(tau), 8e-10 * tau));
+  }
+  return e;
+}
+
+}  // namespace ifog::example

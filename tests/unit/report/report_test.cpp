@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+
+#include "tests/unit/report/example.h"
+#include "tools/report/chart.h"
+#include "tools/report/diagnosis_page.h"
+#include "tools/report/text.h"
+#include "tools/report/traced.h"
+#include "tools/report/words.h"
+
+namespace {
+
+using namespace ifog::report;
+
+TEST(ReportText, NumbersAsPeopleWriteThem) {
+  EXPECT_EQ(number(0.0), "0");
+  EXPECT_EQ(number(440.26), "440");
+  EXPECT_EQ(number(0.010832), "0.0108");
+  EXPECT_EQ(number(999.96), "1000");
+  EXPECT_EQ(number(-3.14159e-7), "−3.14 × 10⁻⁷");
+  EXPECT_EQ(number(std::nan("")), "–");
+  EXPECT_EQ(with_error(-79.1999, 0.1512), "−79.20 ± 0.15");
+  EXPECT_EQ(with_error(1.234e-8, 5e-10), "(1.234 ± 0.050) × 10⁻⁸");
+  EXPECT_EQ(escaped("<a & \"b\">"), "&lt;a &amp; &quot;b&quot;&gt;");
+}
+
+TEST(ReportText, UnitsOfTheField) {
+  EXPECT_EQ(channel_label("coil_temperature_degC"), "coil temperature (°C)");
+  EXPECT_EQ(channel_label("accel_x_mps2"), "accel x (m/s²)");
+  EXPECT_EQ(field_unit("rad/s/degC").unit, "°/h/°C");
+  EXPECT_NEAR(field_unit("rad/s/degC").scale, 206264.806, 1e-3);
+  EXPECT_EQ(field_unit("s").unit, "s");
+  EXPECT_EQ(figure("rms_10s_radps").label, "RMS of 10 s means");
+  EXPECT_EQ(figure("heading_drift_rad").unit, "°");
+}
+
+// Where the data says a dot is, the picture has it: 0 and 10 on a linear axis, 1 and 100 on a logarithmic
+// one.
+TEST(ReportChart, DrawsDataWhereItIs) {
+  Chart chart("t", "d", {"x", false, 0.0, 10.0}, {"y", true, 1.0, 100.0});
+  chart.points(Role::kBefore, "", {0.0, 5.0, 10.0}, {1.0, 10.0, 100.0});
+  const std::string svg = chart.svg(1000, 500);
+  std::smatch m;
+  ASSERT_TRUE(std::regex_search(
+      svg, m, std::regex("M([\\d.]+) ([\\d.]+)h0M([\\d.]+) ([\\d.]+)h0M([\\d.]+) ([\\d.]+)h0")));
+  const double x0 = std::stod(m[1]), x1 = std::stod(m[3]), x2 = std::stod(m[5]);
+  const double y0 = std::stod(m[2]), y1 = std::stod(m[4]), y2 = std::stod(m[6]);
+  EXPECT_NEAR(x1, 0.5 * (x0 + x2), 0.11);
+  EXPECT_NEAR(y1, 0.5 * (y0 + y2), 0.11);
+  EXPECT_LT(y2, y0);
+}
+
+TEST(ReportChart, DenseCurvesKeepTheirExtremes) {
+  Chart chart("t", "d", {"x", false, {}, {}}, {"y", false, 0.0, 1.0});
+  std::vector<double> x(100000), y(100000, 0.5);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = static_cast<double>(k);
+  y[54321] = 1.0;  // one spike among a hundred samples a pixel
+  Chart flat("t", "d", {"x", false, {}, {}}, {"y", false, 0.0, 1.0});
+  flat.line(Role::kAfter, "", x, std::vector<double>(100000, 0.5));
+  chart.line(Role::kAfter, "", x, y);
+  EXPECT_NE(chart.svg().find("V34.0"), std::string::npos);  // the plot's upper edge
+  EXPECT_EQ(flat.svg().find("V34.0L"), std::string::npos);
+  EXPECT_LT(chart.svg().size(), 60000U);
+}
+
+TEST(ReportChart, GapsAndImpossibleValuesAreLeftOut) {
+  Chart chart("t", "d", {"x", true, {}, {}}, {"y", true, {}, {}});
+  chart.line(Role::kAfter, "a", {-1.0, 1.0, 2.0, 3.0}, {1.0, 0.0, std::nan(""), 4.0});
+  EXPECT_FALSE(chart.empty());
+  EXPECT_EQ(chart.svg().find("nan"), std::string::npos);
+  EXPECT_EQ(chart.svg().find("inf"), std::string::npos);
+  Chart nothing("t", "d", {"x", true, {}, {}}, {"y", true, {}, {}});
+  EXPECT_EQ(nothing.svg(), "");
+}
+
+// The dots are means of what was measured: they lie on the effect that was put in.
+TEST(ReportTraced, DotsLieOnTheEffect) {
+  const ifog::example::Example e = ifog::example::make();
+  const Traced linear = trace(e.records(), e.diagnosis, 0);
+  ASSERT_GT(linear.x.size(), 50U);
+  EXPECT_FALSE(linear.angle);
+  const double slope = (linear.y.back() - linear.y.front()) / (linear.x.back() - linear.x.front());
+  EXPECT_NEAR(slope / ifog::example::kPerDegree, 1.0, 0.15);
+  const Traced table = trace(e.records(), e.diagnosis, 1);
+  ASSERT_TRUE(table.angle);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < table.x.size(); ++i)
+    worst = std::max(worst, std::abs(table.y[i] - ifog::example::ramp_angle(table.x[i])));
+  EXPECT_LT(worst, 3e-8) << "amplitude is 2e-7";
+}
+
+std::string page_of(const ifog::example::Example& e) {
+  Page page;
+  page.sensor = "bench & co";
+  page.captures = {"bench.csv"};
+  page.axes = {{"", &e.diagnosis, e.records()}};
+  page.model_path = "bench.toml";
+  page.made = "2026-01-01, ifog 0.1.0";
+  return diagnosis_page(page);
+}
+
+TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
+  const std::string html = page_of(ifog::example::make());
+  for (const char* part : {"In short", "Two effects were found", "The error before and after",
+                           "What was found", "Before and after in figures", "What cannot be told apart",
+                           "What remains", "Applying it", "ifog denoise", "RMS of 10 s means",
+                           "bench &amp; co", "&lt;2 pi reset&gt;", "A capture with faster changes", "τ"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=\"(?!#|data:,)")));
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("url("), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_LT(html.size(), 2'000'000U);
+  // For the browser's test.
+  if (const char* path = std::getenv("IFOG_REPORT_OUTPUT")) std::ofstream(path) << html;
+}
+
+TEST(ReportPage, NothingFoundIsAResult) {
+  ifog::example::Example e = ifog::example::make();
+  e.diagnosis.effects.clear();
+  e.diagnosis.series.contribution_radps.clear();
+  e.diagnosis.indistinguishable.clear();
+  e.diagnosis.unexplained = {};
+  const std::string html = page_of(e);
+  EXPECT_NE(html.find("Nothing was found"), std::string::npos);
+  EXPECT_NE(html.find("looks like noise"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,120 @@
+#include "tools/report/account.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "tools/report/text.h"
+#include "tools/report/words.h"
+
+namespace ifog::report {
+namespace {
+
+double averaging_time(const std::string& key) {
+  const auto at = key.find_first_of("0123456789");
+  return at == std::string::npos ? 0.0 : std::strtod(key.c_str() + at, nullptr);
+}
+
+int family(const std::string& key) {
+  if (key.rfind("residual", 0) == 0) return 0;
+  if (key.rfind("rms", 0) == 0) return 1;
+  if (key.rfind("adev", 0) == 0) return 2;
+  return 3;
+}
+
+// The averaging time at which the effects mattered most.
+std::string most_improved(const Diagnosis& d) {
+  std::string best;
+  double least = 1.0;
+  for (const auto& [key, before] : d.before) {
+    const auto after = d.after.find(key);
+    if (family(key) > 1 || after == d.after.end() || !(before > 0.0)) continue;
+    if (after->second / before < least) {
+      least = after->second / before;
+      best = key;
+    }
+  }
+  return best;
+}
+
+std::string count_words(std::size_t count) {
+  static const char* kWords[] = {"No effect",     "One effect",   "Two effects",
+                                 "Three effects", "Four effects", "Five effects"};
+  return count < 6 ? kWords[count] : std::to_string(count) + " effects";
+}
+
+}  // namespace
+
+std::string sentence(const std::string& text) {
+  if (text.empty()) return "";
+  std::string out = text;
+  out[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[0])));
+  if (out.back() != '.' && out.back() != '!' && out.back() != '?') out += '.';
+  return out;
+}
+
+std::string probability(double p) { return p < 1e-6 ? "below one in a million" : number(p, 2); }
+
+std::vector<std::string> in_reading_order(const std::map<std::string, double>& figures) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : figures) keys.push_back(key);
+  std::stable_sort(keys.begin(), keys.end(), [](const std::string& a, const std::string& b) {
+    return family(a) != family(b) ? family(a) < family(b) : averaging_time(a) < averaging_time(b);
+  });
+  return keys;
+}
+
+std::string account_of_change(const Diagnosis& d, const std::string& key) {
+  const auto before = d.before.find(key), after = d.after.find(key);
+  if (before == d.before.end() || after == d.after.end()) return "";
+  const Figure f = figure(key);
+  const double change = after->second / before->second - 1.0;
+  return "The " + f.label +
+         (change < -0.005  ? " falls from "
+          : change > 0.005 ? " rises from "
+                           : " stays: from ") +
+         number(before->second * f.scale) + " to " + number(after->second * f.scale) + " " + f.unit +
+         (std::abs(change) > 0.005
+              ? " (" + std::string(change > 0 ? "+" : "") + number(100.0 * change, 2) + " %)"
+              : "") +
+         ".";
+}
+
+std::string account(const Diagnosis& d) {
+  if (d.effects.empty()) {
+    return "<p><strong>Nothing was found.</strong> No channel, and no pattern in time, explains more of this "
+           "error than "
+           "chance would. That is a result: what is left is the sensor's own noise, and a correction would "
+           "only add to "
+           "it.</p>\n<p>" +
+           account_of_rest(d) + "</p>\n";
+  }
+  std::string out = "<p><strong>" + count_words(d.effects.size()) +
+                    (d.effects.size() == 1 ? " was" : " were") + " found.</strong> ";
+  for (const FoundEffect& found : d.effects)
+    out += escaped(sentence(effect_words(found.effect) +
+                            (found.effect.meaning.empty() ? "" : " – " + found.effect.meaning))) +
+           " ";
+  out += "</p>\n";
+  const std::string key = most_improved(d);
+  if (!key.empty())
+    out += "<p>On data held out of the fit: " + escaped(account_of_change(d, key)) + " " +
+           (key == "residual_rms_radps" ? "" : escaped(account_of_change(d, "residual_rms_radps"))) +
+           "</p>\n";
+  if (!d.indistinguishable.empty())
+    out += "<p>Not every name is certain: see <em>What cannot be told apart</em>.</p>\n";
+  return out + "<p>" + account_of_rest(d) + "</p>\n";
+}
+
+std::string account_of_rest(const Diagnosis& d) {
+  const Unexplained& u = d.unexplained;
+  if (u.kind.empty() || u.kind == "nothing")
+    return "What remains looks like noise: nothing in it asks for another effect.";
+  std::string kind = u.kind;
+  std::replace(kind.begin(), kind.end(), '_', ' ');
+  return "Something remains unexplained: <strong>" + escaped(kind) + "</strong>, " +
+         number(100.0 * u.fraction, 2) + " % of the variance that is neither white noise nor explained." +
+         (u.hint.empty() ? "" : " " + escaped(sentence(u.hint)));
+}
+
+}  // namespace ifog::report

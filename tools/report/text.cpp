@@ -1,0 +1,103 @@
+#include "tools/report/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace ifog::report {
+namespace {
+
+std::string printed(const char* format, int digits, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, digits, value);
+  return text;
+}
+
+// A true minus sign, and powers of ten as people write them.
+std::string typeset(const std::string& plain) {
+  std::string out;
+  for (const char c : plain) {
+    if (c == '-')
+      out += "−";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string superscript(int exponent) {
+  static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string out = exponent < 0 ? "⁻" : "";
+  const std::string plain = std::to_string(std::abs(exponent));
+  for (const char c : plain) out += kDigits[c - '0'];
+  return out;
+}
+
+int decade(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string number(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  // Rounding may reach the next decade: 999.9 to three digits is 1000.
+  const double rounded = std::strtod(printed("%.*e", digits - 1, value).c_str(), nullptr);
+  const int power = decade(rounded);
+  if (power >= -4 && power < 6) return typeset(printed("%.*f", std::max(0, digits - 1 - power), rounded));
+  return typeset(printed("%.*f", digits - 1, rounded / std::pow(10.0, power))) + " × 10" + superscript(power);
+}
+
+std::string with_error(double value, double std_error) {
+  if (!(std_error > 0.0) || !std::isfinite(value)) return number(value, 4);
+  const double largest = std::max(std::abs(value), std_error);
+  const int power = decade(largest);
+  const bool plain = power >= -4 && power < 6;
+  const double scale = plain ? 1.0 : std::pow(10.0, power);
+  const int decimals = std::clamp(1 - decade(std_error / scale), 0, 12);
+  const std::string both = typeset(printed("%.*f", decimals, value / scale)) + " ± " +
+                           printed("%.*f", decimals, std_error / scale);
+  return plain ? both : "(" + both + ") × 10" + superscript(power);
+}
+
+std::string duration(double seconds) {
+  const TimeUnit unit = time_unit(seconds);
+  std::string text = number(seconds / unit.seconds, 3);
+  while (text.find('.') != std::string::npos && text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text + " " + unit.name;
+}
+
+TimeUnit time_unit(double span_s) {
+  if (span_s >= 2.0 * 3600.0) return {3600.0, "h"};
+  if (span_s >= 10.0 * 60.0) return {60.0, "min"};
+  return {1.0, "s"};
+}
+
+}  // namespace ifog::report

@@ -1,0 +1,29 @@
+// Numbers and words for people: HTML escaping, significant digits, the field's units.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace ifog::report {
+
+std::string escaped(std::string_view text);
+
+// `digits` significant digits, no exponent where it reads well without: "0.0108", "440", "3.1 × 10⁻⁷".
+std::string number(double value, int digits = 3);
+
+// value ± its standard error, both to the error's second digit: "−79.20 ± 0.15".
+std::string with_error(double value, double std_error);
+
+inline constexpr double kDegreePerHour = 4.848136811095360e-06;  // rad/s
+
+// "2.1 h", "35 min", "12 s".
+std::string duration(double seconds);
+
+// The scale and name a time axis of this length is best read in.
+struct TimeUnit {
+  double seconds;
+  const char* name;
+};
+TimeUnit time_unit(double span_s);
+
+}  // namespace ifog::report

@@ -1,0 +1,29 @@
+// Names of channels, effects and figures as a person reads them.
+#pragma once
+
+#include <string>
+
+#include "filters/model/model.h"
+
+namespace ifog::report {
+
+std::string channel_label(const std::string& column);  // "temperature (°C)"
+std::string channel_words(const std::string& column);  // "temperature"
+std::string abscissa_label(const Effect& effect);      // what its effect is drawn against
+std::string effect_words(const Effect& effect);        // "quadratic in temperature", "line at 3.31 Hz"
+
+// A figure of `before` and `after`: its label and its value in the field's unit, from the key's unit ending.
+struct Figure {
+  std::string label, unit;
+  double scale;  // of the SI value
+};
+Figure figure(const std::string& key);
+
+// "rad/s/degC" -> value scaled to °/h and "°/h/°C".
+struct FieldUnit {
+  double scale;
+  std::string unit;
+};
+FieldUnit field_unit(const std::string& si);
+
+}  // namespace ifog::report
