@@ -65,7 +65,7 @@ std::string abscissa_label(const Effect& e) {
   if (form == Form::kRate) own = "d/dt of " + words + " (" + unit + "/s)";
   if (form == Form::kSecondRate) own = "second derivative of " + words + " (" + unit + "/s²)";
   if (form == Form::kLagged) {
-    const double lag = parameter(e, "lag_s");
+    const double lag = parameter(e, "time_constant_s");
     own = words + (lag > 0.0 ? ", lagged " + duration(lag) : ", lagged") +
           (unit.empty() ? "" : " (" + unit + ")");
   }

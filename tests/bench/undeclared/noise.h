@@ -17,8 +17,8 @@ struct NoiseTruth {
 };
 
 // White, random walk and 1/f, the last as a sum of Gauss-Markov processes a factor of 2.5 apart in time
-// constant, from one sample to ten records: the one-sided density B^2 / (2 pi f) within 5 % up to a sixtieth of
-// the sample rate. Above that the white noise hides it.
+// constant, from one sample to ten records: the one-sided density B^2 / (2 pi f) within 5 % up to a sixtieth
+// of the sample rate. Above that the white noise hides it.
 class NoiseModel {
  public:
   NoiseModel(const NoiseTruth& truth, std::size_t samples, double dt_s);

@@ -46,7 +46,7 @@ Diagnose oracle_diagnosis(const Sensor& sensor) {
     for (std::size_t e = 0; e < sensor.effects.size(); ++e) {
       const auto i = static_cast<Eigen::Index>(e);
       const TrueEffect& truth = sensor.effects[e];
-      FoundEffect found;
+      Claim found;
       found.effect.form = truth.form;
       found.effect.channel = truth.channel;
       found.effect.with_form = truth.with_form;

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "tests/bench/undeclared/oracle_diagnosis.h"
+#include "tests/bench/undeclared/project_diagnosis.h"
 #include "tests/bench/undeclared/tally.h"
 
 using namespace ifog::undeclared;
@@ -16,7 +17,7 @@ struct Options {
   int with = 1000, without = 1000, captures = 1;
   std::uint64_t seed = 1;
   double sigma_low = 12.0, sigma_high = 80.0;
-  std::string kind, method = "oracle";
+  std::string kind, method = "ifog";
   bool curve = false, quiet = false;
 };
 
@@ -51,7 +52,7 @@ int main(int argc, char** argv) {
   app.add_option("--sigma-low", o.sigma_low);
   app.add_option("--sigma-high", o.sigma_high);
   app.add_option("--kind", o.kind, "only this kind, as named in the table");
-  app.add_option("--method", o.method)->check(CLI::IsMember({"oracle", "blind"}));
+  app.add_option("--method", o.method)->check(CLI::IsMember({"ifog", "oracle", "blind"}));
   app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
   app.add_flag("--quiet", o.quiet, "no list of failures");
   CLI11_PARSE(app, argc, argv);
@@ -60,7 +61,9 @@ int main(int argc, char** argv) {
   const auto run = [&](int count, bool with_effect) {
     for (int i = 0; i < count; ++i) {
       const Sensor sensor = sensor_at(o, i, with_effect);
-      scores.push_back(score(sensor, o.method == "oracle" ? oracle_diagnosis(sensor) : blind_diagnosis()));
+      scores.push_back(score(sensor, o.method == "ifog"     ? project_diagnosis()
+                                     : o.method == "oracle" ? oracle_diagnosis(sensor)
+                                                            : blind_diagnosis()));
       if ((i + 1) % 50 == 0) std::fprintf(stderr, "%d of %d\n", i + 1, count);
     }
   };

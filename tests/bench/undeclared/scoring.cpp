@@ -10,7 +10,6 @@ namespace {
 using Series = std::vector<double>;
 constexpr double kInvisible = 3.0;  // sigma
 constexpr int kNextCapture = 50;    // any number above the captures diagnosed
-constexpr double kAlign_s = 600.0;
 
 double mean(const Series& x) {
   double sum = 0.0;
@@ -31,7 +30,7 @@ const ModelParameter* parameter(const Effect& e, const std::string& name) {
 }
 
 const char* shape_name(const TrueEffect& truth) {
-  if (truth.form == "lagged") return "lag_s";
+  if (truth.form == "lagged") return "time_constant_s";
   if (truth.form == "line") return "frequency_hz";
   if (truth.form == "warm_up") return "time_constant_s";
   if (truth.form == "step") return "time_s";
@@ -116,10 +115,33 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
 
 // Hysteresis is right when it is called unexplained; effects in its own channel describe a part of it.
 void score_uncovered(Score& s, const Sensor& sensor, const Finding& finding) {
-  for (const FoundEffect& f : finding.effects)
+  for (const Claim& f : finding.effects)
     if (f.effect.channel != sensor.effects[0].channel || !f.effect.with_channel.empty()) ++s.extra;
   s.exact = finding.unexplained ? 1 : 0;
   s.missed = 1 - s.exact;
+}
+
+// Of the longest time predicted that the capture holds, the bias taken at its start.
+std::optional<double> heading_square(const HeadingPrediction& predicted, const Series& noise,
+                                     const Series& difference, double dt_s) {
+  const auto align = static_cast<std::size_t>(std::lround(predicted.aligned_s / dt_s));
+  std::size_t last = 0, end = 0;
+  for (std::size_t i = 0; i < predicted.after_s.size(); ++i) {
+    const std::size_t k = align + static_cast<std::size_t>(std::lround(predicted.after_s[i] / dt_s));
+    if (k > noise.size() || k <= end) continue;
+    last = i;
+    end = k;
+  }
+  if (align == 0 || end == 0) return std::nullopt;
+  double bias = 0.0, heading = 0.0;
+  for (std::size_t k = 0; k < end; ++k) {
+    const double left = noise[k] - difference[k];
+    if (k < align)
+      bias += left / static_cast<double>(align);
+    else
+      heading += (left - bias) * dt_s;
+  }
+  return heading * heading / (predicted.sigma_rad[last] * predicted.sigma_rad[last]);
 }
 
 void score_next_capture(Score& s, const Sensor& sensor, const Finding& finding) {
@@ -127,7 +149,7 @@ void score_next_capture(Score& s, const Sensor& sensor, const Finding& finding) 
   Series difference(sensor.samples, 0.0), truth(sensor.samples, 0.0);
   for (const Series& e : next.effects)
     for (std::size_t k = 0; k < truth.size(); ++k) truth[k] += e[k];
-  for (const FoundEffect& f : finding.effects) {
+  for (const Claim& f : finding.effects) {
     const Series estimate = f.waveform(next.capture);
     for (std::size_t k = 0; k < truth.size(); ++k) difference[k] += estimate[k];
   }
@@ -143,18 +165,7 @@ void score_next_capture(Score& s, const Sensor& sensor, const Finding& finding) 
   s.shape_error = rms(error, mean(error)) / scale;
   s.effect_size = rms(effect, mean(effect)) / scale;
 
-  if (!finding.heading_sigma || !s.transferable) return;
-  const auto align = static_cast<std::size_t>(kAlign_s / sensor.dt_s);
-  double bias = 0.0, heading = 0.0;
-  for (std::size_t k = 0; k < truth.size(); ++k) {
-    const double left = next.noise[k] - difference[k];
-    if (k < align)
-      bias += left / static_cast<double>(align);
-    else
-      heading += (left - bias) * sensor.dt_s;
-  }
-  const double predicted = finding.heading_sigma(next.capture, kAlign_s);
-  s.heading_square = heading * heading / (predicted * predicted);
+  if (s.transferable) s.heading_square = heading_square(finding.heading, next.noise, difference, sensor.dt_s);
 }
 
 }  // namespace
@@ -193,7 +204,7 @@ Score score(const Sensor& sensor, const Diagnose& diagnose) {
   const Finding finding = diagnose(captures);
   s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   s.unexplained = finding.unexplained;
-  for (const FoundEffect& f : finding.effects) s.names += (s.names.empty() ? "" : " + ") + name_of(f.effect);
+  for (const Claim& f : finding.effects) s.names += (s.names.empty() ? "" : " + ") + name_of(f.effect);
   if (sensor.kind == Kind::kUncovered)
     score_uncovered(s, sensor, finding);
   else

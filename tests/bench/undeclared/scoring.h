@@ -13,23 +13,22 @@
 #include <string>
 #include <vector>
 
-#include "filters/model/model.h"
+#include "filters/diagnosis/diagnose.h"
 #include "tests/bench/undeclared/sensor.h"
 
 namespace ifog::undeclared {
 
-struct FoundEffect {
+struct Claim {
   Effect effect;
-  // rad/s over another capture of the same sensor, causal, as the daemon would subtract it.
+  // rad/s over a capture, causal, as the daemon would subtract it; over those diagnosed also what only those
+  // had.
   std::function<std::vector<double>(const Capture&)> waveform;
 };
 
 struct Finding {
-  std::vector<FoundEffect> effects;
-  bool unexplained = false;  // "something is left that no form describes"
-  // Standard deviation of the heading error, rad, that the sensor's model predicts for a capture, its
-  // switch-on bias being estimated from `align_s` at the start. Empty when the diagnosis does not predict it.
-  std::function<double(const Capture&, double align_s)> heading_sigma;
+  std::vector<Claim> effects;
+  bool unexplained = false;   // "something is left that no form describes"
+  HeadingPrediction heading;  // empty when none is made
 };
 
 using Diagnose = std::function<Finding(const std::vector<Capture>&)>;
@@ -58,7 +57,6 @@ struct Score {
   [[nodiscard]] bool right() const { return missed == 0; }
 };
 
-// `align_s`: how long the switch-on bias is averaged before the heading is counted.
 Score score(const Sensor& sensor, const Diagnose& diagnose);
 
 // Means of consecutive blocks of `seconds`; the incomplete last one is left out.

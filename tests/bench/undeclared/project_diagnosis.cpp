@@ -1,0 +1,99 @@
+#include "tests/bench/undeclared/project_diagnosis.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "filters/effects/compensator.h"
+#include "filters/effects/form.h"
+
+namespace ifog::undeclared {
+namespace {
+
+using Series = std::vector<double>;
+
+Series correction(const Model& model, const Capture& capture) {
+  Compensator compensator(model, {""});
+  std::vector<const Series*> columns;
+  for (const std::string& name : compensator.channels())
+    for (const CaptureColumn& c : capture.channels)
+      if (c.name == name) columns.push_back(&c.values);
+  Series out(capture.size()), now(columns.size());
+  CompensatorInput in;
+  CompensatorOutput result;
+  in.dt_s = capture.time_s[1] - capture.time_s[0];
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    for (std::size_t c = 0; c < now.size(); ++c) now[c] = (*columns[c])[k];
+    in.channels = now;
+    in.rate_radps[0] = capture.rate_radps[0][k];
+    compensator.step(in, result);
+    out[k] = result.correction_radps[0];
+  }
+  return out;
+}
+
+// A line's phase and a step's moment belong to the captures diagnosed; the daemon has no use for them.
+Series event(const Effect& effect, const Capture& capture) {
+  Series out(capture.size(), 0.0);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double t = capture.time_s[k];
+    if (effect.form == "line") {
+      const double turn = 2.0 * std::numbers::pi * parameter(effect, "frequency_hz") * t;
+      out[k] = parameter(effect, "cosine") * std::cos(turn) + parameter(effect, "sine") * std::sin(turn);
+    } else if (effect.form == "step") {
+      out[k] = t >= parameter(effect, "time_s") ? parameter(effect, "coefficient") : 0.0;
+    } else if (effect.form == "rate_ramp") {
+      out[k] = t * parameter(effect, "coefficient");
+    } else if (effect.form == "warm_up") {
+      out[k] = parameter(effect, "coefficient") * std::exp(-t / parameter(effect, "time_constant_s"));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+ifog::Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
+  ifog::Record record;
+  record.name = name;
+  record.time_s = capture.time_s;
+  record.rate_radps = capture.rate_radps[axis];
+  record.reference_radps = capture.reference_rate_radps[axis];
+  for (const CaptureColumn& c : capture.channels) record.channels.push_back({c.name, c.values});
+  return record;
+}
+
+Claim claim_of(const Effect& effect, const std::vector<ChannelRange>& ranges,
+               const std::vector<Capture>& diagnosed) {
+  Model model;
+  model.effects = {effect};
+  model.ranges = ranges;
+  const bool once = !carries_over(form_named(effect.form).value());
+  std::vector<double> first_rates;
+  for (const Capture& c : diagnosed) first_rates.push_back(c.rate_radps[0].front());
+  return {effect, [=](const Capture& capture) {
+            if (!once) return correction(model, capture);
+            for (const double rate : first_rates)
+              if (rate == capture.rate_radps[0].front()) return event(effect, capture);
+            return Series(capture.size(), 0.0);
+          }};
+}
+
+Diagnose project_diagnosis() {
+  return [](const std::vector<Capture>& captures) {
+    std::vector<ifog::Record> records;
+    for (std::size_t c = 0; c < captures.size(); ++c)
+      records.push_back(record_of(captures[c], "capture " + std::to_string(c + 1)));
+    const Diagnosis diagnosis = diagnose(records, {});
+    Finding finding;
+    finding.unexplained = diagnosis.unexplained.kind != "nothing" && !diagnosis.unexplained.kind.empty();
+    finding.heading = diagnosis.heading;
+    for (const FoundEffect& found : diagnosis.effects) {
+      const std::optional<Form> form = form_named(found.effect.form);
+      if (form && describes_noise(*form)) continue;  // a word about the noise, not an effect
+      finding.effects.push_back(claim_of(found.effect, diagnosis.ranges, captures));
+    }
+    return finding;
+  };
+}
+
+}  // namespace ifog::undeclared
