@@ -1,8 +1,10 @@
 // ifog diagnose: what the error is made of, what to correct, and what stays.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 
 #include "drivers/capture/capture.h"
@@ -14,13 +16,14 @@
 #include "tools/ifog/diagnosis_json.h"
 #include "tools/ifog/diagnosis_text.h"
 #include "tools/ifog/progress.h"
+#include "tools/report/diagnosis_page.h"
 
 namespace ifog::tools {
 namespace {
 
 struct Arguments {
   std::vector<std::string> captures;
-  std::string model, write_model, json;
+  std::string model, write_model, json, report;
   std::vector<std::string> axes;
   double significance = 0.01;
   double fit_from = 0.0, fit_to = 1.0;
@@ -125,6 +128,25 @@ Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& argumen
   return model;
 }
 
+void write_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
+                  const Arguments& arguments) {
+  report::Page page;
+  page.captures = arguments.captures;
+  page.sensor = std::filesystem::path(arguments.captures.front()).filename().string();
+  page.model_path = arguments.write_model;
+  page.made = today() + " by ifog " IFOG_VERSION;
+  const std::vector<std::string>& axes = captures.front().axes;
+  for (const AxisDiagnosis& each : found) {
+    report::PageAxis axis{each.axis, &each.diagnosis, {}};
+    const auto index =
+        static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
+    for (std::size_t c = 0; c < captures.size(); ++c)
+      axis.records.push_back(record_of(captures[c], arguments.captures[c], index));
+    page.axes.push_back(std::move(axis));
+  }
+  write_text_file(arguments.report, report::diagnosis_page(page));
+}
+
 void run(const Arguments& arguments) {
   std::vector<Capture> captures;
   for (const std::string& path : arguments.captures) captures.push_back(read_capture(path));
@@ -140,6 +162,7 @@ void run(const Arguments& arguments) {
   }
   if (!arguments.json.empty()) write_text_file(arguments.json, diagnosis_json(found).dump(2) + "\n");
   if (!arguments.write_model.empty()) write_model(model_of(found, arguments, model), arguments.write_model);
+  if (!arguments.report.empty()) write_report(captures, found, arguments);
 }
 
 }  // namespace
@@ -156,6 +179,7 @@ void add_diagnose(CLI::App& app) {
       ->check(CLI::ExistingFile);
   command->add_option("--write-model", arguments->write_model, "write the model with what was found");
   command->add_option("--json", arguments->json, "write the diagnosis as JSON");
+  command->add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
   command
       ->add_option("--significance", arguments->significance,
                    "chance of a false effect, after correction for all tried")
