@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "filters/effects/form.h"
 #include "tools/report/text.h"
 #include "tools/report/words.h"
 
@@ -91,10 +92,20 @@ std::string account(const Diagnosis& d) {
   }
   std::string out = "<p><strong>" + count_words(d.effects.size()) +
                     (d.effects.size() == 1 ? " was" : " were") + " found.</strong> ";
+  std::string lines;  // a comb of lines is one finding to the reader
+  std::size_t line_count = 0;
   for (const FoundEffect& found : d.effects)
+    if (found.effect.form == "line") {
+      lines += (line_count == 0 ? "" : ", ") + number(parameter(found.effect, "frequency_hz"), 4);
+      ++line_count;
+    }
+  for (const FoundEffect& found : d.effects) {
+    if (found.effect.form == "line" && line_count > 2) continue;
     out += escaped(sentence(effect_words(found.effect) +
                             (found.effect.meaning.empty() ? "" : " – " + found.effect.meaning))) +
            " ";
+  }
+  if (line_count > 2) out += std::to_string(line_count) + " lines, at " + lines + " Hz. ";
   out += "</p>\n";
   const std::string key = most_improved(d);
   if (!key.empty())

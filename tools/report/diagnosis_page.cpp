@@ -22,6 +22,17 @@ Series scaled(Series x, double scale) {
   return x;
 }
 
+// About its mean, which is the switch-on bias.
+Series centred(Series x, double scale) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double value : x)
+    if (std::isfinite(value)) sum += value, ++count;
+  for (double& value : x)
+    value = (value - sum / static_cast<double>(std::max<std::size_t>(count, 1))) * scale;
+  return x;
+}
+
 std::string figure_html(const std::string& svg, const std::string& caption) {
   if (svg.empty()) return "";
   return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
@@ -46,8 +57,8 @@ std::string time_picture(const Diagnosis& d) {
   Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
               {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
   const Series t = scaled(s.time_s, 1.0 / unit.seconds);
-  chart.line(Role::kBefore, "before", t, scaled(s.before_radps, 1.0 / kDegreePerHour));
-  if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, scaled(s.after_radps, 1.0 / kDegreePerHour));
+  chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
+  if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
   for (const double burst : d.unexplained.times_s) chart.mark_x(burst / unit.seconds, "burst");
   return figure_html(chart.svg(), "The error, " + block_words(s) + ", about its mean.");
 }
@@ -104,16 +115,9 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
   const Series t = scaled(s.time_s, 1.0 / unit.seconds);
   const Series& part = s.contribution_radps[index];
-  double level = 0.0;
-  std::size_t count = 0;
-  for (const double v : part)
-    if (std::isfinite(v)) level += v, ++count;
-  level /= static_cast<double>(std::max<std::size_t>(count, 1));
-  Series effect(part), with(part);
-  for (std::size_t k = 0; k < part.size(); ++k) {
-    effect[k] -= level;
-    with[k] = s.after_radps[k] + effect[k];
-  }
+  const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
+  Series with(effect);
+  for (std::size_t k = 0; k < with.size(); ++k) with[k] += after[k];
   std::size_t turns = 0;  // an effect faster than a pixel is only a bar of ink
   for (std::size_t k = 2; k < part.size(); ++k)
     if ((effect[k] - effect[k - 1]) * (effect[k - 1] - effect[k - 2]) < 0.0) ++turns;

@@ -80,8 +80,8 @@ Series temperature(const OperatingRange& range, std::size_t n, double dt_s, Draw
   }
   x = low_passed(x, draw.uniform(20.0, 60.0), dt_s);
   const double span = range.temperature_high - range.temperature_low;
-  fit_into(x, range.temperature_low + span * draw.uniform(0.0, 0.15),
-           range.temperature_high - span * draw.uniform(0.0, 0.15));
+  fit_into(x, range.temperature_low + span * draw.uniform(0.0, range.margin),
+           range.temperature_high - span * draw.uniform(0.0, range.margin));
   return x;
 }
 

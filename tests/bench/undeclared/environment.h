@@ -9,10 +9,13 @@
 
 namespace ifog::undeclared {
 
-// Limits the sensor lives between; every capture of it covers most of them in its own way.
+// Limits the sensor lives between. The captures diagnosed go through all of them, as a calibration does; any
+// other capture stays within, so that what is judged is the effect and not the hold at the edge of the fitted
+// range.
 struct OperatingRange {
   double temperature_low = 15.0, temperature_high = 45.0;  // degC
   double temperature_step = 0.0;                           // of the recorded channel, degC; 0: hundredths
+  double margin = 0.0;  // of the temperature span, left out at each end by up to this share
   bool has_reference = false;
   double rate_max = 1.0;  // rad/s, of the motion under the reference
 };

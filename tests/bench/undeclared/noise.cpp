@@ -75,6 +75,12 @@ std::vector<double> NoiseModel::whiten(const std::vector<double>& column) const 
   return out;
 }
 
+double NoiseModel::log_determinant() const {
+  double sum = 0.0;
+  for (const double sigma : innovation_sigma_) sum += 2.0 * std::log(sigma);
+  return sum;
+}
+
 std::vector<double> Visibility::whitened(const Column& column) const {
   std::vector<double> out;
   for (const std::vector<double>& capture : column) {

@@ -29,6 +29,7 @@ class NoiseModel {
   // The innovations of a column, each over its own standard deviation: unit white noise when the column is
   // this noise.
   [[nodiscard]] std::vector<double> whiten(const std::vector<double>& column) const;
+  [[nodiscard]] double log_determinant() const;  // of the covariance of all samples
 
  private:
   std::size_t samples_;

@@ -167,7 +167,9 @@ Series draw_noise(const Sensor& s, const Environment& env, int capture) {
 
 Environment environment(const Sensor& s, int capture) {
   Draw draw(s.seed, stream(s, kEnvironmentStream, capture));
-  return draw_environment(s.range, s.samples, s.dt_s, s.lively, draw);
+  OperatingRange range = s.range;
+  range.margin = capture < s.captures ? 0.0 : 0.15;
+  return draw_environment(range, s.samples, s.dt_s, s.lively, draw);
 }
 
 double line_phase(const Sensor& s, int capture) {

@@ -67,6 +67,10 @@ Totals total(const std::vector<Score>& scores) {
     if (s.heading_square) {
       t.heading_square += *s.heading_square;
       ++t.headings;
+      if (effect_free(s)) {
+        t.heading_square_free += *s.heading_square;
+        ++t.headings_free;
+      }
     }
     for (const Parameter& p : s.parameters) {
       inside += std::abs(p.error_in_sigma) <= 1.96 ? 1 : 0;
@@ -99,6 +103,7 @@ Totals total(const std::vector<Score>& scores) {
   t.shape_error_p90 = quantile(shape, 0.9);
   t.coverage = t.intervals == 0 ? std::nan("") : static_cast<double>(inside) / t.intervals;
   t.heading_square = t.headings == 0 ? std::nan("") : t.heading_square / t.headings;
+  t.heading_square_free = t.headings_free == 0 ? std::nan("") : t.heading_square_free / t.headings_free;
   return t;
 }
 
@@ -147,8 +152,10 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
   if (t.intervals > 0)
     line(out, "95 %% intervals  hold %.1f %% of %d (target 93 to 97)", 100.0 * t.coverage, t.intervals);
   if (t.headings > 0)
-    line(out, "heading error    found / predicted, square: %.3f over %d captures (target 0.9 to 1.1)",
-         t.heading_square, t.headings);
+    line(out,
+         "heading error    found / predicted, square: %.3f over %d captures (target 0.9 to 1.1), effect-free "
+         "%.3f",
+         t.heading_square, t.headings, t.heading_square_free);
   line(out, "%.2f s a sensor", t.seconds_each);
 }
 

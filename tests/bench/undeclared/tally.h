@@ -17,8 +17,8 @@ struct Totals {
   double shape_error_median = 0.0, shape_error_p90 = 0.0;  // the same without the mean
   double coverage = 0.0;                                   // of 95 % intervals
   int intervals = 0;
-  double heading_square = 0.0;  // mean
-  int headings = 0;
+  double heading_square = 0.0, heading_square_free = 0.0;  // means: of all, of effect-free sensors
+  int headings = 0, headings_free = 0;
   double seconds_each = 0.0;
 };
 

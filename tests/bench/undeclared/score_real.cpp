@@ -1,0 +1,171 @@
+// Real noise instead of simulated: negative controls, with channels borrowed from other captures, where every
+// effect traced to a channel is a false alarm; and effects implanted in it, which are to be found.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "tests/bench/undeclared/project_diagnosis.h"
+
+using namespace ifog::undeclared;
+using Series = std::vector<double>;
+
+namespace {
+
+constexpr double kStep_s = 0.5;
+
+struct Source {
+  std::string name;
+  Series rate;  // means over kStep_s
+};
+
+Series resampled(const ifog::Capture& c, const Series& x) {
+  const auto count = static_cast<std::size_t>((c.time_s.back() - c.time_s.front()) / kStep_s);
+  Series sum(count, 0.0), n(count, 0.0), out;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    const auto block = static_cast<std::size_t>((c.time_s[k] - c.time_s.front()) / kStep_s);
+    if (block < count && std::isfinite(x[k])) sum[block] += x[k], n[block] += 1.0;
+  }
+  for (std::size_t b = 0; b < count; ++b)
+    out.push_back(n[b] > 0.0 ? sum[b] / n[b] : out.empty() ? 0.0 : out.back());
+  return out;
+}
+
+// A piece of a foreign column, from anywhere, stretched to `samples`.
+Series borrowed(const Series& column, std::size_t samples, Draw& draw) {
+  const double length = static_cast<double>(column.size()) * draw.uniform(0.3, 1.0);
+  const double start = draw.uniform(0.0, static_cast<double>(column.size()) - length);
+  const bool backwards = draw.chance(0.5);
+  Series out(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double share = static_cast<double>(backwards ? samples - 1 - k : k) / static_cast<double>(samples);
+    const double at = start + share * (length - 1.0);
+    const auto low = std::min(static_cast<std::size_t>(at), column.size() - 2);
+    const double part = at - static_cast<double>(low);
+    out[k] = column[low] * (1.0 - part) + column[low + 1] * part;
+  }
+  return out;
+}
+
+// White noise, flicker and random walk by maximum likelihood over a grid of their ratios.
+NoiseTruth fitted_noise(const Series& rate) {
+  Series x(rate);
+  double mean = 0.0;
+  for (const double v : rate) mean += v / static_cast<double>(rate.size());
+  for (double& v : x) v -= mean;
+  NoiseTruth best;
+  double best_cost = std::numeric_limits<double>::infinity();
+  for (const double crossing_s : {30.0, 100.0, 300.0, 1000.0, 1e4, 1e6})
+    for (const double flicker_s : {20.0, 60.0, 200.0, 1000.0, 1e6}) {
+      NoiseTruth unit{1.0, 1.0 / (0.664 * std::sqrt(flicker_s)), std::sqrt(3.0) / crossing_s};
+      const NoiseModel model(unit, x.size(), kStep_s);
+      double square = 0.0;
+      for (const double w : model.whiten(x)) square += w * w;
+      const double variance = square / static_cast<double>(x.size());
+      const double cost = static_cast<double>(x.size()) * std::log(variance) + model.log_determinant();
+      if (cost >= best_cost) continue;
+      best_cost = cost;
+      const double scale = std::sqrt(variance);
+      best = {unit.N * scale, unit.B * scale, unit.K * scale};
+    }
+  return best;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string folder;
+  int trials = 100;
+  CLI::App app{"score the diagnosis on real noise"};
+  app.add_option("folder", folder, "of the measured captures")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--trials", trials, "of each of: negative controls, implanted effects");
+  CLI11_PARSE(app, argc, argv);
+
+  const auto read = [&](const char* name) { return ifog::read_capture(folder + "/" + name + ".csv.gz"); };
+  std::vector<Source> sources;
+  std::vector<std::pair<std::string, Series>> columns;  // to borrow from
+  const ifog::Capture bridge = read("blueseis_bridge_rbam2"), vehicle = read("rlg_vehicle"),
+                      mems = read("adis16405_imu1"), table = read("fog_rate_table");
+  sources.push_back({"blueseis_bridge_rbam2", resampled(bridge, bridge.rate_radps[0])});
+  sources.push_back({"adis16405_imu1", resampled(mems, mems.rate_radps[0])});
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Series all = resampled(vehicle, vehicle.rate_radps[a]);
+    sources.push_back(
+        {"rlg_vehicle " + vehicle.axes[a], Series(all.begin() + 1100, all.end())});  // undisturbed
+  }
+  for (const ifog::CaptureColumn& c : vehicle.channels)
+    columns.emplace_back(c.name, resampled(vehicle, c.values));
+  columns.emplace_back("temperature_degC", table.channels[0].values);
+  columns.emplace_back("table_rate_radps", table.reference_rate_radps[0]);
+  Series wander = resampled(bridge, bridge.rate_radps[0]);
+  columns.emplace_back("other_gyro", low_passed(wander, 60.0, kStep_s));
+
+  int alarms = 0, with_alarm = 0, right = 0, exact = 0, wrong = 0;
+  for (int trial = 0; trial < 2 * trials; ++trial) {
+    const bool implant = trial >= trials;
+    Draw draw(static_cast<std::uint64_t>(trial), 77);
+    const Source& source = sources[static_cast<std::size_t>(trial) % sources.size()];
+    const std::size_t samples = std::min<std::size_t>(source.rate.size(), 5000);
+    const auto from =
+        static_cast<std::size_t>(draw.uniform() * static_cast<double>(source.rate.size() - samples));
+    ifog::Capture c;
+    c.axes = {""};
+    for (std::size_t k = 0; k < samples; ++k) c.time_s.push_back(kStep_s * static_cast<double>(k));
+    c.rate_radps = {Series(source.rate.begin() + static_cast<std::ptrdiff_t>(from),
+                           source.rate.begin() + static_cast<std::ptrdiff_t>(from + samples))};
+    c.reference_rate_radps = {{}};
+    for (const auto& [name, values] : columns)
+      if (name != "other_gyro" || !source.name.starts_with("blueseis"))
+        c.channels.push_back({name, borrowed(values, samples, draw)});
+    const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
+    const char* forms[] = {"linear", "rate", "lagged"};
+    const std::string form = forms[draw.below(3)];
+    if (implant) {
+      const Series& x = c.channels[target].values;
+      Series effect(x);
+      if (form != "linear") {
+        const double tau = draw.log_uniform(60.0, 300.0);
+        const Series slow = low_passed(x, tau, kStep_s);
+        for (std::size_t k = 0; k < samples; ++k)
+          effect[k] = form == "rate" ? (x[k] - slow[k]) / tau : slow[k];
+      }
+      const NoiseTruth noise = fitted_noise(c.rate_radps[0]);
+      const Visibility oracle(std::make_shared<const NoiseModel>(noise, samples, kStep_s), 1);
+      const double size = draw.log_uniform(12.0, 80.0) / oracle.of({effect}, {});
+      for (std::size_t k = 0; k < samples; ++k) c.rate_radps[0][k] += size * effect[k];
+    }
+    const Finding finding = project_diagnosis()({c});
+    bool hit = false, named = false;
+    int others = 0;
+    std::string names;
+    for (const Claim& claim : finding.effects) {
+      names += " " + name_of(claim.effect);
+      if (claim.effect.channel.empty()) continue;  // lines and jumps of the sensor's own
+      const bool here =
+          implant && claim.effect.channel == c.channels[target].name && claim.effect.with_channel.empty();
+      hit = hit || here;
+      named = named || (here && claim.effect.form == form);
+      others += here ? 0 : 1;
+    }
+    if (implant) {
+      right += hit ? 1 : 0;
+      exact += named ? 1 : 0;
+      wrong += others > 0 ? 1 : 0;
+    } else {
+      alarms += others;
+      with_alarm += others > 0 ? 1 : 0;
+    }
+    if (others > 0 || (implant && !hit))
+      std::printf("trial %d %s %s: found%s\n", trial, source.name.c_str(),
+                  implant ? (form + " " + c.channels[target].name).c_str() : "nothing implanted",
+                  names.empty() ? " nothing" : names.c_str());
+    std::fflush(stdout);
+  }
+  std::printf("negative controls: %d of %d explained by a borrowed channel (%d effects; target <= 1 %%)\n",
+              with_alarm, trials, alarms);
+  std::printf("implanted: channel found %d of %d, form too %d; with another channel besides %d\n", right,
+              trials, exact, wrong);
+  return 0;
+}
