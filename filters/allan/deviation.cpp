@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
 
 namespace ifog {
 namespace {
@@ -108,6 +109,31 @@ struct Task {
 }  // namespace
 
 AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
+  find_mean(rate_radps, stretches);
+  sum_up(rate_radps, stretches);
+}
+
+AngleSum::AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches) {
+  find_mean(rate_radps, stretches);
+  const std::size_t n = rate_radps.size();
+  if (stretches.size() != 1 || stretches[0].size() != n || rate_radps.capacity() == n) {
+    sum_up(rate_radps, stretches);
+    rate_radps = {};
+    return;
+  }
+  angle_ = std::move(rate_radps);
+  parts_.push_back({0, n + 1});
+  angle_.push_back(0.0);
+  double high = 0.0, low = 0.0, error = 0.0, rate = angle_[0];
+  angle_[0] = 0.0;
+  for (std::size_t i = 1; i <= n; ++i) {
+    two_sum(high, rate - mean_, high, error);
+    low += error;
+    rate = std::exchange(angle_[i], high + low);
+  }
+}
+
+void AngleSum::find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
   std::size_t total = 0;
   double sum = 0.0, rest = 0.0, error = 0.0;
   for (const Stretch& s : stretches) {
@@ -118,10 +144,15 @@ AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> 
     }
   }
   mean_ = total > 0 ? (sum + rest) / static_cast<double>(total) : 0.0;
-  angle_.reserve(total + stretches.size());
+}
+
+void AngleSum::sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
+  std::size_t total = stretches.size();
+  for (const Stretch& s : stretches) total += s.size();
+  angle_.reserve(total);
   for (const Stretch& s : stretches) {
     parts_.push_back({angle_.size(), s.size() + 1});
-    double high = 0.0, low = 0.0;
+    double high = 0.0, low = 0.0, error = 0.0;
     angle_.push_back(0.0);
     for (std::size_t i = s.begin; i < s.end; ++i) {
       // The mean is rounded; what it is off by is a constant, which no second difference sees.

@@ -20,6 +20,9 @@ class AngleSum {
  public:
   // No NaN inside a stretch. Takes 8 bytes a sample.
   AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches);
+  // The same in the samples' own memory, where one stretch covers them all and the vector has room for one
+  // more; else by a copy, and the samples are freed afterwards.
+  AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches);
 
   struct Part {
     std::size_t first;   // index of its first angle
@@ -32,6 +35,9 @@ class AngleSum {
   [[nodiscard]] std::size_t longest() const;  // samples of the longest stretch
 
  private:
+  void find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches);
+  void sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches);
+
   std::vector<double> angle_;
   std::vector<Part> parts_;
   double mean_ = 0.0;

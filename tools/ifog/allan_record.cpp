@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace ifog::tools {
 namespace {
@@ -155,8 +156,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
 
   const std::vector<Stretch> parts = stretches(time_s, rate, clock);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const AngleSum sum(rate, parts);
-  rate = {};  // a long record should not stand in memory twice
+  const AngleSum sum(std::move(rate), parts);
   record.samples = sum.samples();
   record.longest = sum.longest();
   record.mean_radps = sum.mean_radps();

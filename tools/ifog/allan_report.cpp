@@ -195,7 +195,9 @@ Panel allan_panel(const std::vector<AllanRecord>& records) {
     Curve curve;
     curve.title = title_of(record, several_files);
     curve.color = kColors[r % kColors.size()];
-    curve.style = record.points.size() > 12 ? "lines lw 2" : "linespoints lw 2 pt 7 ps 0.7";
+    // Thinner from curve to curve, so that one that lies on another leaves it visible.
+    curve.style = record.points.size() > 12 ? (r % 2 == 0 ? "lines lw 3" : "lines lw 1.5")
+                                            : "linespoints lw 2 pt 7 ps 0.7";
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < record.points.size(); ++i)
       if (record.points[i].variance > 0.0) order.push_back(i);
@@ -223,7 +225,10 @@ Panel allan_panel(const std::vector<AllanRecord>& records) {
   std::vector<std::pair<double, double>> labels;
   for (std::size_t r = 0; r < records.size() && r < 3; ++r) {
     const AllanRecord& record = records[r];
-    if (!record.fit) continue;
+    // A filter's output is not made of the standard's terms, and a curve that covers another needs no second
+    // set of labels.
+    const bool covered = r > 0 && panel.curves[r].y == panel.curves[r - 1].y;
+    if (!record.fit || record.signal == "denoised" || covered) continue;
     for (const NamedCoefficient& named : named_coefficients()) {
       const NoiseCoefficient& c = (*record.fit).*named.member;
       if (!c.present) continue;

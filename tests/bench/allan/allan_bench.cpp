@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 #include <vector>
 
 #include "filters/allan/deviation.h"
@@ -27,7 +28,10 @@ int main(int argc, char** argv) {
     std::fputs("expected: SAMPLES TIMES\n", stderr);
     return 2;
   }
-  std::vector<double> rate(std::filesystem::file_size(argv[1]) / sizeof(double));
+  const std::size_t count = std::filesystem::file_size(argv[1]) / sizeof(double);
+  std::vector<double> rate;
+  rate.reserve(count + 1);
+  rate.resize(count);
   std::ifstream samples(argv[1], std::ios::binary);
   samples.read(reinterpret_cast<char*>(rate.data()),
                static_cast<std::streamsize>(rate.size() * sizeof(double)));
@@ -41,9 +45,9 @@ int main(int argc, char** argv) {
 
   const auto start = std::chrono::steady_clock::now();
   const std::vector<ifog::Stretch> all{{0, rate.size()}};
-  const ifog::AngleSum sum(rate, all);
+  const ifog::AngleSum sum(std::move(rate), all);
   const auto points = ifog::deviation(sum, m);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%.6f %zu %ld\n", seconds, rate.size() * sizeof(double), peak_kib() * 1024);
+  std::printf("%.6f %zu %ld\n", seconds, count * sizeof(double), peak_kib() * 1024);
   for (const auto& point : points) std::printf("%.17g\n", std::sqrt(point.variance));
 }

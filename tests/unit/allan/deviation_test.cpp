@@ -77,6 +77,17 @@ TEST(Deviation, ThreadsDoNotChangeABit) {
   EXPECT_EQ(allan(rate, m, Deviation::kAllan, 1), allan(rate, m, Deviation::kAllan, 3));
 }
 
+TEST(Deviation, TheSumInPlaceIsTheSameSum) {
+  auto rate = ifog::simulate::noise({.N = 1e-6, .R = 1e-7}, 100.0, 5000, 6);
+  const std::vector<Stretch> all{{0, rate.size()}};
+  const AngleSum copied(rate, all);
+  auto cramped = rate;
+  cramped.shrink_to_fit();
+  rate.reserve(rate.size() + 1);
+  EXPECT_EQ(AngleSum(std::move(rate), all).angle(), copied.angle());
+  EXPECT_EQ(AngleSum(std::move(cramped), all).angle(), copied.angle());
+}
+
 TEST(Deviation, StretchesNeverMixAcrossAHole) {
   // Two stretches at different rates: the step between them must not appear at any averaging time.
   std::vector<double> rate(300, 1.0);
