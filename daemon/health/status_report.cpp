@@ -44,7 +44,8 @@ std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
     case TransportState::gone:
       return status_t::STATE_REOPENING;
     case TransportState::ended:
-      if (transport.reason() != 0) return status_t::STATE_FAILED;
+      // A fault at the end is a file that is cut off or damaged.
+      if (transport.reason() != 0 || transport.fault().what != nullptr) return status_t::STATE_FAILED;
       return status_t::STATE_ENDED;
     case TransportState::open:
       break;

@@ -89,6 +89,9 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
 void Reader::run() noexcept {
   while (turn(kTurn)) {
   }
+  // The bytes of a frame that never came to its end count as passed over.
+  driver_.reset();
+  publish_counters();
   queue_.close();
 }
 

@@ -243,6 +243,15 @@ TEST(Pipeline, DamagedFramesAreCountedAndTheGapIsFlagged) {
   EXPECT_EQ(event.count, 2U);
 }
 
+TEST(Pipeline, AFileCutOffWithinAFrameIsCounted) {
+  std::vector<std::uint8_t> bytes = frames(50);
+  bytes.resize(bytes.size() - 10);
+  Rig rig(bytes, 77, true);
+  rig.run_to_the_end();
+  EXPECT_EQ(rig.publisher->messages().size(), 49U);
+  EXPECT_EQ(rig.pipeline->reader().counters().bytes_skipped.value(), kFrame - 10);
+}
+
 TEST(Pipeline, HousekeepingGetsASnapshotWhileSamplesFlow) {
   Rig rig(frames(5000), kFrame, true, 64, 50us);
   rig.pipeline->start();
@@ -256,6 +265,7 @@ TEST(Pipeline, HousekeepingGetsASnapshotWhileSamplesFlow) {
   rig.pipeline->stop();
   EXPECT_GT(taken, 3);
   EXPECT_TRUE(snapshot.has_health);
+  EXPECT_GT(snapshot.allan_octaves, 5);
 }
 
 }  // namespace
