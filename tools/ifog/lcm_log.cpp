@@ -84,7 +84,10 @@ Capture read_lcm_log(const std::string& path, const std::string& channel) {
 
 Table read_published(const std::string& path, const std::string& channel) {
   Table table;
-  for_each_rate(path, channel, [&table](const rate_t& message, double time_s) {
+  double time_s = 0.0;
+  for_each_rate(path, channel, [&](const rate_t& message, double) {
+    // The sum of the steps: the sensor's own time also when a recording was played faster.
+    if (!table.time_s.empty()) time_s += message.dt;
     if (table.time_s.empty()) {
       for (const std::string& axis : axis_names(static_cast<std::size_t>(message.axes)))
         for (const std::string what : {"raw", "compensated", "denoised", "variance"})

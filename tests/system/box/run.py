@@ -32,11 +32,13 @@ HIGHEST_EXPOSURE = 2.0
 def configuration(hertz):
     """Three gyros at once. The ring is longer than a computer of its own needs: the host may stop this whole machine for a
     second, and then all that was due comes at once. Each sender stays on one processor: Linux may deliver on
-    the loopback in another order what was sent from two."""
+    the loopback in another order what was sent from two. The noise is given, as by `ifog tune`: to find it from the first
+    seconds would take an emulated processor as long again."""
     def sensor(name, transport, options):
         return f'[[sensor]]\nname = "{name}"\ndriver = "{"dbc" if name == "can" else "kvh1750"}"\n' \
                f'[sensor.transport]\n{transport}\n[sensor.options]\n{options}\n' \
-               f'[sensor.realtime]\nreader_priority = 50\nfilter_priority = 49\nring_slots = 16384\nfilter_cpus = [0]\n'
+               f'[sensor.realtime]\nreader_priority = 50\nfilter_priority = 49\nring_slots = 16384\nfilter_cpus = [0]\n' \
+               f'[sensor.filter]\nprocess_noise = 1e-6\nmeasurement_noise = 1e-9\n'
     return "\n".join([
         sensor("serial", 'type = "serial"\ndevice = "/dev/ttyS1"\nbaud = 115200', f'rate_hz = {min(hertz, SERIAL_LIMIT)}'),
         sensor("usb", 'type = "serial"\ndevice = "/dev/ttyUSB0"\nbaud = 921600', f'rate_hz = {hertz}'),
@@ -126,8 +128,9 @@ class Box:
         sending = [self.lines["serial"].send(int(seconds * slow), slow), self.lines["usb"].send(int(seconds * hertz), hertz)]
         ended()
         for thread in sending:
-            thread.join(60)
-        time.sleep(2)
+            thread.join(300)
+        # What the machine has still to read: the host may have run ahead of it.
+        time.sleep(5)
         sent = {"serial": int(seconds * slow), "usb": int(seconds * hertz), "can": int(seconds * hertz)}
         return {name: (sent[name], got) for name, got in counts().items()}
 
@@ -198,8 +201,9 @@ class Box:
             carried = hertz
         if carried < RATES[0]:
             raise Failure("; ".join(f"{name}: {complaints(*each)}" for name, each in result.items()))
-        self.hertz = carried
-        self.configure(carried)
+        # The long runs are made one step below, for the host has other things to do at times.
+        self.hertz = max(RATES[0], *[rate for rate in RATES if rate < carried], RATES[0])
+        self.configure(self.hertz)
         self.machine.run("systemctl restart ifogd", 200)
         return f"{carried} Hz on USB and CAN, {min(carried, SERIAL_LIMIT)} Hz on the 8250"
 
@@ -210,12 +214,12 @@ class Box:
         return judged(self.all_sensors(SECONDS, self.hertz, "ifog replay"), self.hertz)
 
     def check_killed_service_is_back(self):
-        before = self.machine.run("systemctl show -P MainPID ifogd").strip()
+        before, restarts = self.machine.run("systemctl show -P MainPID ifogd; systemctl show -P NRestarts ifogd").split()
         self.machine.run(f"kill -9 {before}")
         took = self.machine.run("for i in $(seq 300); do p=$(systemctl show -P MainPID ifogd); [ \"$(systemctl is-active ifogd)\" = active ] && "
                                 f"[ $p != 0 ] && [ $p != {before} ] && break; sleep 0.1; done; systemctl show -P MainPID ifogd; systemctl show -P NRestarts ifogd").split()
-        if took[0] in ("0", before) or took[1] != "1":
-            raise Failure(f"main process and restarts are {took}, before {before}")
+        if took[0] in ("0", before) or int(took[1]) != int(restarts) + 1:
+            raise Failure(f"main process and restarts are {took}, before {before} and {restarts}")
         counts = self.counting("serial")
         self.lines["serial"].send(200, 200).join(30)
         time.sleep(1)
