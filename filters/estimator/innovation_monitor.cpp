@@ -6,6 +6,8 @@
 namespace ifog {
 namespace {
 
+// Two standard errors of the scale.
+constexpr double kScaleMargin = 1.5;
 // Innovations this much larger than third differences allow mean motion, not noise.
 constexpr double kMovedRatio = 2.0;
 
@@ -26,7 +28,7 @@ InnovationMonitor::Verdict InnovationMonitor::test(std::span<const double> innov
   const std::size_t before = at_;
   at_ = (at_ + 1) % kRing;
   length_ = std::min(length_ + 1, static_cast<int>(kRing) - 1);
-  double greatest = kThreshold;
+  double greatest = threshold_;
   for (std::size_t axis = 0; axis < innovations.size(); ++axis) {
     std::array<double, kRing>& sums = sums_[axis];
     const bool valid = (valid_axes >> axis & 1U) != 0 && variance_[axis] > 0.0;
@@ -50,7 +52,10 @@ InnovationMonitor::Verdict InnovationMonitor::test(std::span<const double> innov
 bool InnovationMonitor::learn(std::size_t axis, double innovation, double factor) noexcept {
   double square = innovation * innovation / factor;
   if (armed_) square = std::min(square, kClip * kClip * variance_[axis]);
-  learned_[axis] = std::min(learned_[axis] + 1.0, kMemory);
+  if (learned_[axis] < kMemory) {
+    learned_[axis] += 1.0;
+    threshold_ = kThreshold * (1.0 + kScaleMargin / std::sqrt(learned_[axis]));
+  }
   variance_[axis] += (square - variance_[axis]) / learned_[axis];
   if (armed_ || learned_[axis] < kLearning) return false;
   armed_ = true;

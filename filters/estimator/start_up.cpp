@@ -33,6 +33,13 @@ double robust_variance(std::vector<double>& squares) {
   return sum / static_cast<double>(kept);
 }
 
+// A block with a part missing stands on the other part; otherwise one lost sample in ten would leave no long
+// block.
+double present_mean(double a, double b) {
+  if (!std::isfinite(a)) return b;
+  return std::isfinite(b) ? 0.5 * (a + b) : a;
+}
+
 std::vector<Octave> octaves(std::span<const double> rate) {
   std::vector<Octave> all;
   std::vector<double> means(rate.begin(), rate.end());
@@ -48,7 +55,7 @@ std::vector<Octave> octaves(std::span<const double> rate) {
       all.push_back({block, robust_variance(squares), count / 2.0});
     }
     std::vector<double> halved(means.size() / 2);
-    for (std::size_t i = 0; i < halved.size(); ++i) halved[i] = 0.5 * (means[2 * i] + means[2 * i + 1]);
+    for (std::size_t i = 0; i < halved.size(); ++i) halved[i] = present_mean(means[2 * i], means[2 * i + 1]);
     means = std::move(halved);
   }
   return all;

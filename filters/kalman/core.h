@@ -40,9 +40,9 @@ struct KalmanCore {
   // as a square: it equals (13) exactly and stays positive where (13) loses digits.
   void correct(double c) noexcept {
     if constexpr (n == 1) {
-      const double projected = p(0, 0) * h(0) * h(0);
-      gain(0) = p(0, 0) * h(0) / c;
-      p(0, 0) *= (c - projected) / c;
+      // A single state is the rate itself, h = 1; one division then serves gain and covariance.
+      gain(0) = p(0, 0) / c;
+      p(0, 0) = gain(0) * (c - p(0, 0));
     } else {
       const Vector ph = p * h;
       gain = ph / c;

@@ -1,0 +1,29 @@
+// The motions of the quality study, in units of the measurement noise and in samples.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ifog::bench {
+
+struct Scenario {
+  const char* name;
+  double (*motion)(int sample);
+};
+
+std::span<const Scenario> scenarios();
+
+struct Record {
+  std::vector<double> truth, measured;
+};
+
+// A random walk of variance ratio a step in unit white noise, plus the motion.
+Record make_record(const Scenario& scenario, std::uint64_t seed, int samples, double ratio);
+
+// The scalar Kalman filter that knows both variances (but no motion), by hand: what every rule is measured
+// against.
+std::vector<double> told_the_truth(const std::vector<double>& measured, double ratio);
+
+}  // namespace ifog::bench

@@ -1,0 +1,160 @@
+// The angle: integral of (denoised - measured) back at zero after manoeuvres, and coning not rectified.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "drivers/capture/capture.h"
+#include "filters/estimator/start_up.h"
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+TEST(Heading, IsKeptOverTurnsByHand) {
+  const std::string path = std::string(IFOG_SHARED_DATA) + "/kvh1750_direct_imu_rate.csv.gz";
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << path << " is not there; the shared captures beside the project make this run";
+  const ifog::Capture capture = ifog::read_capture(path);
+  const double period = 0.001;
+  ifog::FilterSettings settings;
+  double process = 0.0, noise = 0.0;
+  for (const auto& axis : capture.rate_radps) {
+    const auto found = ifog::estimate_noise({axis.data(), 1500}, period);
+    process += found.process_noise / 3;
+    noise += found.measurement_noise / 3;
+  }
+  settings.process_noise = process;
+  settings.measurement_noise = noise;
+  ifog::Estimator estimator(settings, 3, period);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  std::array<double, 3> lost{};
+  for (std::size_t i = 0; i < capture.size(); ++i) {
+    in.sequence = i;
+    in.dt_s = period;
+    in.valid_axes = 7;
+    for (std::size_t a = 0; a < 3; ++a) in.rate_radps[a] = capture.rate_radps[a][i];
+    estimator.step(in, out);
+    for (std::size_t a = 0; a < 3; ++a) lost[a] += (out.denoised_radps[a] - in.rate_radps[a]) * period;
+    ASSERT_EQ(out.gain[0], out.gain[1]);
+    ASSERT_EQ(out.gain[0], out.gain[2]);
+  }
+  for (const double angle : lost) EXPECT_LT(std::abs(angle), 0.001 * kDegree);
+}
+
+TEST(Heading, IsKeptOverATurnWithASharpStartAndASlowStop) {
+  // 1 kHz, angle random walk 0.01 deg/sqrt(h): 50 deg/s at once, then away over ten seconds.
+  const double period = 1e-3, noise = 0.01 * kDegree / 60 / std::sqrt(period);
+  for (const double ratio : {1e-3, 1e-5}) {
+    ifog::FilterSettings settings;
+    settings.measurement_noise = noise * noise;
+    settings.process_noise = ratio * noise * noise / period;
+    ifog::Estimator estimator(settings, 1, period);
+    std::mt19937_64 random(8);
+    std::normal_distribution<double> normal;
+    ifog::EstimatorInput in;
+    ifog::EstimatorOutput out;
+    double lost = 0.0, mean = 0.0;
+    for (int i = 0; i < 60'000; ++i) {
+      const double t = i * period - 5.0;
+      const double turn =
+          t < 0 || t > 15
+              ? 0.0
+              : 50 * kDegree * (t < 5 ? 1.0 : 0.5 + 0.5 * std::cos((t - 5) / 10 * std::numbers::pi));
+      in.sequence = static_cast<std::uint64_t>(i);
+      in.dt_s = period;
+      in.valid_axes = 1;
+      in.rate_radps[0] = turn + noise * normal(random);
+      estimator.step(in, out);
+      lost += (out.denoised_radps[0] - in.rate_radps[0]) * period;
+      // What is left wanders with the noise the filter has not yet taken in; a mean over ten seconds tells it
+      // from loss.
+      if (i >= 50'000) mean += lost / 10'000;
+    }
+    EXPECT_GT(estimator.health().manoeuvres, 0U);
+    EXPECT_LT(std::abs(mean), 0.001 * kDegree) << "Q/R " << ratio;
+  }
+}
+
+using Quaternion = std::array<double, 4>;
+
+Quaternion times(const Quaternion& a, const Quaternion& b) {
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+          a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+          a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+Quaternion inverse(const Quaternion& a) { return {a[0], -a[1], -a[2], -a[3]}; }
+Quaternion turned(double x, double y, double z) {
+  const double angle = std::sqrt(x * x + y * y + z * z);
+  const double s = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
+  return {std::cos(angle / 2), x * s, y * s, z * s};
+}
+
+// Drift, deg/h, that the filter adds to an attitude integrated from its output, 300 s of a motion at 1 kHz.
+std::array<double, 3> added_drift(const std::function<Quaternion(double envelope, double t)>& attitude,
+                                  std::uint64_t seed) {
+  constexpr double period = 1e-3, still = 10.0, moving = 300.0;
+  const double noise = 0.01 * kDegree / 60 / std::sqrt(period);
+  const auto at = [&](double t) -> Quaternion {
+    const double inside = std::clamp(std::min(t - still, still + moving - t) / 10.0, 0.0, 1.0);
+    return attitude(inside * inside * (3 - 2 * inside), t - still);
+  };
+  ifog::FilterSettings settings;
+  settings.measurement_noise = noise * noise;
+  settings.process_noise = 1e-3 * noise * noise / period;
+  ifog::Estimator estimator(settings, 3, period);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  Quaternion measured{1, 0, 0, 0}, denoised{1, 0, 0, 0}, before = at(0);
+  const int length = static_cast<int>((moving + 2 * still) / period);
+  for (int i = 1; i < length; ++i) {
+    const Quaternion now = at(i * period);
+    const Quaternion step = times(inverse(before), now);
+    before = now;
+    const double sine = std::sqrt(step[1] * step[1] + step[2] * step[2] + step[3] * step[3]);
+    const double scale = sine > 0 ? 2 * std::atan2(sine, step[0]) / sine / period : 0.0;
+    for (std::size_t a = 0; a < 3; ++a) in.rate_radps[a] = scale * step[a + 1] + noise * normal(random);
+    in.sequence = static_cast<std::uint64_t>(i);
+    in.dt_s = period;
+    in.valid_axes = 7;
+    estimator.step(in, out);
+    measured = times(measured,
+                     turned(in.rate_radps[0] * period, in.rate_radps[1] * period, in.rate_radps[2] * period));
+    denoised = times(denoised, turned(out.denoised_radps[0] * period, out.denoised_radps[1] * period,
+                                      out.denoised_radps[2] * period));
+  }
+  const Quaternion apart = times(inverse(measured), denoised);
+  const double per_hour = 2 / kDegree * 3600 / moving;
+  return {per_hour * apart[1], per_hour * apart[2], per_hour * apart[3]};
+}
+
+TEST(Coning, AddsNoDrift) {
+  const auto cone = [](double envelope, double t) {
+    const double phase = 2 * std::numbers::pi * 0.1 * t;
+    return turned(10 * kDegree * envelope * std::cos(phase), 3 * kDegree * envelope * std::sin(phase), 0);
+  };
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (const double drift : added_drift(cone, seed))
+      EXPECT_LT(std::abs(drift), 0.001) << "deg/h, seed " << seed;
+  }
+}
+
+TEST(SeaState, AddsNoDrift) {
+  const auto sea = [](double envelope, double t) {
+    const double w = 2 * std::numbers::pi * 0.1;
+    return times(turned(0, 4 * kDegree * envelope * std::sin(1.3 * w * t + 1), 0),
+                 turned(12 * kDegree * envelope * (std::sin(w * t) + 0.3 * std::sin(1.7 * w * t)), 0, 0));
+  };
+  for (const double drift : added_drift(sea, 5)) EXPECT_LT(std::abs(drift), 0.001) << "deg/h";
+}
+
+}  // namespace

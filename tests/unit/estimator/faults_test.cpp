@@ -1,0 +1,129 @@
+// Missing and bad measurements, uneven time, a stuck or saturated sensor, a covariance that breaks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Faults, NanAndMissingAreOnlyPredicted) {
+  Record r = record(5, 5000, 1e-3);
+  for (std::size_t i = 2000; i < 2400; ++i)
+    r.measured[i] = i % 3 == 0 ? kNan : (i % 3 == 1 ? INFINITY : r.measured[i]);
+  const Filtered got = run(told(1e-3), r.measured);
+  for (const double rate : got.denoised) ASSERT_TRUE(std::isfinite(rate));
+  EXPECT_EQ(got.health.manoeuvres, 0U);
+  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 1000)), 0.25);
+}
+
+TEST(Faults, AGapWidensTheVarianceByTheWalkOverTheWholeOfIt) {
+  ifog::FilterSettings settings = told(1e-3);
+  settings.rule = "ckf";
+  settings.follow_manoeuvres = settings.conserve_angle = false;
+  ifog::Estimator estimator(settings, 1, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  in.valid_axes = 1;
+  in.dt_s = kPeriod;
+  for (in.sequence = 0; in.sequence < 3000; ++in.sequence) {
+    in.rate_radps[0] = static_cast<double>(in.sequence % 7);  // a constant would be a stuck sensor
+    estimator.step(in, out);
+  }
+  const double before = out.variance_rad2ps2[0];
+  in.valid_axes = 0;
+  in.dt_s = 500 * kPeriod;
+  estimator.step(in, out);
+  EXPECT_NEAR(out.variance_rad2ps2[0], before + 500e-3, 1e-12);
+  // One measurement: the gain and variance of (11) and (13), and half the noise when it is a mean over two
+  // periods.
+  const double prior = out.variance_rad2ps2[0] + 1e-3;
+  in.valid_axes = 1;
+  in.dt_s = kPeriod;
+  in.averaged_s = 2 * kPeriod;
+  in.rate_radps[0] = 3.0;
+  estimator.step(in, out);
+  EXPECT_NEAR(out.gain[0], prior / (prior + 0.5), 1e-12);
+}
+
+TEST(Faults, StuckAndSaturatedSensorsAreFlagged) {
+  Record r = record(6, 6000, 1e-3);
+  for (std::size_t i = 3000; i < 4000; ++i) r.measured[i] = r.measured[2999];
+  ifog::FilterSettings settings = told(1e-3);
+  settings.range_radps = 400.0;
+  for (std::size_t i = 5000; i < 5100; ++i) r.measured[i] = 400.0;
+  const Filtered got = run(settings, r.measured);
+  EXPECT_FALSE(got.flags[3050] & ifog::kStuck);
+  EXPECT_TRUE(got.flags[3500] & ifog::kStuck);
+  EXPECT_FALSE(got.flags[4001] & ifog::kStuck);
+  EXPECT_FALSE(got.flags[4999] & ifog::kSaturated);
+  EXPECT_TRUE(got.flags[5050] & ifog::kSaturated);
+}
+
+TEST(Faults, ABrokenCovarianceIsCountedAndTheFilterGoesOn) {
+  const Record r = record(7, 20'000, 1e-3);
+  ifog::FilterSettings settings = told(1e-3);
+  settings.window = 2;  // without its floor the rule then meets covariances far below h'P-h
+  settings.floor = 0.0;
+  settings.follow_manoeuvres = false;
+  const Filtered got = run(settings, r.measured);
+  EXPECT_GT(got.health.divergences, 0U);
+  EXPECT_EQ(got.health.divergences, got.health.restarts);
+  for (const double rate : got.denoised) ASSERT_TRUE(std::isfinite(rate));
+  settings.floor = 0.01;
+  const Filtered floored = run(settings, r.measured);
+  EXPECT_EQ(floored.health.divergences, 0U);
+  EXPECT_GT(floored.health.floor_hits, 0U);
+}
+
+TEST(Faults, CovarianceStaysPositiveInALargeModelOverUnevenSteps) {
+  ifog::FilterSettings settings;
+  settings.state = "integrated-random-walk + ar(2) + harmonic + harmonic";
+  settings.state_parameters = {1.6, -0.8, 1e-3, 4.17, 1e-2, 8.34, 1e-2};
+  settings.process_noise = 1e-10;
+  settings.measurement_noise = 1e-8;
+  ifog::Estimator estimator(settings, 3, kPeriod);
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  for (in.sequence = 0; in.sequence < 40'000; ++in.sequence) {
+    in.dt_s =
+        kPeriod * (in.sequence % 97 == 0 ? 25.0 : 1.0 + 0.2 * std::sin(static_cast<double>(in.sequence)));
+    in.valid_axes = static_cast<std::uint32_t>(random() % 16);
+    for (double& rate : in.rate_radps) rate = 1e-4 * normal(random);
+    estimator.step(in, out);
+    for (const double variance : out.variance_rad2ps2) ASSERT_GT(variance, 0.0) << in.sequence;
+  }
+  EXPECT_EQ(estimator.health().divergences, 0U);
+}
+
+TEST(Replay, GivesTheSameBits) {
+  const Record r = record(10, 5000, 1e-3, [](int i) { return i > 3000 ? 9.0 : 0.0; });
+  for (const char* weights : {"kept", "fresh", "uniform"}) {
+    ifog::FilterSettings settings = told(1e-3);
+    settings.weights = weights;
+    EXPECT_EQ(run(settings, r.measured).denoised, run(settings, r.measured).denoised);
+    ifog::FilterSettings other = settings;
+    other.seed = 2;
+    EXPECT_NE(run(settings, r.measured).denoised, run(other, r.measured).denoised);
+  }
+}
+
+TEST(Health, GivesLagAndCorrelationOfASettledGain) {
+  ifog::FilterSettings settings = told(1e-3);
+  settings.rule = "ckf";
+  const Filtered got = run(settings, record(11, 5000, 1e-3).measured);
+  const double gain = (std::sqrt(1e-6 + 4e-3) - 1e-3) / 2;  // closed form of the Riccati equation
+  EXPECT_NEAR(got.health.group_delay_s / (kPeriod * (1 - gain) / gain), 1.0, 1e-6);
+  EXPECT_NEAR(got.health.correlation_time_s / (kPeriod / gain), 1.0, 1e-6);
+  EXPECT_NEAR(got.health.nis_mean[0], 1.0, 0.3);
+  EXPECT_NEAR(got.health.whiteness[0], 0.0, 0.2);
+}
+
+}  // namespace

@@ -1,0 +1,87 @@
+// At rest as good as a Kalman filter told the truth; after a change of rate quick; not led astray by an
+// outlier.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+TEST(Rest, IsWithinFivePercentOfTheFilterToldTheTruth) {
+  for (const double ratio : {1e-2, 1e-3, 1e-6}) {
+    for (const double noise : {0.01, 1.0, 100.0}) {
+      double ours = 0.0, best = 0.0;
+      std::uint64_t manoeuvres = 0;
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Record r = record(seed, 20'000, ratio);
+        const Filtered got = run(told(ratio, noise), r.measured);
+        ours += mean_square_error(got.denoised, r.truth, 1000);
+        best += mean_square_error(told_the_truth(r.measured, ratio), r.truth, 1000);
+        manoeuvres += got.health.manoeuvres;
+      }
+      EXPECT_LT(std::sqrt(ours / best), 1.05) << "Q/R " << ratio << ", told R times " << noise;
+      EXPECT_EQ(manoeuvres, 0U);
+    }
+  }
+}
+
+int median_samples_to_90_percent(double step) {
+  std::vector<int> samples;
+  for (std::uint64_t seed = 1; seed <= 41; ++seed) {
+    constexpr int kAt = 3000;
+    const Record r = record(seed, kAt + 500, 1e-3, [step](int i) { return i >= kAt ? step : 0.0; });
+    const Filtered got = run(told(1e-3), r.measured);
+    std::size_t k = kAt;
+    while (k < r.truth.size() && got.denoised[k] - r.truth[kAt - 1] < 0.9 * step) ++k;
+    samples.push_back(static_cast<int>(k) - kAt + 1);
+  }
+  std::sort(samples.begin(), samples.end());
+  return samples[samples.size() / 2];
+}
+
+TEST(Step, IsFollowed) {
+  EXPECT_LE(median_samples_to_90_percent(20.0), 10);
+  EXPECT_LE(median_samples_to_90_percent(5.0), 25);
+}
+
+TEST(Outlier, IsPassedOver) {
+  for (const double size : {8.0, 50.0, 1e6}) {
+    Record r = record(4, 6000, 1e-3);
+    const Filtered without = run(told(1e-3), r.measured);
+    r.measured[4000] += size;
+    const Filtered with = run(told(1e-3), r.measured);
+    EXPECT_TRUE(with.flags[4000] & ifog::kGated) << size;
+    EXPECT_EQ(with.health.manoeuvres, 0U) << size;
+    for (std::size_t i = 4000; i < 6000; ++i) {
+      // A fifth of the noise: what leaving a measurement out, and another draw of R, may do.
+      ASSERT_NEAR(with.denoised[i], without.denoised[i], 0.2) << size << ", sample " << i;
+    }
+  }
+}
+
+TEST(Sine, IsFollowedBetterThanByTheBestFixedGain) {
+  for (const auto& [amplitude, samples] : {std::pair{1000.0, 1000.0}, {20.0, 1000.0}, {5.0, 500.0}}) {
+    const Record r = record(3, 12'000, 1e-3,
+                            [a = amplitude, p = samples](int i) { return a * std::sin(6.2831853 * i / p); });
+    double best = 1e300;
+    for (double ratio = 1e-4; ratio < 1e4; ratio *= 2) {
+      best = std::min(best, mean_square_error(told_the_truth(r.measured, ratio), r.truth, 1000));
+    }
+    const double ours = mean_square_error(run(told(1e-3), r.measured).denoised, r.truth, 1000);
+    EXPECT_LT(std::sqrt(ours / best), 1.1) << amplitude << " sigma over " << samples << " samples";
+  }
+}
+
+TEST(StartInMotion, DoesNotTakeTheMotionForNoise) {
+  const auto ramps = [](int i) {
+    return i < 50 ? 6.0 * i : (i < 3000 ? 300.0 : (i < 3050 ? 300.0 - 6.0 * (i - 3000) : 0.0));
+  };
+  const Record r = record(2, 4000, 1e-3, ramps);
+  const Filtered got = run(told(1e-3), r.measured);
+  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 2900)), 1.0);
+}
+
+}  // namespace

@@ -1,0 +1,57 @@
+// Noise from start-up data against the noise it was made with.
+#include "filters/estimator/start_up.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+TEST(StartUp, FindsTheNoiseThroughDriftMotionAndMissingSamples) {
+  for (const double ratio : {1e-1, 1e-3}) {
+    double plain_q = 0, plain_r = 0, rough_q = 0, rough_r = 0;
+    constexpr int kSeeds = 10;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      Record r = record(seed, 20'000, ratio);
+      const auto plain = ifog::estimate_noise(r.measured, kPeriod);
+      for (std::size_t i = 0; i < r.measured.size(); ++i) {
+        r.measured[i] += 1e-4 * static_cast<double>(i);
+        if (i % 10 == 3) r.measured[i] = std::numeric_limits<double>::quiet_NaN();
+        if (i > 8000 && i < 12'000) r.measured[i] += 200 * std::sin(0.01 * static_cast<double>(i));
+      }
+      const auto rough = ifog::estimate_noise(r.measured, kPeriod);
+      plain_q += std::log(plain.process_noise * kPeriod / ratio) / kSeeds;
+      plain_r += std::log(plain.measurement_noise) / kSeeds;
+      rough_q += std::log(rough.process_noise * kPeriod / ratio) / kSeeds;
+      rough_r += std::log(rough.measurement_noise) / kSeeds;
+    }
+    EXPECT_NEAR(plain_r, 0.0, 0.1) << ratio;
+    EXPECT_NEAR(plain_q, 0.0, 0.7) << ratio;
+    EXPECT_NEAR(rough_r, 0.0, 0.3) << ratio;
+    EXPECT_NEAR(rough_q, 0.0, std::log(8.0)) << ratio;  // a fifth of the record is motion
+  }
+}
+
+TEST(StartUp, OfWhiteNoiseIsTheSlowestWalkTheRecordCouldShow) {
+  const Record r = record(3, 5000, 0.0);
+  const auto found = ifog::estimate_noise(r.measured, kPeriod);
+  EXPECT_NEAR(found.measurement_noise, 1.0, 0.15);
+  EXPECT_GT(found.process_noise, 0.0);
+  // The longest octave, 256 samples with some ten differences, knows 6 R / 256 to a half: q to 5e-5.
+  EXPECT_LT(found.process_noise * kPeriod, 1e-4);
+}
+
+TEST(StartUp, RefusesTooShortARecordAndSurvivesAConstantOne) {
+  EXPECT_THROW((void)ifog::estimate_noise(std::vector<double>(31, 1.0), kPeriod), std::invalid_argument);
+  const auto constant = ifog::estimate_noise(std::vector<double>(1000, 0.5), kPeriod);
+  EXPECT_GT(constant.measurement_noise, 0.0);
+  EXPECT_GT(constant.process_noise, 0.0);
+}
+
+}  // namespace

@@ -1,0 +1,179 @@
+// Rules against a straight transcription, for a scalar random walk, of the equations they were published
+// with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "filters/estimator/estimator.h"
+#include "filters/rules/rule.h"
+
+namespace {
+
+constexpr double kPeriod = 0.01;
+constexpr double kQ = 1e-3;  // per step, over R
+constexpr double kR = 1.0;
+constexpr int kWindow = 40;
+
+std::vector<double> measurements() {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal;
+  std::vector<double> z(600);
+  double x = 4.0;
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    x += std::sqrt(kQ) * normal(random);
+    z[k] = x + (k < 300 ? 1.0 : 3.0) * normal(random);  // noise that grows, so that adapting matters
+  }
+  return z;
+}
+
+// After the first measurement of a filter that knew nothing: the state is the measurement.
+struct Scalar {
+  double x, p;
+};
+Scalar started(double first) {
+  const double prior = 1e6 * kR + kQ;
+  return {first, prior * kR / (prior + kR)};
+}
+
+void expect_equal(const char* rule, const std::function<void(Scalar&, double, int)>& published) {
+  ifog::FilterSettings settings;
+  settings.rule = rule;
+  settings.process_noise = kQ / kPeriod;
+  settings.measurement_noise = kR;
+  settings.window = kWindow;
+  settings.follow_manoeuvres = settings.conserve_angle = false;
+  ifog::Estimator estimator(settings, 1, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  const std::vector<double> z = measurements();
+  Scalar state = started(z[0]);
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    in.sequence = k;
+    in.dt_s = kPeriod;
+    in.valid_axes = 1;
+    in.rate_radps[0] = z[k];
+    estimator.step(in, out);
+    if (k > 0) published(state, z[k], static_cast<int>(k));
+    ASSERT_NEAR(out.denoised_radps[0], state.x, 1e-9) << "step " << k;
+    ASSERT_NEAR(out.variance_rad2ps2[0] / state.p, 1.0, 1e-9) << "step " << k;
+  }
+}
+
+TEST(PublishedEquations, SageHusa) {
+  const double b = 1.0 - 1.0 / kWindow;
+  double r = kR;
+  expect_equal("sage-husa", [&](Scalar& s, double z, int k) {
+    const double prior = s.p + kQ;
+    const double innovation = z - s.x;
+    const double d = (1 - b) / (1 - std::pow(b, k + 1));
+    r = (1 - d) * r + d * (innovation * innovation - prior);
+    r = std::max(r, 0.01 * kR);
+    const double gain = prior / (prior + r);
+    s.x += gain * innovation;
+    s.p = (1 - gain) * prior;
+  });
+}
+
+TEST(PublishedEquations, VariationalBayes) {
+  const double rho = 1.0 - 1.0 / kWindow;
+  double alpha = 1.0, beta = kR;
+  expect_equal("vb", [&](Scalar& s, double z, int) {
+    const double prior_mean = s.x, prior = s.p + kQ;
+    alpha = rho * alpha + 0.5;
+    const double beta_prior = rho * beta;
+    beta = beta_prior;
+    for (int turn = 0; turn < 3; ++turn) {
+      const double sigma = beta / alpha;
+      const double gain = prior / (prior + sigma);
+      s.x = prior_mean + gain * (z - prior_mean);
+      s.p = prior - gain * (prior + sigma) * gain;
+      beta = beta_prior + 0.5 * (z - s.x) * (z - s.x) + 0.5 * s.p;
+    }
+  });
+}
+
+TEST(PublishedEquations, InnovationBasedEstimation) {
+  std::vector<double> squares;
+  expect_equal("iae", [&](Scalar& s, double z, int) {
+    const double prior = s.p + kQ;
+    const double innovation = z - s.x;
+    squares.push_back(innovation * innovation);
+    double c = prior + kR;
+    if (squares.size() >= kWindow) {
+      c = 0.0;
+      for (std::size_t i = squares.size() - kWindow; i < squares.size(); ++i) c += squares[i] / kWindow;
+      c = std::max(c, prior + 0.01 * kR);
+    }
+    const double gain = prior / c;
+    s.x += gain * innovation;
+    s.p = (1 - gain) * prior;
+  });
+}
+
+TEST(PublishedEquations, ResidualBasedEstimation) {
+  std::vector<double> terms;
+  double r = kR;
+  expect_equal("rae", [&](Scalar& s, double z, int) {
+    const double prior = s.p + kQ;
+    const double gain = prior / (prior + r);
+    s.x += gain * (z - s.x);
+    s.p = (1 - gain) * prior;
+    const double residual = z - s.x;
+    terms.push_back(residual * residual + s.p);
+    if (terms.size() < kWindow) return;
+    r = 0.0;
+    for (std::size_t i = terms.size() - kWindow; i < terms.size(); ++i) r += terms[i] / kWindow;
+  });
+}
+
+TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
+  constexpr int kModels = 15;
+  std::vector<Scalar> bank;
+  std::vector<double> log_weight(kModels, 0.0);
+  const double fade = 1.0 - 1.0 / kWindow;
+  expect_equal("mmae", [&](Scalar& s, double z, int k) {
+    if (k == 1) {
+      for (int j = 0; j < kModels; ++j) {
+        const double prior = 1e6 * kR + kQ * std::pow(100.0, j % 5 - 2);
+        bank.push_back({s.x, prior * kR / (prior + kR)});
+      }
+    }
+    double greatest = -1e300;
+    for (int j = 0; j < kModels; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      Scalar& f = bank[at];
+      const double prior = f.p + kQ * std::pow(100.0, j % 5 - 2);
+      const double c = prior + kR * std::pow(100.0, j / 5 - 1);
+      const double innovation = z - f.x;
+      log_weight[at] = fade * log_weight[at] - 0.5 * (innovation * innovation / c + std::log(c));
+      greatest = std::max(greatest, log_weight[at]);
+      f.x += prior / c * innovation;
+      f.p = prior * (c - prior) / c;
+    }
+    double sum = 0.0;
+    s = {0.0, 0.0};
+    for (std::size_t j = 0; j < kModels; ++j) {
+      log_weight[j] = std::max(log_weight[j] - greatest, -14.0);
+      const double weight = std::exp(log_weight[j]);
+      sum += weight;
+      s.x += weight * bank[j].x;
+      s.p += weight * bank[j].p;
+    }
+    s.x /= sum;
+    s.p /= sum;
+  });
+}
+
+TEST(Rules, AreAllMadeByName) {
+  for (const char* name : {"ckf", "irwe-akfg", "iae", "rae", "mmae", "sage-husa", "vb"}) {
+    ifog::FilterSettings settings;
+    settings.rule = name;
+    settings.process_noise = settings.measurement_noise = 1.0;
+    EXPECT_NE(ifog::make_rule(settings), nullptr) << name;
+  }
+  EXPECT_EQ(ifog::rules().size(), 7U);
+}
+
+}  // namespace
