@@ -10,7 +10,7 @@ static_assert(sizeof(std::atomic<std::uint32_t>) == 4 && std::atomic<std::uint32
               "a futex is a plain 32-bit word");
 
 void Wakeup::wake() noexcept {
-  asleep_.store(0, std::memory_order_relaxed);
+  asleep_.exchange(0, std::memory_order_acq_rel);
   syscall(SYS_futex, &asleep_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
 }
 
