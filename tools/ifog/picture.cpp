@@ -62,6 +62,9 @@ void run(const Arguments& a) {
   std::vector<AllanRecord> records;
   for (AllanRecord& record : allan_records(a.log, table, options))
     if (record.signal == "raw" || record.signal == "denoised") records.push_back(std::move(record));
+  // The noise terms are the sensor's; what a filter has been over has none.
+  for (AllanRecord& record : records)
+    if (record.signal == "denoised") record.fit.reset();
   Panel allan = allan_panel(records);
   allan.title = "Allan deviation, raw and denoised";
   plot(a.picture, {rate, allan}, 1000, 520);

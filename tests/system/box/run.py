@@ -202,7 +202,7 @@ class Box:
         if carried < RATES[0]:
             raise Failure("; ".join(f"{name}: {complaints(*each)}" for name, each in result.items()))
         # The long runs are made one step below, for the host has other things to do at times.
-        self.hertz = max(RATES[0], *[rate for rate in RATES if rate < carried], RATES[0])
+        self.hertz = max((rate for rate in RATES if rate < carried), default=RATES[0])
         self.configure(self.hertz)
         self.machine.run("systemctl restart ifogd", 200)
         return f"{carried} Hz on USB and CAN, {min(carried, SERIAL_LIMIT)} Hz on the 8250"

@@ -115,7 +115,7 @@ class Bus:
         if got["messages"] != CAPTURE_SAMPLES:
             raise Failure(f"{got['messages']} messages of {CAPTURE_SAMPLES} sent")
         denoised = os.path.join(folder, "denoised.csv")
-        self.tool("denoise", log, "--output", denoised, *driver)
+        self.tool("denoise", log, "--output", denoised, "--config", os.path.join(folder, "ifogd.toml"))
         compared = subprocess.run([os.path.join(self.build, "tests/system/log_equals"), os.path.join(folder, "log.lcm"), "IFOG_GYRO", denoised,
                                    capture, str(RESOLUTION)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         if compared.returncode != 0:
