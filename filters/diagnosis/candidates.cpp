@@ -97,6 +97,7 @@ std::vector<Candidate> library(const BlockData& data) {
     if (!data.channels[channel].rotates) add_channel(data, channel, found);
   }
   if (data.reference >= 0) add_reference(data, found);
+  if (data.grid.dwells) return found;
   Candidate of_time;
   of_time.form = Form::kRateRamp;
   found.push_back(of_time);
@@ -160,7 +161,10 @@ double complexity(const Candidate& candidate) {
     case Form::kRateRamp:
       return 2.0;
     case Form::kSecondRate:
-      return 6.0;
+      return 20.0;  // with its bandwidth free it stands in for most things that change; rarely is it the
+                    // thing
+    case Form::kWarmUp:
+      return 8.0;
     default:
       return 4.0;
   }

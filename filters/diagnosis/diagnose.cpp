@@ -13,6 +13,7 @@
 #include "filters/diagnosis/moving_line.h"
 #include "filters/diagnosis/prediction.h"
 #include "filters/diagnosis/ramp.h"
+#include "filters/diagnosis/record_lines.h"
 #include "filters/diagnosis/search.h"
 #include "filters/diagnosis/separate.h"
 #include "filters/diagnosis/unexplained.h"
@@ -23,55 +24,8 @@ namespace {
 
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFolds = 4;
+constexpr int kDwellFolds = 10;
 constexpr std::size_t kSeriesPoints = 4000;
-
-// Slow enough for block means to carry it; faster lines are fitted to the samples themselves.
-bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz * grid.block_s < 0.4; }
-
-struct FastLine {
-  std::size_t record;
-  SpectralLine line;
-};
-
-struct Lines {
-  std::vector<Candidate> slow;
-  std::vector<FastLine> fast;
-};
-
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance) {
-  Lines found;
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    for (const SpectralLine& line :
-         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance)) {
-      if (line.coherence < kCoherent) continue;
-      if (is_slow(line.frequency_hz, grid)) {
-        Candidate candidate;
-        candidate.form = Form::kLine;
-        candidate.record = r;
-        candidate.frequency_hz = line.frequency_hz;
-        found.slow.push_back(candidate);
-      } else {
-        found.fast.push_back({r, line});
-      }
-    }
-  }
-  return found;
-}
-
-FoundEffect line_effect(const SpectralLine& line, double total_variance) {
-  FoundEffect found;
-  Effect& effect = found.effect;
-  effect.form = "line";
-  effect.parameters = {{"cosine", line.cosine, line.std_error, "rad/s"},
-                       {"sine", line.sine, line.std_error, "rad/s"},
-                       {"frequency_hz", line.frequency_hz, line.frequency_std_hz, "Hz"}};
-  effect.meaning = meaning_of(effect);
-  found.p_value = line.p_value;
-  found.likelihood_ratio = 2.0 * line.ratio;
-  const double power = 0.5 * (line.cosine * line.cosine + line.sine * line.sine);
-  found.variance_explained = total_variance > 0.0 ? std::min(1.0, power / total_variance) : 0.0;
-  return found;
-}
 
 double variance_of(std::span<const double> values) {
   double sum = 0.0;
@@ -116,12 +70,12 @@ class Account {
     result_.sample_rate_hz = 1.0 / data_.grid.sample_s;
     SearchOptions search;
     search.significance = options_.significance;
-    search.most_effects = options_.most_effects;
+    search.most_effects = options_.most_effects + (data_.grid.dwells ? 4 : 0);
     search.progress = options_.progress;
     found_ = search_effects(data_, search);
     take_effects();
     // Lines are looked for in what the effects leave; a slow one then competes with them in a second search.
-    lines_ = coherent_lines(errors_, data_.grid, options_.significance);
+    lines_ = coherent_lines(errors_, data_.grid, options_.significance / 20.0);
     if (data_.reference >= 0 && data_.channels[static_cast<std::size_t>(data_.reference)].varies) lines_ = {};
     blame_rotation();
     while (!lines_.slow.empty()) {
@@ -156,7 +110,7 @@ class Account {
   // Lines that follow the rotation are the loop's own. Fixed lines cannot stand for them: they are reported,
   // with the channel to log, and not put into the model.
   void blame_rotation() {
-    for (std::size_t r = 0; r < errors_.size() && !moving_; ++r) {
+    for (std::size_t r = 0; r < errors_.size() && !moving_ && ramps_.empty(); ++r) {
       const std::vector<SpectralLine> peaks =
           find_lines(errors_[r].after, errors_[r].start_s, data_.grid.sample_s, options_.significance);
       if (peaks.empty()) continue;
@@ -202,11 +156,18 @@ class Account {
     lines_.slow = std::move(kept);
   }
 
+  // Of a rate table ten contiguous parts; of a time series pieces in turn, so that slow channels are seen by
+  // all.
+  [[nodiscard]] int fold_count() const { return data_.grid.dwells ? kDwellFolds : kFolds; }
+  [[nodiscard]] std::vector<int> fold_of_block() const {
+    return data_.grid.dwells ? folds_of(data_.grid, kDwellFolds, 1) : folds_of(data_.grid, kFolds);
+  }
+
   // Coefficients for each fold from the blocks of the others.
   std::vector<Eigen::VectorXd> crossed() const {
     std::vector<Eigen::VectorXd> coefficients;
-    const std::vector<int> fold = folds_of(data_.grid, kFolds);
-    for (int f = 0; f < kFolds; ++f) {
+    const std::vector<int> fold = fold_of_block();
+    for (int f = 0; f < fold_count(); ++f) {
       // Whitened on all blocks, then fitted on the rows of the others: a fold is left out of the fit, not cut
       // out of the filter, which would start anew behind every gap.
       Columns white = columns_;
@@ -232,7 +193,7 @@ class Account {
     const Eigen::Index p = columns_.cols() - 1 - constant_columns();
     const Eigen::VectorXd whole = found_.coefficients.tail(p);
     const std::vector<Eigen::VectorXd> folds = p > 0 ? crossed() : std::vector<Eigen::VectorXd>{};
-    const std::vector<int> fold = folds_of(data_.grid, kFolds);
+    const std::vector<int> fold = fold_of_block();
     const BlockGrid& grid = data_.grid;
     Eigen::VectorXd all = Eigen::VectorXd::Zero(columns_.rows());
     Eigen::VectorXd held = all;
@@ -383,6 +344,19 @@ class Account {
       pair.separate_by = capture_that_separates(data_, mine, alternative.candidate);
       result_.indistinguishable.push_back(std::move(pair));
     }
+    // On one heading the Earth's rate turning into a tilting axis is the same regressor: no data of it can
+    // tell.
+    for (std::size_t i = 0; i < result_.effects.size(); ++i) {
+      const Effect& effect = result_.effects[i].effect;
+      if (effect.form != "linear" || kind_of(effect.channel) != ChannelKind::kAcceleration) continue;
+      Indistinguishable pair;
+      pair.effects = {effect, effect};
+      pair.effects[1].form = "earth_rate";
+      pair.correlation = 1.0;
+      pair.separate_by =
+          "the same capture with the heading reversed: the Earth's rate changes sign, g-sensitivity does not";
+      result_.indistinguishable.push_back(std::move(pair));
+    }
   }
 
   void write_figures() {
@@ -402,9 +376,8 @@ class Account {
         errors_.begin(), errors_.end(),
         [](const EvenError& a, const EvenError& b) { return a.before.size() < b.before.size(); });
     std::vector<SpectralLine> peaks;
-    for (const SpectralLine& line :
-         find_lines(longest->after, longest->start_s, data_.grid.sample_s, options_.significance)) {
-      peaks.push_back(line);
+    if (!data_.grid.dwells) {
+      peaks = find_lines(longest->after, longest->start_s, data_.grid.sample_s, options_.significance);
     }
     result_.unexplained = describe_unexplained(longest->before, longest->after, longest->start_s,
                                                data_.grid.sample_s, found_.noise, data_.grid, peaks);
@@ -512,40 +485,6 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
   Diagnosis diagnosis = Account(fitted, clean, ramps, options).run();
   if (partly) judge(records, options, diagnosis);
   return diagnosis;
-}
-
-void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& model) {
-  std::size_t old = 0;
-  for (const Effect& effect : model.effects) old += effect.parameters.size();
-  std::size_t added = 0;
-  for (const FoundEffect& found : diagnosis.effects) {
-    model.effects.push_back(found.effect);
-    model.effects.back().axis = axis;
-    added += found.effect.parameters.size();
-  }
-  // Axes are fitted apart, so nothing is known of covariances across them: zero.
-  std::vector<double> covariance((old + added) * (old + added), 0.0);
-  for (std::size_t i = 0; i < old && model.covariance.size() == old * old; ++i) {
-    for (std::size_t j = 0; j < old; ++j) covariance[i * (old + added) + j] = model.covariance[i * old + j];
-  }
-  for (std::size_t i = 0; i < added; ++i) {
-    for (std::size_t j = 0; j < added; ++j) {
-      covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[i * added + j];
-    }
-  }
-  model.covariance = std::move(covariance);
-  for (const ChannelRange& range : diagnosis.ranges) {
-    const auto known = std::find_if(model.ranges.begin(), model.ranges.end(), [&](const ChannelRange& other) {
-      return other.channel == range.channel;
-    });
-    if (known == model.ranges.end()) {
-      model.ranges.push_back(range);
-    } else {
-      known->low = std::min(known->low, range.low);
-      known->high = std::max(known->high, range.high);
-    }
-  }
-  model.noise[axis] = diagnosis.noise;
 }
 
 }  // namespace ifog

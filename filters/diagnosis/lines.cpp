@@ -11,8 +11,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kFirstBin = 8.0;  // below, slow noise and a line look alike
-constexpr double kBand = 0.15;     // noise is taken from +-15 % of the frequency, and at least
+constexpr double kFirstBin = 16.0;  // below, slow noise and a line look alike
+constexpr double kBand = 0.15;      // noise is taken from +-15 % of the frequency, and at least
 constexpr std::size_t kLeastBins = 25;
 
 double mean_of(std::span<const double> values) {

@@ -22,7 +22,8 @@ double evaluate(const BlockGrid& grid, const Columns& columns, const NoiseShape&
 
 // One parameter at a time by a shrinking factor in both directions; the likelihood is smooth and nearly
 // separable in the logarithms of walk and flicker, and zero is a value of its own that no factor reaches.
-NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, bool with_markov) {
+NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, bool with_markov,
+               double precision) {
   double best = evaluate(grid, columns, shape);
   const auto attempt = [&](const NoiseShape& trial) {
     const double value = evaluate(grid, columns, trial);
@@ -37,7 +38,7 @@ NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, 
     parameters.push_back(&NoiseShape::markov_s);
   }
   double factor = 4.0;
-  while (factor > 1.05) {
+  while (factor > precision) {
     bool moved = false;
     for (double NoiseShape::*parameter : parameters) {
       if (shape.*parameter == 0.0) continue;
@@ -95,7 +96,7 @@ WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const C
   return fit;
 }
 
-NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start) {
+NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start, double precision) {
   if (grid.dwells) {
     const WhitenedFit fit = fit_whitened(grid, {}, columns);
     return {{}, fit.log_likelihood, fit.white_variance};
@@ -103,7 +104,7 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseSha
   NoiseShape shape = start;
   if (shape.walk == 0.0) shape.walk = 1e-5;
   if (shape.flicker == 0.0) shape.flicker = 1e-3;
-  return climb(grid, columns, shape, shape.markov > 0.0);
+  return climb(grid, columns, shape, shape.markov > 0.0, precision);
 }
 
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
@@ -129,7 +130,7 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
       if (value > richer.log_likelihood) richer = {shape, value, 0.0};
     }
   }
-  if (richer.shape.markov > 0.0) richer = climb(grid, columns, richer.shape, true);
+  if (richer.shape.markov > 0.0) richer = climb(grid, columns, richer.shape, true, 1.05);
   return 2.0 * (richer.log_likelihood - best.log_likelihood) > kMarkovGain ? richer : best;
 }
 

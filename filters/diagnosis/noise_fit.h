@@ -24,7 +24,8 @@ struct NoiseFit {
 
 // Searches walk and flicker, both down to zero, from the given start; a Gauss-Markov process of its own is
 // kept as it is in `start`.
-NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start);
+NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start,
+                   double precision = 1.05);
 
 // From nothing known: coarse grid, then fit_noise; then whether a Gauss-Markov process is there as well.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns);

@@ -11,9 +11,10 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kShortlist = 5;  // candidates of different shape that are refined at each step
+constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
 constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
 constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
+constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
 constexpr double kAlike = 0.98;        // or this correlation of the whitened regressors
 
 // Probability of a likelihood ratio this large for one regressor that has no effect.
@@ -60,11 +61,9 @@ class Loop {
   Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
     Trial trial;
     if (model[at].searched()) refine(model, at, start);
-    trial.noise = fit_noise(data_.grid, design(data_, model), start);
-    if (model[at].searched()) {
-      refine(model, at, trial.noise.shape);
-      trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
-    }
+    trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
+    if (model[at].searched()) refine(model, at, trial.noise.shape);
+    trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
     trial.score = 2.0 * trial.noise.log_likelihood - penalty(model);
     trial.model = std::move(model);
     return trial;
@@ -113,7 +112,7 @@ class Loop {
   Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough) const {
     Trial best;
     std::vector<Scored> scored = scan_.score(base, noise, thorough);
-    if (thorough) {
+    if (thorough && !data_.grid.dwells) {
       for (const Scored& step : scan_.steps(base, noise)) scored.push_back(step);
     }
     std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
@@ -304,13 +303,12 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects) {
   return columns;
 }
 
-std::vector<int> folds_of(const BlockGrid& grid, int folds) {
-  constexpr std::size_t kTurns = 4;
+std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
   std::vector<int> fold(grid.size());
   for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
     const std::size_t n = grid.starts[r + 1] - grid.starts[r];
     for (std::size_t b = 0; b < n; ++b) {
-      const std::size_t piece = b * kTurns * static_cast<std::size_t>(folds) / n;
+      const std::size_t piece = b * turns * static_cast<std::size_t>(folds) / n;
       fold[grid.starts[r] + b] = static_cast<int>(piece) % folds;
     }
   }

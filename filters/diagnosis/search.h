@@ -50,7 +50,7 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects);
 
 // Which of `folds` each block belongs to: short contiguous pieces in turn, so that every fold sees the whole
 // record.
-std::vector<int> folds_of(const BlockGrid& grid, int folds);
+std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);
 
 // Coefficients of the columns after the first by generalised least squares, on the rows where `use` says so.
 // Covariance too, when asked for.

@@ -1,11 +1,14 @@
 // ifog diagnose: what the error is made of, what to correct, and what stays.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/text_file.h"
@@ -79,6 +82,46 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
   return record;
 }
 
+// What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
+// the Earth's rate, whatever the mounting. Empty unless there are three gyros and three accelerometers.
+std::string vertical_rate(const Capture& capture) {
+  if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
+  std::array<double, 3> rate{};
+  std::array<double, 3> force{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto mean = [](const std::vector<double>& values) {
+      double sum = 0.0;
+      double n = 0.0;
+      for (const double v : values) {
+        if (!std::isfinite(v)) continue;
+        sum += v;
+        n += 1.0;
+      }
+      return n > 0.0 ? sum / n : 0.0;
+    };
+    rate[a] = mean(capture.rate_radps[a]);
+    const CaptureColumn* accel = nullptr;
+    for (const CaptureColumn& column : capture.channels) {
+      if (column.name == "accel_" + capture.axes[a] + "_mps2") accel = &column;
+    }
+    if (!accel) return "";
+    force[a] = mean(accel->values);
+  }
+  const double g = std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  if (g < 9.0 || g > 10.5) return "";
+  constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
+  const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
+  if (std::abs(up) > kEarth) return "";
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(),
+                "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
+                "Earth's rate "
+                "at latitude %.2f°",
+                up * kDegrees * 3600.0, std::asin(up / kEarth) * kDegrees);
+  return text.data();
+}
+
 std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const Arguments& arguments) {
   std::vector<AxisDiagnosis> found;
   const std::vector<std::string>& axes = captures.front().axes;
@@ -106,6 +149,8 @@ std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const 
     progress.reset();
     found.push_back({axes[axis], std::move(diagnosis)});
   }
+  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
+  if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   if (found.empty()) throw std::runtime_error("no such axis in " + arguments.captures[0]);
   return found;
 }
