@@ -176,14 +176,18 @@ class Account {
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(white.middleCols(1, k));
       const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(white.rows(), k);
       white -= (q * (q.transpose() * white)).eval();
+      const Eigen::Index p = white.cols() - 1 - k;
+      const Eigen::VectorXd full = white.rightCols(p).colwise().norm().transpose().cwiseMax(1e-300);
       for (Eigen::Index i = 0; i < white.rows(); ++i) {
         if (fold[static_cast<std::size_t>(i)] == f) white.row(i).setZero();
       }
-      const Eigen::Index p = white.cols() - 1 - k;
       const Columns x = white.rightCols(p);
-      const Eigen::VectorXd scale = x.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+      // What happened in the held-out fold alone, the others cannot know: no coefficient.
+      Eigen::VectorXd scale = x.colwise().norm().transpose();
+      for (Eigen::Index j = 0; j < p; ++j) scale[j] = scale[j] > 1e-3 * full[j] ? 1.0 / scale[j] : 0.0;
       const Eigen::MatrixXd scaled = x * scale.asDiagonal();
-      const Eigen::VectorXd c = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(scaled).solve(white.col(0));
+      const Eigen::VectorXd c =
+          Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(scaled).solve(white.col(0));
       coefficients.push_back(scale.asDiagonal() * c);
     }
     return coefficients;

@@ -85,7 +85,10 @@ class Loop {
     double high = std::log(model[at].time_constant_s * 2.5);
     const double least = std::log(2.0 * data_.grid.fine_s);
     low = std::max(low, least);
-    high = std::min(std::max(high, least), std::log(3600.0));
+    const std::vector<double> tried = time_constants(data_.grid, model[at].form);
+    const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
+    high = std::min(std::max(high, least), std::log(most));
+    low = std::min(low, high);
     double a = high - kGolden * (high - low);
     double b = low + kGolden * (high - low);
     double fa = value(a);
@@ -138,10 +141,36 @@ class Loop {
     if (best.model.empty()) return false;
     const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
     if (ratio < least_ratio_ + complexity(best.model.back())) return false;
-    if (best.model.back().form != Form::kStep && !predicts(best)) return false;
+    if (best.model.back().form == Form::kStep ? !stays(best) : !predicts(best)) return false;
     model_ = best.model;
     noise_ = best.noise;
     return true;
+  }
+
+  // A knock makes innovations like a step's. A step is still there later: the means before and after differ
+  // by it.
+  bool stays(const Trial& trial) const {
+    const BlockGrid& grid = data_.grid;
+    const Candidate& step = trial.model.back();
+    const Columns columns = design(data_, trial.model);
+    const Eigen::VectorXd c = solve(grid, trial.noise.shape, columns);
+    const Eigen::Index last = columns.cols() - 1;
+    const std::size_t from = grid.starts[step.record];
+    const std::size_t to = grid.starts[step.record + 1];
+    const std::size_t window = std::max<std::size_t>(8, (to - from) / 20);
+    std::array<double, 2> sum{};
+    std::array<double, 2> count{};
+    for (std::size_t b = from; b < to; ++b) {
+      const double away = std::abs(grid.time_s[b] - step.time_s) / grid.block_s;
+      if (!grid.valid[b] || away < 3.0 || away > static_cast<double>(window)) continue;
+      const auto row = static_cast<Eigen::Index>(b);
+      const std::size_t side = grid.time_s[b] > step.time_s ? 1 : 0;
+      sum[side] += columns(row, 0) - columns.row(row).segment(1, last - 1).dot(c.head(last - 1));
+      count[side] += 1.0;
+    }
+    if (count[0] < 4.0 || count[1] < 4.0) return false;
+    const double found = sum[1] / count[1] - sum[0] / count[0];
+    return found * c[last - 1] > 0.0 && std::abs(found) > 0.4 * std::abs(c[last - 1]);
   }
 
   // Two effects that hide each other: neither passes alone, or a third stood for both.
