@@ -27,7 +27,7 @@ TEST(CompareFigures, LagOfADelayedSineIsTheDelay) {
     reference.push_back(std::sin(2 * std::numbers::pi * 0.5 * k * kPeriod));
     output.push_back(0.02 + std::sin(2 * std::numbers::pi * 0.5 * (k * kPeriod - kDelay)));
   }
-  const auto against = ifog::against_reference(output, reference, kPeriod, 300);
+  const auto against = ifog::against_reference(output, reference, kPeriod, 90);
   ASSERT_TRUE(against.lag_s.has_value());
   EXPECT_NEAR(*against.lag_s, kDelay, 1e-4);
   EXPECT_NEAR(against.bias, 0.02, 1e-4);
