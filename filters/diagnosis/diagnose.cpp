@@ -25,23 +25,8 @@ namespace {
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFolds = 4;
 constexpr int kDwellFolds = 10;
+constexpr double kWorse = 1.05;
 constexpr std::size_t kSeriesPoints = 4000;
-
-double variance_of(std::span<const double> values) {
-  double sum = 0.0;
-  double square = 0.0;
-  double n = 0.0;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    n += 1.0;
-  }
-  if (n < 2.0) return 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
-  }
-  return square / n;
-}
 
 class Account {
  public:
@@ -90,6 +75,7 @@ class Account {
       }
     }
     take_effects();
+    drop_what_does_not_hold(search);
     write_effects();
     write_alternatives();
     write_figures();
@@ -99,6 +85,32 @@ class Account {
 
  private:
   [[nodiscard]] Eigen::Index constant_columns() const { return static_cast<Eigen::Index>(records_.size()); }
+
+  // The last word is the error on held-out data: effects that make it larger are no model, whatever their
+  // p-values.
+  void drop_what_does_not_hold(SearchOptions& search) {
+    if (found_.chosen.size() <= search.given.size()) return;
+    double before = 0.0;
+    double after = 0.0;
+    for (const EvenError& error : errors_) {
+      const std::size_t count = std::max<std::size_t>(1, error.before.size() / 2000);
+      before += variance_of(means_over(error.before, count));
+      after += variance_of(means_over(error.held_out, count));
+    }
+    if (after <= kWorse * before) return;
+    std::string names;
+    for (const Chosen& chosen : found_.chosen) {
+      const Effect effect = effect_of(data_, chosen.candidate);
+      names +=
+          (names.empty() ? "" : ", ") + effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+    }
+    result_.remarks.push_back(
+        "the innovations suggest " + names +
+        ", but on held-out data the error would grow: left out, the noise is not stationary");
+    search.most_effects = 0;
+    found_ = search_effects(data_, search);
+    take_effects();
+  }
 
   void take_effects() {
     std::vector<Candidate> effects;
@@ -203,9 +215,16 @@ class Account {
     Eigen::VectorXd held = all;
     if (p > 0) {
       all = columns_.rightCols(p) * whole;
+      // Each fold's fit has a constant of its own: without it a channel far from zero would step from fold to
+      // fold.
+      Columns centred = columns_.rightCols(p);
+      for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+        auto rows = centred.middleRows(static_cast<Eigen::Index>(grid.starts[r]),
+                                       static_cast<Eigen::Index>(grid.starts[r + 1] - grid.starts[r]));
+        rows.rowwise() -= rows.colwise().mean().eval();
+      }
       for (Eigen::Index b = 0; b < held.size(); ++b) {
-        held[b] =
-            columns_.row(b).tail(p).dot(folds[static_cast<std::size_t>(fold[static_cast<std::size_t>(b)])]);
+        held[b] = centred.row(b).dot(folds[static_cast<std::size_t>(fold[static_cast<std::size_t>(b)])]);
       }
     }
     contribution_ = all;

@@ -30,4 +30,20 @@ std::vector<double> error_of(const Record& record) {
   return error;
 }
 
+double variance_of(std::span<const double> values) {
+  double sum = 0.0;
+  double square = 0.0;
+  double n = 0.0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += v;
+    n += 1.0;
+  }
+  if (n < 2.0) return 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
+  }
+  return square / n;
+}
+
 }  // namespace ifog

@@ -21,4 +21,7 @@ std::vector<double> on_even_grid(const Record& record, double sample_s, const st
 // rate - reference by sample.
 std::vector<double> error_of(const Record& record);
 
+// About the mean, NaN left out.
+double variance_of(std::span<const double> values);
+
 }  // namespace ifog

@@ -82,6 +82,21 @@ std::vector<double> noise_floor(const std::vector<double>& power) {
   return floor;
 }
 
+// Noise power right beside a peak. On a resonance it is far above the noise of the wider band, and every
+// ripple of the resonance would pass for a line against that.
+double noise_beside(const std::vector<double>& power, std::size_t k) {
+  constexpr std::size_t kNear = 4;
+  constexpr std::size_t kFar = 40;
+  std::vector<double> window;
+  for (std::size_t d = kNear; d <= kFar; ++d) {
+    if (k > d) window.push_back(power[k - d]);
+    if (k + d < power.size()) window.push_back(power[k + d]);
+  }
+  const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
+  std::nth_element(window.begin(), middle, window.end());
+  return *middle / std::numbers::ln2;
+}
+
 // Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces.
 std::vector<Complex> demodulate(std::span<const double> error, double mean, double cycles_per_sample,
                                 std::size_t pieces) {
@@ -180,8 +195,8 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
                                     [&](std::size_t t) { return (t > k ? t - k : k - t) < close; });
     if (beside) continue;
     taken.push_back(k);
-    SpectralLine line =
-        refine(error, mean, start_s, period_s, static_cast<double>(k), length, floor[k], tries);
+    SpectralLine line = refine(error, mean, start_s, period_s, static_cast<double>(k), length,
+                               std::max(floor[k], noise_beside(power, k)), tries);
     if (line.ratio < least) continue;
     std::size_t first = k;
     std::size_t last = k;

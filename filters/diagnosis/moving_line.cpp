@@ -13,6 +13,7 @@ using Complex = std::complex<double>;
 // What the driven carrier has to gather beyond the fixed one, in units of the noise around the peak. A line
 // that stays loses by the same measure, so the sign is as telling as the size.
 constexpr double kLeastGain = 30.0;
+constexpr double kMostBins = 8.0;  // wider, it is a hump as well
 constexpr double kLeastCoherence =
     0.5;  // below, the peak is a hump of noise and its power says nothing of a phase
 
@@ -31,24 +32,34 @@ std::vector<double> relative_angle(std::span<const double> rate, double mean) {
   return angle;
 }
 
-double power(std::span<const double> error, double mean, const std::vector<double>& steps, double cycles) {
-  Complex sum(0.0, 0.0);
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    if (!std::isfinite(error[i])) continue;
-    const double turns = cycles * steps[i];
-    sum += (error[i] - mean) * std::polar(1.0, -2.0 * std::numbers::pi * (turns - std::floor(turns)));
-  }
-  return std::norm(sum);
-}
-
+// The error against a carrier of `cycles` a step, summed over short pieces: frequencies close by then cost
+// the pieces only, for within a piece they differ by a small part of a turn.
 double best_power(std::span<const double> error, double mean, const std::vector<double>& steps, double cycles,
                   double bins, double& at) {
-  const double bin = 1.0 / static_cast<double>(error.size());
+  constexpr std::size_t kPieces = 512;
+  const std::size_t n = error.size();
+  std::vector<Complex> sums(kPieces);
+  std::vector<double> middle(kPieces);
+  for (std::size_t p = 0; p < kPieces; ++p) {
+    const std::size_t from = p * n / kPieces;
+    const std::size_t to = (p + 1) * n / kPieces;
+    if (from == to) continue;
+    middle[p] = steps[(from + to) / 2];
+    for (std::size_t i = from; i < to; ++i) {
+      if (!std::isfinite(error[i])) continue;
+      const double turns = cycles * steps[i];
+      sums[p] += (error[i] - mean) * std::polar(1.0, -2.0 * std::numbers::pi * (turns - std::floor(turns)));
+    }
+  }
+  const double bin = 1.0 / static_cast<double>(n);
   double best = 0.0;
   for (double offset = -bins; offset <= bins; offset += 0.25) {
-    const double value = power(error, mean, steps, cycles + offset * bin);
-    if (value <= best) continue;
-    best = value;
+    Complex sum(0.0, 0.0);
+    for (std::size_t p = 0; p < kPieces; ++p) {
+      sum += sums[p] * std::polar(1.0, -2.0 * std::numbers::pi * offset * bin * middle[p]);
+    }
+    if (std::norm(sum) <= best) continue;
+    best = std::norm(sum);
     at = cycles + offset * bin;
   }
   return best;
@@ -75,9 +86,10 @@ std::optional<MovingLine> find_moving_line(std::span<const double> error, std::s
   for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = static_cast<double>(i + 1);
   std::optional<MovingLine> found;
   for (std::size_t k = 0; k < std::min<std::size_t>(peaks.size(), 6); ++k) {
-    if (peaks[k].coherence < kLeastCoherence) continue;
+    const double width = peaks[k].width_hz * period_s * static_cast<double>(error.size());
+    if (peaks[k].coherence < kLeastCoherence || width > kMostBins) continue;
     const double cycles = peaks[k].frequency_hz * period_s;
-    const double bins = std::max(3.0, 2.0 * peaks[k].width_hz * period_s * static_cast<double>(error.size()));
+    const double bins = std::max(3.0, 2.0 * width);
     double at_fixed = cycles;
     double at_driven = cycles;
     const double still = best_power(error, mean_error, fixed, cycles, bins, at_fixed);
@@ -88,13 +100,22 @@ std::optional<MovingLine> find_moving_line(std::span<const double> error, std::s
   }
   if (!found) return found;
   // A higher harmonic moves further and shows first; what it is a harmonic of is the line.
+  const double bin = 1.0 / (static_cast<double>(error.size()) * period_s);
+  const auto multiple_of = [&](double frequency, double base) {
+    const double times = frequency / base;
+    return times > 0.5 && std::abs(times - std::round(times)) * base < std::max(0.002 * frequency, 2.0 * bin);
+  };
   double fundamental = found->frequency_hz;
   for (const SpectralLine& peak : peaks) {
-    const double times = found->frequency_hz / peak.frequency_hz;
-    const double near = 2.0 / (static_cast<double>(error.size()) * period_s) / found->frequency_hz;
-    if (std::abs(times - std::round(times)) < std::max(0.002, near) * times)
+    if (multiple_of(found->frequency_hz, peak.frequency_hz))
       fundamental = std::min(fundamental, peak.frequency_hz);
   }
+  // The ramp is no sine: without harmonics it is something else, such as a structure that swings with what it
+  // measures.
+  const auto family = std::count_if(peaks.begin(), peaks.end(), [&](const SpectralLine& peak) {
+    return multiple_of(peak.frequency_hz, fundamental);
+  });
+  if (family < 3) return std::nullopt;
   found->frequency_hz = fundamental;
   found->cycles_per_rad = fundamental / std::abs(mean_rate);
   return found;

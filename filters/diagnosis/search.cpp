@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
 constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
 constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
-constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
-constexpr double kAlike = 0.98;        // or this correlation of the whitened regressors
+constexpr double kWorse = 1.25;  // chance makes slow noise and an effect run together or against each other
+constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
+constexpr double kAlike = 0.98;       // or this correlation of the whitened regressors
 
 // Probability of a likelihood ratio this large for one regressor that has no effect.
 double tail(double ratio, int columns) {
@@ -142,9 +143,36 @@ class Loop {
     const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
     if (ratio < least_ratio_ + complexity(best.model.back())) return false;
     if (best.model.back().form == Form::kStep ? !stays(best) : !predicts(best)) return false;
+    if (left_over(best.model, best.noise.shape) > kWorse * left_over(model_, noise_.shape)) return false;
     model_ = best.model;
     noise_ = best.noise;
     return true;
+  }
+
+  // Variance of the block means less the effects. Innovations see what is quick; a coefficient that only fits
+  // that can be far too large for what is slow, and a correction must not make the error larger.
+  double left_over(const std::vector<Candidate>& model, const NoiseShape& shape) const {
+    const Columns columns = design(data_, model);
+    const Eigen::Index p = columns.cols() - 1 - constants(data_.grid).cols();
+    const Eigen::VectorXd c = solve(data_.grid, shape, columns);
+    Eigen::VectorXd left = columns.col(0);
+    if (p > 0) left -= columns.rightCols(p) * c.tail(p);
+    double sum = 0.0;
+    for (std::size_t r = 0; r + 1 < data_.grid.starts.size(); ++r) {
+      double mean = 0.0;
+      double square = 0.0;
+      double n = 0.0;
+      for (std::size_t b = data_.grid.starts[r]; b < data_.grid.starts[r + 1]; ++b) {
+        if (!data_.grid.valid[b]) continue;
+        const double value = left[static_cast<Eigen::Index>(b)];
+        n += 1.0;
+        const double step = value - mean;
+        mean += step / n;
+        square += step * (value - mean);
+      }
+      sum += square;
+    }
+    return sum;
   }
 
   // A knock makes innovations like a step's. A step is still there later: the means before and after differ
@@ -186,6 +214,7 @@ class Loop {
     // Tries grow as the square, and so does what two have to bring.
     if (ratio < 2.0 * least_ratio_ + penalty({trial.model.end() - 2, trial.model.end()}) || !predicts(trial))
       return false;
+    if (left_over(trial.model, trial.noise.shape) > kWorse * left_over(model_, noise_.shape)) return false;
     model_ = trial.model;
     noise_ = trial.noise;
     return true;
