@@ -475,37 +475,8 @@ class Account {
 Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options) {
   const bool partly = options.fit_from > 0.0 || options.fit_to < 1.0;
   const std::vector<Record> fitted = partly ? fitted_part(records, options) : records;
-  std::vector<RampFit> ramps;
-  std::vector<Record> clean = fitted;
-  std::vector<std::vector<double>> rates;
-  if (!fitted.empty()) {
-    for (const RecordChannel& channel : fitted.front().channels) {
-      const auto wraps = [&](const Record& record) {
-        return std::any_of(record.channels.begin(), record.channels.end(), [&](const RecordChannel& other) {
-          return other.name == channel.name && wrap_period(other.values) > 0.0;
-        });
-      };
-      if (!std::any_of(fitted.begin(), fitted.end(), wraps)) continue;
-      // A counter that wraps is no environment: as a function of its value or slope it would take rotation
-      // away.
-      for (Record& record : clean) {
-        std::erase_if(record.channels,
-                      [&](const RecordChannel& other) { return other.name == channel.name; });
-      }
-      if (auto ramp = fit_ramp(fitted, channel.name, options.significance)) ramps.push_back(std::move(*ramp));
-    }
-  }
-  if (!ramps.empty()) {
-    for (std::size_t r = 0; r < clean.size(); ++r) {
-      std::vector<double> rate(clean[r].rate_radps.begin(), clean[r].rate_radps.end());
-      for (const RampFit& ramp : ramps) {
-        for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
-      }
-      rates.push_back(std::move(rate));
-    }
-    for (std::size_t r = 0; r < clean.size(); ++r) clean[r].rate_radps = rates[r];
-  }
-  Diagnosis diagnosis = Account(fitted, clean, ramps, options).run();
+  const WithoutRamps parts = take_out_ramps(fitted, options.significance);
+  Diagnosis diagnosis = Account(fitted, parts.clean, parts.ramps, options).run();
   if (partly) judge(records, options, diagnosis);
   return diagnosis;
 }
