@@ -18,9 +18,11 @@ CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
         signal_ = i;
         ++found;
       }
-  if (found == 0) throw std::runtime_error(dbc_file + ": no signal \"" + signal + "\"; expected SIGNAL or MESSAGE.SIGNAL");
+  if (found == 0)
+    throw std::runtime_error(dbc_file + ": no signal \"" + signal + "\"; expected SIGNAL or MESSAGE.SIGNAL");
   if (found > 1)
-    throw std::runtime_error(dbc_file + ": signal \"" + signal + "\" is in several messages; expected MESSAGE.SIGNAL");
+    throw std::runtime_error(dbc_file + ": signal \"" + signal +
+                             "\" is in several messages; expected MESSAGE.SIGNAL");
 }
 
 bool CanChannel::decode(const ifog_can_frame& frame, double& value) const noexcept {

@@ -11,8 +11,8 @@ namespace ifog {
 
 class CanChannel {
  public:
-  // signal: "SIGNAL" or "MESSAGE.SIGNAL". Throws std::runtime_error with one line: the file, a signal that is not there
-  // or is in several messages.
+  // signal: "SIGNAL" or "MESSAGE.SIGNAL". Throws std::runtime_error with one line: the file, a signal that is
+  // not there or is in several messages.
   CanChannel(const std::string& dbc_file, const std::string& signal);
 
   [[nodiscard]] CanId id() const { return {message_.id, message_.extended}; }

@@ -57,9 +57,10 @@ class LcmChannel {
     const bool known = name_ == "raw" || name_ == "compensated" || name_ == "denoised";
     if (!known || field.size() != bracket + 3 || field.back() != ']' || field[bracket + 1] < '0' ||
         field[bracket + 1] >= '0' + kMaxAxes)
-      throw std::runtime_error("sensor.channel.field = \"" + field +
-                               "\": expected the name in an ifog.channel_t, or raw[i], compensated[i], denoised[i] of an "
-                               "ifog.rate_t, i = 0 ... 2");
+      throw std::runtime_error(
+          "sensor.channel.field = \"" + field +
+          "\": expected the name in an ifog.channel_t, or raw[i], compensated[i], denoised[i] of an "
+          "ifog.rate_t, i = 0 ... 2");
     axis_ = field[bracket + 1] - '0';
   }
   [[nodiscard]] const std::string& lcm_channel() const { return wanted_.config.lcm_channel; }
@@ -170,7 +171,8 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
     for (const LcmChannel& one : impl_->messages) names.push_back(one.lcm_channel());
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
-    for (const std::string& name : names) lcm_subscribe(impl_->lcm, name.c_str(), &Impl::received, impl_.get());
+    for (const std::string& name : names)
+      lcm_subscribe(impl_->lcm, name.c_str(), &Impl::received, impl_.get());
   }
 }
 

@@ -34,8 +34,9 @@ TEST(Riccati, RandomWalkGainIsTheClosedForm) {
   }
 }
 
-// Integrated random walk driven by continuous white noise, L^2 = q T^3 / R. The element (2,2) of the Riccati equation
-// gives beta^2 = L^2 (1 - alpha); eliminating P22 between (1,2) and (1,1) gives alpha^2 + beta^2 / 6 = beta (2 - alpha).
+// Integrated random walk driven by continuous white noise, L^2 = q T^3 / R. The element (2,2) of the Riccati
+// equation gives beta^2 = L^2 (1 - alpha); eliminating P22 between (1,2) and (1,1) gives alpha^2 + beta^2 / 6
+// = beta (2 - alpha).
 TEST(Riccati, IntegratedRandomWalkIsTheAlphaBetaFilter) {
   for (const double index_squared : {1e-8, 1e-4, 1e-2, 1.0}) {
     const double period = 0.01;
