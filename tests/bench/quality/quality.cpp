@@ -3,7 +3,7 @@
 // over seeds with the standard deviation between seeds; on moving scenarios that filter lags, so figures far
 // below one are possible.
 //
-//   bench_quality [--seeds N] [--ratio Q/R] [--false-triggers SAMPLES]     prints markdown tables
+//   quality_bench [--seeds N] [--ratio Q/R] [--false-triggers SAMPLES]     prints markdown tables
 //
 // Rules are plain, as published, in the first columns; "irwe-akfg + following" is the daemon's default with
 // the cure for inertia and angle conservation.
@@ -150,7 +150,7 @@ int main(int argc, char** argv) {
     }
   }
   if (argc % 2 == 0 || seeds < 1 || !(ratio > 0) || samples < 0) {
-    std::fprintf(stderr, "usage: bench_quality [--seeds N] [--ratio Q/R] [--false-triggers SAMPLES]\n");
+    std::fprintf(stderr, "usage: quality_bench [--seeds N] [--ratio Q/R] [--false-triggers SAMPLES]\n");
     return 2;
   }
   study(ratio, seeds);

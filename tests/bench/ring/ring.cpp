@@ -1,5 +1,5 @@
 // Throughput of the daemon's ring beside Boost.Lockfree's spsc_queue and moodycamel's ReaderWriterQueue:
-// increments from one thread to another, interleaved runs, medians.  usage: bench_ring [MILLIONS [RUNS]]
+// increments from one thread to another, interleaved runs, medians.  usage: ring_bench [MILLIONS [RUNS]]
 #include <readerwriterqueue/readerwriterqueue.h>
 #include <algorithm>
 #include <boost/lockfree/spsc_queue.hpp>

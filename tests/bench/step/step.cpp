@@ -5,7 +5,7 @@
 // figure is the median over rounds of the ratio within the round, so that a slow spell of the machine hits
 // both sides.
 //
-//   bench_step [rounds]     prints a markdown table; exit 1 when a target of the first three rows is missed
+//   step_bench [rounds]     prints a markdown table; exit 1 when a target of the first three rows is missed
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -201,7 +201,7 @@ void add_size(std::vector<Candidate>& all) {
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 31;
   if (rounds < 3) {
-    std::fprintf(stderr, "bench_step: rounds: %s, expected a number of at least 3\n", argv[1]);
+    std::fprintf(stderr, "step_bench: rounds: %s, expected a number of at least 3\n", argv[1]);
     return 2;
   }
   const std::vector<double> z = record();
