@@ -9,12 +9,13 @@
 #include <filesystem>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/text_file.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensator.h"
 #include "filters/model/sha256.h"
+#include "tools/ifog/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/diagnosis_json.h"
 #include "tools/ifog/diagnosis_text.h"
@@ -25,6 +26,7 @@ namespace ifog::tools {
 namespace {
 
 struct Arguments {
+  CaptureInput input;
   std::vector<std::string> captures;
   std::string model, write_model, json, report;
   std::vector<std::string> axes;
@@ -145,7 +147,12 @@ std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const 
     auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
                                                options.most_effects + 1);
     options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
-    Diagnosis diagnosis = diagnose(records, options);
+    Diagnosis diagnosis;
+    try {
+      diagnosis = diagnose(records, options);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(arguments.captures.front() + ": " + error.what());
+    }
     progress.reset();
     found.push_back({axes[axis], std::move(diagnosis)});
   }
@@ -194,7 +201,7 @@ void write_report(const std::vector<Capture>& captures, const std::vector<AxisDi
 
 void run(const Arguments& arguments) {
   std::vector<Capture> captures;
-  for (const std::string& path : arguments.captures) captures.push_back(read_capture(path));
+  for (const std::string& path : arguments.captures) captures.push_back(arguments.input.read(path));
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
@@ -216,12 +223,10 @@ void add_diagnose(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("diagnose", "trace the error to its effects, with the model that corrects them");
-  command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")
-      ->required()
-      ->check(CLI::ExistingFile);
+  command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")->required();
+  arguments->input.add_to(*command);
   command->add_option("--axis", arguments->axes, "only these axes");
-  command->add_option("--model", arguments->model, "correct with this model first; find what it leaves")
-      ->check(CLI::ExistingFile);
+  command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
   command->add_option("--write-model", arguments->write_model, "write the model with what was found");
   command->add_option("--json", arguments->json, "write the diagnosis as JSON");
   command->add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");

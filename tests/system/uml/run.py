@@ -73,8 +73,8 @@ class Bus:
             raise Failure(ran.stdout.strip()[-1500:])
         return ran.stdout
 
-    def stream(self, folder, seconds, *player):
-        self.boot(4 * seconds + 120, os.path.join(HERE, "stream"), self.build, folder, *player)
+    def stream(self, folder, seconds, want, *player):
+        self.boot(4 * seconds + 120, os.path.join(HERE, "stream"), self.build, folder, want, *player)
         with open(os.path.join(folder, "count.json")) as file:
             return json.load(file).get("IFOG_GYRO", {"messages": 0})
 
@@ -84,7 +84,7 @@ class Bus:
         log = os.path.join(folder, "can.log")
         with open(log, "w") as file:
             file.write(frames.candump(sent, HERTZ, "vcan0"))
-        got = self.stream(folder, SECONDS, *[part.replace("LOG", log) for part in player])
+        got = self.stream(folder, SECONDS, "count", *[part.replace("LOG", log) for part in player])
         wrong = [f"{key} {got[key]}" for key in ("missing", "out_of_order", "merged") if got.get(key)]
         if got["messages"] != sent or wrong:
             raise Failure(f"{got['messages']} messages of {sent} sent {' '.join(wrong)}")
@@ -111,7 +111,7 @@ class Bus:
         log = os.path.join(folder, "can.log")
         driver = ["--driver", "dbc"] + [part for key, value in options(folder, 200).items() for part in ("--option", f"{key}={value}")]
         self.tool("convert", capture, log, *driver)
-        got = self.stream(folder, CAPTURE_SAMPLES / 200 / SPEED, self.ifog, "replay", log, "--to", "can:vcan0", "--speed", str(SPEED))
+        got = self.stream(folder, CAPTURE_SAMPLES / 200 / SPEED, "log", self.ifog, "replay", log, "--to", "can:vcan0", "--speed", str(SPEED))
         if got["messages"] != CAPTURE_SAMPLES:
             raise Failure(f"{got['messages']} messages of {CAPTURE_SAMPLES} sent")
         denoised = os.path.join(folder, "denoised.csv")

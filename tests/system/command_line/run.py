@@ -1,0 +1,276 @@
+#!/usr/bin/env python3
+"""The command line as other programs use it: JSON and CSV as promised, exit codes, one clear line for bad input.
+
+usage: run.py PATH_OF_IFOG SOURCE_DIR
+
+What the numbers must be comes from the scenario that was simulated and from closed forms, not from the program.
+"""
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+RATE_HZ, SECONDS, N, BIAS, PER_DEGREE = 50, 400, 2.5e-7, 5e-5, 4e-6
+SCENARIO = f"""
+seed = 3
+sample_rate_hz = {RATE_HZ}
+duration_s = {SECONDS}
+bias_radps = {BIAS}
+[noise]
+N = {N}
+[[channel]]
+name = "temperature_degC"
+shape = "cycle"
+level = 27.0
+amplitude = 3.0
+period_s = 160
+[[effect]]
+form = "linear"
+channel = "temperature_degC"
+coefficient = {PER_DEGREE}
+reference = 25.0
+"""
+failed = 0
+
+
+def ran(*arguments):
+    return subprocess.run([IFOG, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, timeout=120, check=False)
+
+
+def ifog(*arguments):
+    result = ran(*arguments)
+    assert result.returncode == 0, f"ifog {' '.join(map(str, arguments))}: exit {result.returncode}: {result.stderr.strip()}"
+    return result.stdout
+
+
+def refused(code, *says_and_arguments, says):
+    """One line on standard error that has every part of `says`."""
+    result = ran(*says_and_arguments)
+    said = result.stderr.strip()
+    assert result.returncode == code, f"{says_and_arguments}: exit {result.returncode}, expected {code}: {said}"
+    if code == 1:
+        assert len(said.splitlines()) == 1, f"{says_and_arguments}: more than one line: {said}"
+    for part in says:
+        assert part in said, f"{says_and_arguments}: '{part}' is not in '{said}'"
+
+
+def columns(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return {name: [float(row[name]) if row[name] not in ("", "nan") else math.nan for row in rows] for name in rows[0]}
+
+
+def has(where, *keys):
+    missing = [key for key in keys if key not in where]
+    assert not missing, f"no {missing} in {sorted(where)}"
+
+
+def near(value, expected, tolerance, what):
+    assert abs(value - expected) <= tolerance, f"{what} is {value}, expected {expected} ± {tolerance}"
+
+
+def rms(values):
+    return math.sqrt(sum(v * v for v in values) / len(values))
+
+
+class Checks:
+    def __init__(self, folder):
+        self.folder = folder
+        (folder / "rest.toml").write_text(SCENARIO)
+        self.capture = folder / "rest.csv"
+        ifog("simulate", folder / "rest.toml", "--output", self.capture, "--truth", folder / "truth.json")
+
+    def json(self, command, *arguments):
+        path = self.folder / f"{command}.json"
+        ifog(command, *arguments, "--json", path)
+        return json.loads(path.read_text())
+
+    def check_simulate_hides_the_truth(self):
+        truth = json.loads((self.folder / "truth.json").read_text())
+        assert truth["effects"][0]["kind"] == "linear" and truth["noise"]["N"] == N
+        text = self.capture.read_text()
+        for secret in ("linear", "seed", "bias", repr(N), "coefficient"):
+            assert secret not in text, f"the capture says '{secret}'"
+        assert len(columns(self.capture)["time_s"]) == RATE_HZ * SECONDS
+
+    def check_simulate_writes_frames(self):
+        """The same capture as KVH bytes and as a candump log, to the precision of a float32."""
+        rate = columns(self.capture)["rate_radps"]
+        for name, options in (("rest.kvh", ["--driver", "kvh1750"]), ("rest.log", ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc",
+                              "--option", "signal=Rate_x", "--option", "counter=Counter", "--option", f"rate_hz={RATE_HZ}"])):
+            frames, back = self.folder / name, self.folder / (name + ".csv")
+            ifog("simulate", self.folder / "rest.toml", "--output", frames, *options)
+            ifog("convert", frames, back, *options)
+            decoded = columns(back)
+            found = decoded.get("rate_radps") or decoded["rate_x_radps"]
+            assert len(found) == len(rate), f"{name}: {len(found)} samples of {len(rate)}"
+            worst = max(abs(a - b) for a, b in zip(rate, found))
+            assert worst <= 1.2e-7 * max(map(abs, rate)), f"{name}: differs by {worst}"
+
+    def check_allan(self):
+        """White noise alone: sigma(tau) = N / sqrt(tau), and no other term."""
+        (self.folder / "white.toml").write_text(SCENARIO.split("[[channel]]")[0])
+        ifog("simulate", self.folder / "white.toml", "--output", self.folder / "white.csv")
+        found = self.json("allan", self.folder / "white.csv", "--tau", "0.1,1,10")
+        assert found["schema"] == "ifog.allan/1"
+        near(found["sample_rate_hz"], RATE_HZ, 1e-6, "sample rate")
+        axis = found["axes"][0]
+        has(axis, "axis", "tau_s", "adev_radps", "lower_radps", "upper_radps", "coefficients")
+        assert axis["tau_s"] == [0.1, 1, 10], axis["tau_s"]
+        for tau, sigma, low, high in zip(axis["tau_s"], axis["adev_radps"], axis["lower_radps"], axis["upper_radps"]):
+            # Relative error of an overlapping estimate, 1 / sqrt(2 edf), edf about 1.5 T / tau; four of them.
+            near(sigma, N / math.sqrt(tau), 4 * N / math.sqrt(tau) / math.sqrt(3 * SECONDS / tau), f"sigma({tau})")
+            assert low < sigma < high
+        for name in "QNBKR":
+            term = axis["coefficients"][name]
+            has(term, "value", "std_error", "unit", "present")
+            assert term["present"] == (name == "N"), f"{name} present: {term['present']}"
+        near(axis["coefficients"]["N"]["value"], N, 4 * axis["coefficients"]["N"]["std_error"], "N")
+
+    def check_allan_with_holes(self):
+        """A gap and a missing value: said, and analysed in stretches; or refused by line when so asked."""
+        lines = (self.folder / "white.csv").read_text().splitlines()
+        header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
+        del lines[header + 5001:header + 5101]
+        lines[header + 9001] = lines[header + 9001].split(",")[0] + ","
+        holes = self.folder / "holes.csv"
+        holes.write_text("\n".join(lines) + "\n")
+        said = ifog("allan", holes)
+        for part in ("1 gap", "100 samples missing", "missing in 1 row", "3 stretches"):
+            assert part in said, f"'{part}' is not in: {said[:600]}"
+        # The gap is after data row 5000, whose line is header + 5001 counted from one.
+        refused(1, "allan", holes, "--gaps", "refuse", says=[f"{holes}:{header + 5001}: 1 gap"])
+        found = self.json("allan", holes, "--tau", "1")
+        near(found["axes"][0]["adev_radps"][0], N, 0.12 * N, "sigma(1 s) around holes")
+
+    def check_allan_before_and_after(self):
+        """Several captures, one of them denoised, in one picture."""
+        denoised, picture = self.folder / "denoised.csv", self.folder / "allan.svg"
+        ifog("denoise", self.capture, "--output", denoised)
+        ifog("allan", self.capture, denoised, "--plot", picture)
+        assert picture.read_text().rstrip().endswith("</svg>")
+
+    def check_denoise(self):
+        out = self.folder / "denoised.csv"
+        ifog("denoise", self.capture, "--filter", "ckf", "--output", out)
+        found = columns(out)
+        assert list(found)[:5] == ["time_s", "raw_radps", "compensated_radps", "denoised_radps", "variance_rad2ps2"], list(found)
+        assert found["raw_radps"] == columns(self.capture)["rate_radps"]
+        assert rms([a - b for a, b in zip(found["denoised_radps"], found["denoised_radps"][1:])]) < \
+            0.5 * rms([a - b for a, b in zip(found["raw_radps"], found["raw_radps"][1:])])
+        # No variance before the noise is known from the first seconds; then always one.
+        variance = found["variance_rad2ps2"]
+        known = next(i for i, v in enumerate(variance) if v == v)
+        assert known < len(variance) / 4 and min(variance[known:]) > 0
+        lines = self.capture.read_text().splitlines()
+        header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
+        three = self.folder / "three.csv"
+        three.write_text("time_s,rate_x_radps,rate_y_radps,rate_z_radps\n" + "".join(
+            f"{t},{r},{r},{r}\n" for t, r in (line.split(",")[:2] for line in lines[header + 1:header + 1001])))
+        ifog("denoise", three, "--output", self.folder / "three_out.csv")
+        has(columns(self.folder / "three_out.csv"), *(f"{what}_{axis}_radps" for what in ("raw", "compensated", "denoised") for axis in "xyz"))
+
+    def check_tune(self):
+        """The model it writes is what `denoise` runs."""
+        model = self.folder / "tuned.toml"
+        found = self.json("tune", self.folder / "white.csv", "--write-model", model)
+        assert found["schema"] == "ifog.tune/1", found["schema"]
+        ifog("denoise", self.folder / "white.csv", "--model", model, "--output", self.folder / "tuned.csv")
+        # R of white noise is N^2 times the rate.
+        import re
+        written = float(re.search(r"measurement_noise = (\S+)", model.read_text()).group(1))
+        near(written, N * N * RATE_HZ, 4 * N * N * RATE_HZ * math.sqrt(2 / (RATE_HZ * SECONDS)), "measurement_noise")
+
+    def check_compare(self):
+        found = self.json("compare", self.folder / "white.csv")
+        assert found["schema"] == "ifog.compare/1"
+        rules = [row["rule"] for row in found["rows"]]
+        assert set(rules) >= {"ckf", "irwe-akfg", "iae", "rae", "mmae", "sage-husa", "vb"}, rules
+        for row in found["rows"]:
+            has(row, "rule", "settings", "rmse_radps", "std_radps", "adev_radps")
+            has(row["adev_radps"], "0.1", "1", "10", "100")
+            assert row["rmse_radps"] is None, "no reference was given"
+
+    def check_diagnose_and_correct(self):
+        """Found, written, and gone from the capture's own residual: through `denoise --model`, causally."""
+        model, report = self.folder / "model.toml", self.folder / "report.html"
+        found = self.json("diagnose", self.capture, "--quiet", "--write-model", model, "--report", report)
+        has(found, "schema", "samples", "sample_rate_hz", "noise", "effects", "before", "after", "indistinguishable", "unexplained")
+        assert found["schema"] == "ifog.diagnosis/1" and found["samples"] == RATE_HZ * SECONDS
+        assert [(e["form"], e["channel"]) for e in found["effects"]] == [("linear", "temperature_degC")], found["effects"]
+        effect = found["effects"][0]
+        has(effect, "form", "channel", "meaning", "parameters", "p_value", "variance_explained")
+        coefficient = effect["parameters"]["coefficient"]
+        near(coefficient["value"], PER_DEGREE, 4 * coefficient["std_error"], "coefficient")
+        assert sorted(found["before"]) == sorted(found["after"])
+        has(found["unexplained"], "fraction", "kind", "hint")
+        ifog("denoise", self.capture, "--model", model, "--output", self.folder / "corrected.csv")
+        corrected = columns(self.folder / "corrected.csv")["compensated_radps"]
+        mean = sum(corrected) / len(corrected)
+        near(rms([v - mean for v in corrected]), N * math.sqrt(RATE_HZ), 0.05 * N * math.sqrt(RATE_HZ), "RMS of the corrected rate")
+        # With that model nothing is left to find.
+        again = self.json("diagnose", self.capture, "--quiet", "--model", model)
+        assert again["effects"] == [], again["effects"]
+
+    def check_diagnose_reads_frames(self):
+        """The same answer from a candump log through the driver as from the CSV, where no channel is in the frames: nothing."""
+        options = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter",
+                   "--option", f"rate_hz={RATE_HZ}"]
+        ifog("simulate", self.folder / "white.toml", "--output", self.folder / "white.log", *options)
+        found = self.json("diagnose", self.folder / "white.log", "--quiet", *options)
+        assert found["samples"] == RATE_HZ * SECONDS and found["effects"] == []
+
+    def check_bad_input(self):
+        cases = {
+            "word.csv": ("time_s,rate_radps\n0,1e-6\n0.01,abc\n", [":3:", "rate_radps", "'abc'", "expected a number"]),
+            "backwards.csv": ("time_s,rate_radps\n0,1e-6\n0.01,2e-6\n0.005,1e-6\n", [":4:", "time_s", "0.005", "expected more"]),
+            "no_rate.csv": ("time_s,foo_V\n0,1\n0.1,1\n0.2,1\n", ["no rate column", "expected"]),
+            "cut.csv": ("time_s,rate_radps\n0,1e-6\n0.01", [":3:", "1 cells, expected 2"]),
+            "empty.csv": ("", ["no header line"]),
+        }
+        for name, (text, says) in cases.items():
+            path = self.folder / name
+            path.write_text(text)
+            for command in ("allan", "compare", "tune", "diagnose"):
+                refused(1, command, path, says=[str(path), *says])
+            out = self.folder / "never.csv"
+            refused(1, "denoise", path, "--output", out, says=[str(path), *says])
+            assert not out.exists(), "a file was left behind"
+        absent = self.folder / "absent.csv"
+        for command in ("allan", "compare", "tune", "diagnose"):
+            refused(1, command, absent, says=[str(absent)])
+        refused(1, "diagnose", self.capture, "--model", absent, says=[str(absent)])
+        refused(1, "allan", self.capture, "--axis", "w", says=["no axis 'w'", "expected one of"])
+        bad = self.folder / "bad.toml"
+        bad.write_text(SCENARIO.replace("duration_s", "durations_s"))
+        refused(1, "simulate", bad, "--output", self.folder / "never.csv", says=["bad.toml:", "durations_s", "unknown key"])
+
+    def check_usage(self):
+        refused(2, "allan", says=["capture"])
+        refused(2, "allan", self.capture, "--nonsense", says=["--nonsense"])
+        refused(2, "nonsense", says=[])
+        refused(2, "diagnose", self.capture, "--significance", "2", says=["--significance"])
+        assert ran("--help").returncode == 0
+
+
+def main():
+    global failed
+    with tempfile.TemporaryDirectory() as folder:
+        checks = Checks(pathlib.Path(folder))
+        for name in [name for name in vars(Checks) if name.startswith("check_")]:
+            try:
+                getattr(checks, name)()
+                print(f"ok       {name[6:].replace('_', ' ')}", flush=True)
+            except (AssertionError, LookupError, ValueError) as error:
+                failed += 1
+                print(f"FAILED   {name[6:].replace('_', ' ')}: {error}", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
