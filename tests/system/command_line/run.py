@@ -248,7 +248,7 @@ class Checks:
         refused(1, "allan", self.capture, "--axis", "w", says=["no axis 'w'", "expected one of"])
         bad = self.folder / "bad.toml"
         bad.write_text(SCENARIO.replace("duration_s", "durations_s"))
-        refused(1, "simulate", bad, "--output", self.folder / "never.csv", says=["bad.toml:", "durations_s", "unknown key"])
+        refused(1, "simulate", bad, "--output", self.folder / "never.csv", says=["bad.toml:", "durations_s is unknown, expected"])
 
     def check_usage(self):
         refused(2, "allan", says=["capture"])
