@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "filters/model/toml_file.h"
+
 namespace ifog {
 namespace {
 
@@ -55,7 +57,7 @@ std::uint32_t TableReader::line(std::string_view key) const {
 }
 
 void TableReader::complain(std::string_view key, const std::string& what) {
-  errors_.push_back(file_ + ":" + std::to_string(line(key)) + ": " + path(key) + what);
+  errors_.push_back(file_ + ":" + std::to_string(line(key)) + ": " + one_line(path(key) + what));
 }
 
 const toml::node* TableReader::find(std::string_view key) {
@@ -185,8 +187,8 @@ void TableReader::refuse_the_rest() {
     if (asked_.contains(key.str())) continue;
     std::string known;
     for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
-    errors_.push_back(file_ + ":" + std::to_string(key.source().begin.line) + ": " + path(key.str()) +
-                      ": unknown key; known here: " + known);
+    errors_.push_back(file_ + ":" + std::to_string(key.source().begin.line) + ": " +
+                      one_line(path(key.str())) + ": unknown key; known here: " + known);
   }
 }
 

@@ -4,9 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <toml++/toml.h>
-
 #include "filters/model/model.h"
+#include "filters/model/toml_file.h"
 
 namespace ifog {
 namespace {
@@ -22,13 +21,13 @@ class Table {
     text << file_;
     const auto line = (node ? node->source() : table_.source()).begin.line;
     if (line) text << ':' << line;
-    text << ": " << where_ << key;
+    text << ": " << one_line(where_ + key);
     if (node) {
       std::ostringstream value;
       node->visit([&](const auto& n) {
         if constexpr (toml::is_value<decltype(n)>) value << n;
       });
-      text << (value.str().empty() ? "" : " = " + value.str());
+      text << (value.str().empty() ? "" : " = " + one_line(value.str()));
     }
     text << ": " << complaint;
     throw std::runtime_error(text.str());
@@ -211,14 +210,7 @@ Effect read_effect(Table table) {
 }  // namespace
 
 Model parse_model(std::string_view text, const std::string& name) {
-  toml::table root;
-  try {
-    root = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    std::ostringstream line;
-    line << name << ':' << error.source().begin.line << ": " << error.description();
-    throw std::runtime_error(line.str());
-  }
+  const toml::table root = parse_toml(text, name);
   Table table(root, name, "");
   const toml::node* version = table.find("version");
   if (!version || version->value_exact<std::int64_t>() != Model::kVersion) {

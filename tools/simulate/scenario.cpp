@@ -1,6 +1,4 @@
 // Scenario files: strict TOML, every complaint one line with file, line, key and what was expected.
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -8,6 +6,7 @@
 #include <string_view>
 
 #include "drivers/capture/text_file.h"
+#include "filters/model/toml_file.h"
 #include "tools/simulate/simulator.h"
 
 namespace ifog::simulate {
@@ -30,14 +29,7 @@ class Reader {
   explicit Reader(std::string path) : path_(std::move(path)) {}
 
   Scenario read(const std::uint64_t* other_seed) {
-    const std::string text = read_text_file(path_);
-    toml::table file;
-    try {
-      file = toml::parse(std::string_view(text), path_);
-    } catch (const toml::parse_error& error) {
-      throw std::runtime_error(path_ + ":" + std::to_string(error.source().begin.line) + ": " +
-                               std::string(error.description()));
-    }
+    const toml::table file = parse_toml(read_text_file(path_), path_);
     // First, because every drawn number hangs on it.
     if (const toml::node* seed = file.get("seed")) s_.seed = whole(*seed, "seed");
     if (other_seed != nullptr) s_.seed = *other_seed;
@@ -49,7 +41,8 @@ class Reader {
  private:
   [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& what) const {
     const auto line = node.source().begin.line;
-    throw std::runtime_error(path_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + key + " " + what);
+    throw std::runtime_error(path_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
+                             one_line(key + " " + what));
   }
 
   std::uint64_t whole(const toml::node& node, const std::string& key) const {

@@ -92,6 +92,13 @@ TEST(ModelFile, BadInputIsNamedByLineAndKey) {
   EXPECT_NE(complaint("version = \n").find("m.toml:1: "), std::string::npos);
 }
 
+// The parser quotes the character it stumbles over, and a key may hold any.
+TEST(ModelFile, AComplaintIsOneLineWhateverTheFileHolds) {
+  EXPECT_EQ(complaint("version = 1\nsen\n"),
+            "m.toml:2: Error while parsing key-value pair: expected '=', saw '\\n'");
+  EXPECT_EQ(complaint("version = 1\n\"a\\nb\\u0001\" = 3\n"), "m.toml:2: a\\nb\\x01 = 3: unknown key");
+}
+
 // FIPS 180-4 example values, and the million-a test.
 TEST(Sha256, MatchesThePublishedValues) {
   EXPECT_EQ(sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
