@@ -93,8 +93,6 @@ bool Housekeeping::open_all() {
     try {
       sensor->parts.pipeline->open();
       any = true;
-      const std::string& warning = sensor->parts.pipeline->reader().transport().warning();
-      if (!warning.empty()) sensor->log->warn("{}", warning);
     } catch (const std::exception& error) {
       sensor->log->error("{}", error.what());
     }
@@ -117,6 +115,9 @@ void Housekeeping::start_all() {
 
 void Housekeeping::drain_events(Sensor& sensor) {
   Event event;
+  if (const std::string warning = sensor.parts.pipeline->take_transport_warning();
+      !warning.empty())
+    sensor.log->warn("{}", warning);
   while (sensor.parts.pipeline->take_event(event)) {
     const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
     if (fault && sensor.worded >= kWordedPerSecond) {
@@ -147,13 +148,17 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (sensor.unworded > 0) sensor.log->warn("{} more such lines in this second", sensor.unworded);
   sensor.worded = sensor.unworded = 0;
   const status_t& message = sensor.report.update(pipeline, sensor.snapshot, interval_s);
+  bool fault_worded = message.fault.empty() || message.fault == sensor.fault;
   if (message.state != sensor.state) {
     const bool good = message.state == status_t::STATE_RUNNING || message.state == status_t::STATE_STARTING ||
                       message.state == status_t::STATE_ENDED;
     sensor.log->log(good ? spdlog::level::info : spdlog::level::warn, "{}{}{}", state_name(message.state),
                     message.fault.empty() ? "" : ": ", message.fault);
     sensor.state = message.state;
+    fault_worded = true;
   }
+  if (!fault_worded) sensor.log->warn("{}", message.fault);
+  sensor.fault = message.fault;
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
   publish(sensor);
 }

@@ -38,6 +38,7 @@ class Housekeeping {
     std::uint64_t reader_turns = 0;
     int reader_stuck = 0;      // seconds since the reader last came round
     std::int32_t state = -1;   // as last logged
+    std::string fault{};       // as last logged
     std::uint64_t worded = 0;  // events logged in this second
     std::uint64_t unworded = 0;
   };

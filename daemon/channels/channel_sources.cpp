@@ -8,16 +8,15 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <ifog/channel_t.hpp>
-#include <ifog/rate_t.hpp>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "daemon/channels/can_channel.h"
+#include "daemon/channels/lcm_field.h"
 #include "drivers/transport/can.h"
-#include "filters/estimator/estimator.h"
 
 namespace ifog {
 namespace {
@@ -49,42 +48,22 @@ class FileChannel {
 // One LCM channel and field.
 class LcmChannel {
  public:
-  explicit LcmChannel(ChannelSources::Wanted wanted) : wanted_(std::move(wanted)) {
-    const std::string& field = wanted_.config.field;
-    const std::size_t bracket = field.find('[');
-    name_ = field.empty() ? wanted_.config.name : field.substr(0, bracket);
-    if (bracket == std::string::npos) return;
-    const bool known = name_ == "raw" || name_ == "compensated" || name_ == "denoised";
-    if (!known || field.size() != bracket + 3 || field.back() != ']' || field[bracket + 1] < '0' ||
-        field[bracket + 1] >= '0' + kMaxAxes)
-      throw std::runtime_error(
-          "sensor.channel.field = \"" + field +
-          "\": expected the name in an ifog.channel_t, or raw[i], compensated[i], denoised[i] of an "
-          "ifog.rate_t, i = 0 ... 2");
-    axis_ = field[bracket + 1] - '0';
-  }
+  explicit LcmChannel(ChannelSources::Wanted wanted)
+      : wanted_(std::move(wanted)),
+        field_(wanted_.config.field.empty() ? wanted_.config.name : wanted_.config.field) {}
   [[nodiscard]] const std::string& lcm_channel() const { return wanted_.config.lcm_channel; }
 
   void take(const lcm_recv_buf_t& message) const {
-    const int size = static_cast<int>(message.data_size);
-    if (axis_ < 0) {
-      channel_t value{};
-      if (value.decode(message.data, 0, size) >= 0 && value.name == name_)
-        put(wanted_, value.value, value.utime > 0 ? value.utime * 1000 : message.recv_utime * 1000);
-      return;
-    }
-    rate_t rate{};
-    if (rate.decode(message.data, 0, size) < 0 || axis_ >= rate.axes) return;
-    const std::vector<double>& field = name_ == "raw"           ? rate.raw
-                                       : name_ == "compensated" ? rate.compensated
-                                                                : rate.denoised;
-    put(wanted_, field[static_cast<std::size_t>(axis_)], rate.utime * 1000);
+    double value = 0.0;
+    std::int64_t utime = 0;
+    const std::span bytes(static_cast<const std::uint8_t*>(message.data), message.data_size);
+    if (!field_.read(bytes, value, utime)) return;
+    put(wanted_, value, (utime > 0 ? utime : message.recv_utime) * 1000);
   }
 
  private:
   ChannelSources::Wanted wanted_;
-  std::string name_;
-  int axis_ = -1;  // −1: a channel_t
+  LcmField field_;
 };
 
 // All signals wanted from one CAN interface.
@@ -139,7 +118,8 @@ struct ChannelSources::Impl {
   }
 };
 
-ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url)
+ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url,
+                               const CanOpener& make_can)
     : impl_(std::make_unique<Impl>()) {
   for (Wanted& one : wanted) {
     switch (one.config.source) {
@@ -162,7 +142,7 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
     CanSettings settings;
     settings.interface = interface;
     for (const auto& [one, channel] : bus.channels) settings.ids.push_back(channel.id());
-    bus.transport = make_can_transport(settings);
+    bus.transport = make_can(settings);
   }
   if (!impl_->messages.empty()) {
     impl_->lcm = lcm_create(lcm_url.c_str());

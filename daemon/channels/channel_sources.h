@@ -2,12 +2,14 @@
 // value of each where the sensor's reader thread looks. One ordinary thread for all of them.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "daemon/channels/channel_table.h"
 #include "daemon/config/config.h"
+#include "drivers/transport/can.h"
 
 namespace ifog {
 
@@ -19,8 +21,12 @@ class ChannelSources {
     int index = 0;  // in the table
   };
 
+  using CanOpener = std::function<std::unique_ptr<Transport>(const CanSettings&)>;
+
   // Throws std::runtime_error with one line: a DBC file or a signal that is not there, a field nobody knows.
-  ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url);
+  // `make_can` is there for tests, on machines without CAN.
+  ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url,
+                 const CanOpener& make_can = make_can_transport);
   ~ChannelSources();  // stops
 
   void start();

@@ -1,6 +1,5 @@
 #include "daemon/config/config.h"
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "daemon/config/table_reader.h"
 #include "drivers/capture/text_file.h"
+#include "filters/model/toml_file.h"
 
 namespace ifog {
 namespace {
@@ -42,6 +42,20 @@ bool good_name(const std::string& name) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
+SerialSettings read_serial(TableReader& in) {
+  SerialSettings out;
+  out.device = in.required_text("device", "the path of a serial device, \"/dev/ttyUSB0\"");
+  take(in.integer("baud", 50, 20'000'000), out.baud);
+  take(in.integer("data_bits", 5, 8), out.data_bits);
+  if (const auto parity = in.choice("parity", {"none", "even", "odd"}))
+    out.parity = *parity == "even"  ? SerialSettings::Parity::even
+                 : *parity == "odd" ? SerialSettings::Parity::odd
+                                    : SerialSettings::Parity::none;
+  take(in.integer("stop_bits", 1, 2), out.stop_bits);
+  take(in.integer("baud_base", 1, 100'000'000), out.baud_base);
+  return out;
+}
+
 TransportConfig read_transport(const toml::table& table, const std::string& where, Context& context) {
   TableReader in(table, where, context.file, context.errors);
   TransportConfig out;
@@ -52,8 +66,7 @@ TransportConfig read_transport(const toml::table& table, const std::string& wher
   }
   if (*type == "serial") {
     out.kind = TransportConfig::Kind::serial;
-    out.device = in.required_text("device", "the path of a serial device, \"/dev/ttyUSB0\"");
-    take(in.integer("baud", 50, 10'000'000), out.baud);
+    out.serial = read_serial(in);
   } else if (*type == "can") {
     out.kind = TransportConfig::Kind::can;
     out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
@@ -133,8 +146,8 @@ ChannelConfig read_channel(const toml::table& table, const std::string& where, C
     out.signal = in.required_text("signal", "a signal of the DBC file, \"SIGNAL\" or \"MESSAGE.SIGNAL\"");
   } else if (*source == "lcm") {
     out.source = ChannelConfig::Source::lcm;
-    out.lcm_channel =
-        in.required_text("lcm_channel", "an LCM channel that carries ifog.channel_t or ifog.rate_t");
+    out.lcm_channel = in.required_text(
+        "lcm_channel", "an LCM channel that carries ifog.channel_t, ifog.rate_t or ifog.status_t");
     out.field = in.text("field").value_or("");
   } else if (*source == "file") {
     out.source = ChannelConfig::Source::file;
@@ -211,10 +224,9 @@ std::string SensorConfig::lcm_channel() const {
 Config parse_config(const std::string& text, const std::string& path) {
   toml::table root;
   try {
-    root = toml::parse(std::string_view(text), path);
-  } catch (const toml::parse_error& error) {
-    throw ConfigError(path + ":" + std::to_string(error.source().begin.line) + ": " +
-                      std::string(error.description()));
+    root = parse_toml(text, path);
+  } catch (const std::runtime_error& error) {
+    throw ConfigError(error.what());
   }
   Context context;
   context.file = path;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/transport/serial_port.h"
 #include "filters/chain/filter_choice.h"
 
 namespace ifog {
@@ -15,9 +16,8 @@ namespace ifog {
 struct TransportConfig {
   enum class Kind { serial, can, file };
   Kind kind = Kind::file;
-  // serial
-  std::string device;      // a path, may be a udev symlink
-  std::uint32_t baud = 0;  // 0: what the driver says
+  // serial; its baud 0: what the driver says
+  SerialSettings serial;
   // can
   std::string interface;  // "can0"; file: of a candump log's frames, empty for all
   // file
@@ -37,8 +37,8 @@ struct ChannelConfig {
   double max_age_s = 10.0;           // older is stale; 0: never
   std::string interface;             // can: "can0"
   std::string dbc, signal;           // can: file, and MESSAGE.SIGNAL or SIGNAL
-  std::string lcm_channel;           // lcm: channel of an ifog.channel_t, or of an ifog.rate_t with `field`
-  std::string field;                 // lcm: the channel_t's name, or a field of rate_t: "denoised[0]"
+  std::string lcm_channel;           // lcm: carries ifog.channel_t, ifog.rate_t or ifog.status_t
+  std::string field;                 // lcm: which of it, see LcmField; "": the name
   std::string path;                  // file: holds one number, as hwmon's temp1_input
   double scale = 1.0, offset = 0.0;  // value = number * scale + offset; lcm, can and file
   double period_s = 1.0;             // file: how often it is read

@@ -45,7 +45,9 @@ std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
       return status_t::STATE_REOPENING;
     case TransportState::ended:
       // A fault at the end is a file that is cut off or damaged.
-      if (transport.reason() != 0 || transport.fault().what != nullptr) return status_t::STATE_FAILED;
+      if (transport.reason() != 0 || transport.fault().what != nullptr ||
+          pipeline.reader().counters().bytes_at_end.value() != 0)
+        return status_t::STATE_FAILED;
       return status_t::STATE_ENDED;
     case TransportState::open:
       break;
@@ -57,10 +59,14 @@ std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
   return status_t::STATE_RUNNING;
 }
 
-std::string fault_of(const Transport& transport) {
+std::string fault_of(const Reader& reader) {
+  const Transport& transport = reader.transport();
   const TransportFault fault = transport.fault();
   if (transport.state() != TransportState::open && transport.reason() != 0)
     return transport.name() + ": " + std::strerror(transport.reason());
+  if (const std::uint64_t left = reader.counters().bytes_at_end.value(); left != 0)
+    return transport.name() + ": ends within a frame, its last " + std::to_string(left) +
+           " bytes are no whole one (is the file cut off?)";
   if (fault.what == nullptr) return "";
   return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + fault.what;
 }
@@ -113,7 +119,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.utime = now_ns / 1000;
   now_.model = snapshot.model.data();
   now_.state = state_of(pipeline, now_ns);
-  now_.fault = fault_of(transport);
+  now_.fault = fault_of(pipeline.reader());
   now_.samples_in = as_signed(reader.samples.value());
   now_.samples_published = as_signed(filter.published.value());
   now_.frames_good = as_signed(reader.frames_good.value());

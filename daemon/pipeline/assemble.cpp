@@ -26,17 +26,6 @@ void require(bool fits, const SensorConfig& sensor, const char* type, const char
                              type + "\": it takes " + needs);
 }
 
-std::unique_ptr<Transport> serial_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  require(driver.takes_bytes(), sensor, "serial", "CAN frames");
-  SerialSettings settings;
-  settings.device = sensor.transport.device;
-  settings.baud = sensor.transport.baud != 0 ? sensor.transport.baud : driver.description().baud;
-  if (settings.baud == 0)
-    throw std::runtime_error("sensor.transport.baud: missing, and driver \"" + sensor.driver +
-                             "\" prescribes no speed; expected bits a second");
-  return make_serial_transport(settings);
-}
-
 std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const DriverInstance& driver) {
   require(driver.takes_can(), sensor, "can", "bytes");
   CanSettings settings;
@@ -71,10 +60,20 @@ DriverInstance make_sensor_driver(const SensorConfig& sensor,
   return make_driver(sensor.driver, sensor.options, plugin_folders(plugin_folders_first));
 }
 
+SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver) {
+  require(driver.takes_bytes(), sensor, "serial", "CAN frames");
+  SerialSettings settings = sensor.transport.serial;
+  if (settings.baud == 0) settings.baud = driver.description().baud;
+  if (settings.baud == 0)
+    throw std::runtime_error("sensor.transport.baud: missing, and driver \"" + sensor.driver +
+                             "\" prescribes no speed; expected bits a second");
+  return settings;
+}
+
 std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, const DriverInstance& driver) {
   switch (sensor.transport.kind) {
     case TransportConfig::Kind::serial:
-      return serial_transport(sensor, driver);
+      return make_serial_transport(sensor_serial_settings(sensor, driver));
     case TransportConfig::Kind::can:
       return can_transport(sensor, driver);
     case TransportConfig::Kind::file:

@@ -19,6 +19,9 @@ namespace ifog {
 
 DriverInstance make_sensor_driver(const SensorConfig& sensor, const std::vector<std::string>& plugin_folders);
 
+// The line as configured; its speed from the driver where the configuration has none.
+SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver);
+
 std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, const DriverInstance& driver);
 
 // Channels: those of the driver's frames first, then the configured ones that come from elsewhere. Null

@@ -42,6 +42,8 @@ class Pipeline {
   [[nodiscard]] const Reader& reader() const noexcept { return reader_; }
   [[nodiscard]] FilterStage& filter() noexcept { return filter_; }
   [[nodiscard]] const IncrementQueue& queue() const noexcept { return queue_; }
+  // What the transport could not get and does without, once; "" for nothing new.
+  std::string take_transport_warning() { return reader_.transport().take_warning(); }
   // Next event of either thread.
   bool take_event(Event& out) noexcept { return reader_events_.take(out) || filter_events_.take(out); }
   [[nodiscard]] std::uint64_t events_lost() const noexcept {

@@ -90,7 +90,9 @@ void Reader::run() noexcept {
   while (turn(kTurn)) {
   }
   // The bytes of a frame that never came to its end count as passed over.
+  const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();
+  if (!transport_->stopped()) counters_.bytes_at_end.set(driver_.counters().bytes_skipped - skipped);
   publish_counters();
   queue_.close();
 }

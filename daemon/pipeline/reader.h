@@ -22,6 +22,7 @@ namespace ifog {
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts;
   Counter frames_good, frames_crc, frames_format, bytes_skipped;
+  Counter bytes_at_end;                          // of a file that ends within a frame; also in bytes_skipped
   std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, CLOCK_REALTIME; 0: none yet
   std::atomic<double> clock_offset_ppm{0.0};
 };

@@ -50,16 +50,28 @@ void Transport::stop() noexcept {
 
 void Transport::open(std::span<const std::uint8_t> opening) {
   opening_.assign(opening.begin(), opening.end());
-  warning_.clear();
+  std::string warning;
   try {
-    connect(warning_);
+    connect(warning);
   } catch (const OpenError& error) {
     enter(TransportState::gone, error.reason);
     backoff_.failed(monotonic_ns());
     throw;
   }
+  keep_warning(std::move(warning));
   connected_ = once_ = true;
   enter(TransportState::open, 0);
+}
+
+void Transport::keep_warning(std::string&& warning) {
+  const std::lock_guard lock(warning_mutex_);
+  new_warning_ = new_warning_ || (!warning.empty() && warning != warning_);
+  warning_ = std::move(warning);
+}
+
+std::string Transport::take_warning() {
+  const std::lock_guard lock(warning_mutex_);
+  return std::exchange(new_warning_, false) ? warning_ : std::string();
 }
 
 Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
@@ -84,9 +96,10 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     short happened = 0;
     if (wait(-1, 0, attempt, happened) == Wake::stopped) return false;
     if (attempt < backoff_.next_ns()) return false;
-    std::string warned_before;  // by open(), and not worth repeating
     try {
-      connect(warned_before);
+      std::string warning;
+      connect(warning);
+      keep_warning(std::move(warning));
     } catch (const std::exception& error) {
       const auto* refused = dynamic_cast<const OpenError*>(&error);
       enter(TransportState::gone, refused != nullptr ? refused->reason : ENOMEM);

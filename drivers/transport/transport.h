@@ -1,13 +1,14 @@
 // What a sensor's reader thread reads from: a serial line, a CAN interface or a file, behind one interface.
 //
-// Threads: open() and read() belong to the reader thread. stop(), stopped(), state(), reason(), counters()
-// and fault() may be called from any thread, stop() also from a signal handler.
+// Threads: open() and read() belong to the reader thread. stop(), stopped(), state(), reason(), counters(),
+// fault() and take_warning() may be called from any thread, stop() also from a signal handler.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -93,9 +94,9 @@ class Transport {
   }  // errno of the latest failure
   [[nodiscard]] TransportCounters counters() const;
   [[nodiscard]] TransportFault fault() const;
-  // What open() could not get and can do without ("" for nothing). Only the thread that called open() may
-  // ask.
-  [[nodiscard]] const std::string& warning() const { return warning_; }
+  // What opening the device, for the first time or again, could not get and can do without. Each text once,
+  // however often the device is opened again with the same; "" when there is nothing new.
+  [[nodiscard]] std::string take_warning();
 
  protected:
   // Opens the device, again if need be, and sends opening(). Throws OpenError.
@@ -127,11 +128,14 @@ class Transport {
 
  private:
   bool regain(std::int64_t until_ns) noexcept;
+  void keep_warning(std::string&& warning);
   void enter(TransportState state, int reason) noexcept;
 
   std::string name_;
   std::vector<std::uint8_t> opening_;
+  std::mutex warning_mutex_;  // taken when a device opens, never while it is read
   std::string warning_;
+  bool new_warning_ = false;
   Backoff backoff_;
   bool connected_ = false, once_ = false;
   bool returning_ = false;  // the next delivery is the first since the device came back

@@ -3,20 +3,13 @@
 //
 // malloc itself is replaced, so that C libraries (glib in LCM) count, too. LCM is multicast: the program
 // moves into a network namespace of its own first, so that nothing leaves the machine.
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <net/if.h>
-#include <net/route.h>
-#include <sched.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -24,6 +17,7 @@
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/file.h"
+#include "tests/unit/daemon/private_network.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define IFOG_SANITIZED 1
@@ -77,33 +71,6 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
 
 namespace ifog {
 namespace {
-
-// "" or why not. As `ip link set lo up multicast on; ip route add 224.0.0.0/4 dev lo`.
-std::string enter_private_network() {
-  if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0)
-    return std::string("unshare: ") + std::strerror(errno);
-  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
-  ifreq request{};
-  std::strcpy(request.ifr_name, "lo");
-  request.ifr_flags = IFF_UP | IFF_MULTICAST;
-  std::string why;
-  if (ioctl(fd, SIOCSIFFLAGS, &request) != 0) why = std::string("lo up: ") + std::strerror(errno);
-  rtentry route{};
-  char device[] = "lo";
-  route.rt_dev = device;
-  route.rt_flags = RTF_UP;
-  const auto address = [](sockaddr& out, const char* text) {
-    sockaddr_in in{};
-    in.sin_family = AF_INET;
-    inet_pton(AF_INET, text, &in.sin_addr);
-    std::memcpy(&out, &in, sizeof in);
-  };
-  address(route.rt_dst, "224.0.0.0");
-  address(route.rt_genmask, "240.0.0.0");
-  if (why.empty() && ioctl(fd, SIOCADDRT, &route) != 0) why = std::string("route: ") + std::strerror(errno);
-  close(fd);
-  return why;
-}
 
 std::string recording(int count) {
   DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});

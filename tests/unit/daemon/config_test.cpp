@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "daemon/pipeline/assemble.h"
+
 namespace ifog {
 namespace {
 
@@ -57,6 +59,49 @@ scale = 1e-3
   EXPECT_EQ(sensor.realtime.filter_priority, 60);
   ASSERT_EQ(sensor.channels.size(), 1U);
   EXPECT_EQ(sensor.channels[0].scale, 1e-3);
+}
+
+SensorConfig serial_sensor(const std::string& keys, const std::string& driver = "kvh1750") {
+  const std::string text = "[[sensor]]\nname = \"nose\"\ndriver = \"" + driver +
+                           "\"\n[sensor.transport]\ntype = \"serial\"\ndevice = \"/dev/ttyS1\"\n";
+  return parse_config(text + keys, "f.toml").sensors.at(0);
+}
+
+TEST(Config, TheLineReachesTheTransportAsConfigured) {
+  const SensorConfig sensor =
+      serial_sensor("baud = 460800\ndata_bits = 7\nparity = \"odd\"\nstop_bits = 2\nbaud_base = 4000000\n");
+  const SerialSettings line = sensor_serial_settings(sensor, make_sensor_driver(sensor, {}));
+  EXPECT_EQ(line.device, "/dev/ttyS1");
+  EXPECT_EQ(line.baud, 460800U);
+  EXPECT_EQ(line.data_bits, 7U);
+  EXPECT_EQ(line.parity, SerialSettings::Parity::odd);
+  EXPECT_EQ(line.stop_bits, 2U);
+  EXPECT_EQ(line.baud_base, 4'000'000U);
+}
+
+TEST(Config, WhatIsNotSaidOfTheLineIsTheDriversSpeedAnd8N1) {
+  const SensorConfig sensor = serial_sensor("", "dsp3000");
+  const SerialSettings line = sensor_serial_settings(sensor, make_sensor_driver(sensor, {}));
+  EXPECT_EQ(line.baud, 38400U);  // the maker's
+  EXPECT_EQ(line.data_bits, 8U);
+  EXPECT_EQ(line.parity, SerialSettings::Parity::none);
+  EXPECT_EQ(line.stop_bits, 1U);
+  EXPECT_EQ(line.baud_base, 0U);
+}
+
+TEST(Config, ALineThatCannotBeIsRefused) {
+  for (const auto& [key, line] :
+       {std::pair{"parity = \"mark\"\n",
+                  "f.toml:7: sensor.transport.parity = 'mark': expected \"none\" | \"even\" | \"odd\""},
+        {"data_bits = 9\n", "f.toml:7: sensor.transport.data_bits = 9: expected a whole number 5 ... 8"},
+        {"stop_bits = 0\n", "f.toml:7: sensor.transport.stop_bits = 0: expected a whole number 1 ... 2"}}) {
+    try {
+      serial_sensor(key);
+      ADD_FAILURE() << key << " was accepted";
+    } catch (const ConfigError& error) {
+      EXPECT_STREQ(error.what(), line);
+    }
+  }
 }
 
 struct Wrong {
@@ -112,6 +157,18 @@ TEST(Config, NothingToDoIsAnError) {
 TEST(Config, BrokenTomlIsToldByLine) {
   EXPECT_EQ(complaint("[daemon]\nlock_memory = \n").rfind("f.toml:2: ", 0), 0U)
       << complaint("[daemon]\nlock_memory = \n");
+}
+
+// What the file holds may have line ends of its own.
+TEST(Config, AComplaintIsOneLineWhateverTheFileHolds) {
+  for (const char* text : {"venso\nx = 1\n", "\"a\\nb\" = 1\n", "x = \"\"\"a\nb\"\"\"\n"}) {
+    const std::string all =
+        complaint(std::string(kGood) + "[sensor.realtime]\nspin = true\n[sensor.filter]\n" + text);
+    EXPECT_EQ(all.rfind("f.toml:1", 0), 0U) << all;
+    EXPECT_EQ(all.find('\n'), std::string::npos) << all;
+  }
+  EXPECT_EQ(complaint(std::string(kGood) + "speed = \"1\\n2\"\n"),
+            "f.toml:8: sensor.transport.speed = '''1\\n2''': expected a number 0.001 ... 1e+06");
 }
 
 TEST(Config, AMissingFileIsOneLine) {

@@ -189,6 +189,55 @@ TEST(Pipeline, AFilterThatCannotKeepUpLosesNoAngle) {
   EXPECT_NEAR(messages.back().angle[0], sent_angle(kCount), 1e-13);
 }
 
+// Merged increments, new filters and the LCM encoding together. The sum of what was sent is exact: every
+// value is a whole multiple of 2^-30 rad/s, and their sum in whole numbers.
+TEST(Pipeline, OverflowAndReloadsTogetherLoseNoAngle) {
+  constexpr int kCount = 40'000;
+  constexpr double kUnit = 1.0 / (1 << 30);
+  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
+  std::vector<std::uint8_t> bytes;
+  std::int64_t sum = 0;
+  for (int n = 0; n < kCount; ++n) {
+    const int units = (n * 7919) % 4001 - 1000;
+    sum += units;
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (double& value : sample.value) value = units * kUnit;
+    sample.environment_fresh = ~0U;
+    driver.encode_bytes(sample, bytes);
+  }
+  Rig rig(std::move(bytes), kFrame, false, 16, 20us);
+  rig.pipeline->start();
+  int reloads = 0;
+  while (!rig.pipeline->ended()) {
+    rig.pipeline->filter().offer(std::make_unique<ChainParts>(rig.chain));
+    std::this_thread::sleep_for(2ms);
+    rig.pipeline->filter().collect_retired();
+    ++reloads;
+  }
+  rig.pipeline->stop();
+  std::int64_t samples = 0;
+  int resets = 0;
+  double angle = 0.0, covered = 0.0;
+  for (const rate_t& message : rig.publisher->messages()) {
+    samples += message.merged;
+    angle += message.delta_theta[1];
+    covered += message.covered[1];
+    resets += (message.flags & rate_t::FLAG_FILTER_RESET) != 0 ? 1 : 0;
+    ASSERT_EQ(message.flags & rate_t::FLAG_GAP, 0);
+  }
+  const double sent = static_cast<double>(sum) * kUnit * 1e-3;
+  EXPECT_EQ(samples, kCount);
+  EXPECT_GT(rig.pipeline->queue().merged(), 0U);
+  EXPECT_GT(resets, 2);
+  EXPECT_GT(reloads, 2);
+  EXPECT_NEAR(angle, sent, 1e-13);
+  EXPECT_NEAR(rig.publisher->messages().back().angle[1], sent, 1e-13);
+  EXPECT_NEAR(covered, kCount * 1e-3, 1e-9);
+}
+
 TEST(Pipeline, WhatHasBeenReadIsPublishedBeforeItStops) {
   Rig rig(frames(200'000), kFrame, false, 1 << 16, 20us);
   rig.pipeline->start();

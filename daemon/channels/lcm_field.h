@@ -1,0 +1,31 @@
+// Which number of an LCM message an environment channel takes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace ifog {
+
+class LcmField {
+ public:
+  // "NAME": the ifog.channel_t of that name, or a number of an ifog.status_t: input_rate_hz, …
+  // "FIELD[i]": of an ifog.rate_t raw, compensated, denoised; of an ifog.status_t nis_mean, whiteness,
+  //   measurement_noise; i = 0 … 2.
+  // "channel_value[NAME]": another sensor's channel, from its ifog.status_t.
+  // Throws std::runtime_error with one line: brackets on a field that has none of that kind.
+  explicit LcmField(const std::string& text);
+
+  // False: another type, or the message does not have it. The type is known by LCM's fingerprint. utime: of
+  // the measurement, µs since the epoch, 0 when the message does not say.
+  bool read(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
+
+ private:
+  bool read_rate(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
+  bool read_status(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
+
+  std::string name_, within_;  // NAME, what stands in brackets
+  int axis_ = -1;              // −1: none in brackets
+};
+
+}  // namespace ifog

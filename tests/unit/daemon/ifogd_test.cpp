@@ -1,0 +1,244 @@
+// The daemon as a user starts it: what it says and how it ends where something is wrong, and a run with
+// channels from outside.
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <ifog/channel_t.hpp>
+#include <ifog/status_t.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+#include "tests/unit/daemon/private_network.h"
+
+namespace ifog {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Ifogd : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ifogd-test-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    // Nothing here is to be heard outside.
+    unreachable_ = enter_private_network();
+    if (!unreachable_.empty())
+      GTEST_SKIP() << "no private network namespace (" << unreachable_
+                   << "); runs as root or with user namespaces";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+  }
+  // One sensor that reads flight.kvh, and more.
+  void configure(const std::string& more, const std::string& driver = "kvh1750") const {
+    write("ifogd.toml", "[daemon]\nlock_memory = false\nplugin_folder = \"" IFOG_REFUSED_PLUGINS
+                        "\"\n[[sensor]]\nname = \"nose\"\ndriver = \"" +
+                            driver + "\"\n" + more);
+  }
+  // Its exit status; all it says goes to the file `said`.
+  int ifogd(const std::string& arguments = "") const {
+    const std::string command = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --config " + path("ifogd.toml") +
+                                " " + arguments + " >" + path("said") + " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+  std::vector<std::string> said() const {
+    std::ifstream in(path("said"));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+  }
+  // How many lines hold it; and the others are shown when it is not the one that was expected.
+  int lines_with(const std::string& text) const {
+    const std::vector<std::string> all = said();
+    return static_cast<int>(std::count_if(all.begin(), all.end(), [&](const std::string& line) {
+      return line.find(text) != std::string::npos;
+    }));
+  }
+  std::string all_said() const {
+    std::string out;
+    for (const std::string& line : said()) out += line + "\n";
+    return out;
+  }
+
+  fs::path folder_;
+  std::string unreachable_;
+};
+
+constexpr const char* kFile = "[sensor.transport]\ntype = \"file\"\npath = \"flight.kvh\"\n";
+
+std::string recording(int count) {
+  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
+  std::vector<std::uint8_t> bytes;
+  for (int n = 0; n < count; ++n) {
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (double& value : sample.value) value = 0.01;
+    sample.environment_fresh = ~0U;
+    driver.encode_bytes(sample, bytes);
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(Ifogd, APluginOfAnotherInterfaceVersionIsRefusedInOneLine) {
+  configure(kFile, "other_version");
+  write("flight.kvh", recording(3));
+  for (const char* how : {"", "--check"}) {
+    EXPECT_EQ(ifogd(how), 2);
+    ASSERT_EQ(said().size(), 1U) << all_said();
+    EXPECT_EQ(said()[0], path("ifogd.toml") +
+                             ":4: sensor \"nose\": " IFOG_REFUSED_PLUGINS
+                             "/other_version.so: built for interface version 99, this program has version " +
+                             std::to_string(IFOG_DRIVER_ABI) + "; build the plugin against this version");
+  }
+}
+
+TEST_F(Ifogd, AWrongConfigurationIsRefusedInOneLine) {
+  for (const auto& [more, what] :
+       {std::pair{"speed = 3\n", ":7: sensor.speed: unknown key; known here: "},
+        {"[$ensor]\n", ":7: Error while parsing key: "},
+        {"\"mo\\ndel\" = 3\n", ":7: sensor.mo\\ndel: unknown key; known here: "},
+        {"x\n", ":7: Error while parsing key-value pair: expected '=', saw '\\n'"}}) {
+    configure(more);
+    EXPECT_EQ(ifogd(), 2);
+    EXPECT_EQ(lines_with(path("ifogd.toml") + what), 1) << all_said();
+    // A table that is missing because of the broken line may be complained of as well, a line each.
+    EXPECT_EQ(lines_with(path("ifogd.toml") + ":"), static_cast<int>(said().size())) << all_said();
+  }
+}
+
+TEST_F(Ifogd, WithoutADeviceNothingCanRun) {
+  configure("[sensor.transport]\ntype = \"serial\"\ndevice = \"/dev/no-gyro\"\nbaud = 921600\n");
+  EXPECT_EQ(ifogd(), 1);
+  EXPECT_EQ(
+      lines_with("nose: /dev/no-gyro: cannot open: No such file or directory, expected a serial device"), 1)
+      << all_said();
+  EXPECT_EQ(lines_with("no sensor can run"), 1) << all_said();
+  EXPECT_EQ(said().size(), 2U) << all_said();
+}
+
+TEST_F(Ifogd, AFileIsReadToItsEnd) {
+  configure(kFile);
+  write("flight.kvh", recording(300));
+  EXPECT_EQ(ifogd(), 0) << all_said();
+  EXPECT_EQ(lines_with("300 samples read, 300 published, 0 missing, 0 merged"), 1) << all_said();
+}
+
+TEST_F(Ifogd, AFileCutOffWithinAFrameIsToldInOneLineAndCounted) {
+  configure(kFile);
+  std::string bytes = recording(300);
+  bytes.resize(bytes.size() - 10);
+  write("flight.kvh", bytes);
+  EXPECT_EQ(ifogd(), 1);
+  EXPECT_EQ(lines_with("nose: failed: " + path("flight.kvh") +
+                       ": ends within a frame, its last 26 bytes are no whole one (is the file cut off?)"),
+            1)
+      << all_said();
+  EXPECT_EQ(lines_with("bytes_skipped +26"), 1) << all_said();
+  EXPECT_EQ(lines_with("299 samples read, 299 published"), 1) << all_said();
+}
+
+// A line of a log that is no frame is told where it stands, while all else is read.
+TEST_F(Ifogd, AFaultInALogIsToldWhereItIs) {
+  configure("[sensor.options]\ndbc = \"" IFOG_SOURCE_DIR
+            "/drivers/dbc/examples/ifogd_gyro.dbc\"\nsignal = \"Rate_x\"\nrate_hz = 100\n[sensor.transport]\n"
+            "type = \"file\"\npath = \"gyro.log\"\nformat = \"candump\"\npace = \"recorded\"\n",
+            "dbc");
+  std::string log;
+  for (int i = 0; i < 250; ++i) {
+    if (i == 20) log += "rubbish\n";
+    char line[64];
+    std::snprintf(line, sizeof line, "(1700000000.%06d) can0 100#0000003F00000000\n", i * 4000);
+    log += line;
+  }
+  write("gyro.log", log);
+  ifogd();
+  EXPECT_GE(lines_with(path("gyro.log") + ":21: "), 1) << all_said();
+  EXPECT_EQ(lines_with("frames_format +1"), 1) << all_said();
+  EXPECT_EQ(lines_with("250 samples read, 250 published"), 1) << all_said();
+}
+
+// The status messages of the daemon while it runs, with an eye on one of them.
+struct Listener {
+  Listener() : lcm(lcm_create("udpm://239.255.76.67:7667?ttl=0")) {
+    lcm_subscribe(
+        lcm, "IFOG_NOSE_STATUS",
+        [](const lcm_recv_buf_t* buffer, const char*, void* user) {
+          auto* self = static_cast<Listener*>(user);
+          self->heard = self->last.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) >= 0;
+        },
+        this);
+  }
+  ~Listener() { lcm_destroy(lcm); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+  double channel(const std::string& name) const {
+    const auto found = std::find(last.channel_name.begin(), last.channel_name.end(), name);
+    return found == last.channel_name.end()
+               ? NAN
+               : last.channel_value[static_cast<std::size_t>(found - last.channel_name.begin())];
+  }
+  lcm_t* lcm;
+  bool heard = false;
+  status_t last{};
+};
+
+TEST_F(Ifogd, ChannelsFromAFileAndFromLcmReachTheSensor) {
+  write("hwmon", "41250\n");
+  write("flight.kvh", recording(60'000));
+  configure(std::string(kFile) +
+            "pace = \"recorded\"\nbytes_per_second = 36000\n"
+            "[[sensor.channel]]\nname = \"coil_degC\"\nsource = \"file\"\npath = \"hwmon\"\nscale = 1e-3\n"
+            "period_s = 0.1\n"
+            "[[sensor.channel]]\nname = \"hull_degC\"\nsource = \"lcm\"\nlcm_channel = \"HULL\"\n"
+            "[[sensor.channel]]\nname = \"load_us\"\nsource = \"lcm\"\nlcm_channel = \"IFOG_NOSE_STATUS\"\n"
+            "field = \"input_rate_hz\"\n");
+  Listener listener;
+  ASSERT_NE(listener.lcm, nullptr);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    execl(IFOG_BINARY_DIR "/daemon/ifogd", "ifogd", "--config", path("ifogd.toml").c_str(), nullptr);
+    _exit(127);
+  }
+  channel_t hull{};
+  hull.name = "hull_degC";
+  hull.value = 18.5;
+  const auto met = [&listener] {
+    return listener.channel("coil_degC") == 41.25 && listener.channel("hull_degC") == 18.5 &&
+           listener.channel("load_us") > 100.0;
+  };
+  for (int turn = 0; turn < 400 && !met(); ++turn) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(hull.getEncodedSize()));
+    hull.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    lcm_publish(listener.lcm, "HULL", bytes.data(), static_cast<unsigned>(bytes.size()));
+    pollfd wanted{lcm_get_fileno(listener.lcm), POLLIN, 0};
+    if (poll(&wanted, 1, 50) > 0) lcm_handle(listener.lcm);
+  }
+  kill(child, SIGTERM);
+  int ended = 0;
+  ASSERT_EQ(waitpid(child, &ended, 0), child);
+  EXPECT_TRUE(WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
+  EXPECT_TRUE(listener.heard);
+  EXPECT_EQ(listener.channel("coil_degC"), 41.25);
+  EXPECT_EQ(listener.channel("hull_degC"), 18.5);
+  EXPECT_GT(listener.channel("load_us"), 100.0);
+}
+
+}  // namespace
+}  // namespace ifog
