@@ -91,6 +91,10 @@ void FilterStage::process(const Increment& in) noexcept {
 }
 
 void FilterStage::follow_noise(const Increment& in) noexcept {
+  if (in.samples == 1 && (in.flags & kGapBefore) == 0 && in.dt_s > 0.0) {
+    ++intervals_;
+    mean_interval_s_ += (in.dt_s - mean_interval_s_) / static_cast<double>(intervals_);
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
     if ((in.flags & kGapBefore) != 0) allan_[i].restart();
     // A merged sample is a mean over another time than its neighbours': no difference may use it.
@@ -124,7 +128,7 @@ void FilterStage::answer() noexcept {
   current_.has_health = parts.health() != nullptr;
   if (current_.has_health) current_.health = *parts.health();
   current_.angle_rad = out_.angle_rad;
-  current_.allan_period_s = 1.0 / facts_.nominal_rate_hz;
+  current_.allan_period_s = intervals_ > 0 ? mean_interval_s_ : 1.0 / facts_.nominal_rate_hz;
   current_.allan_octaves = StreamingAllan::kOctaves;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
     current_.allan_octaves = std::min(current_.allan_octaves, allan_[i].octaves());

@@ -77,6 +77,9 @@ class FilterStage {
   bool noise_known_;
   ChainOutput out_;
   std::array<StreamingAllan, kMaxAxes> allan_;
+  // A sample clock may be per cents off what it is said to be: the averaging times are those of the samples.
+  std::uint64_t intervals_ = 0;
+  double mean_interval_s_ = 0.0;
   FilterSnapshot current_;   // filled as samples go by
   FilterSnapshot snapshot_;  // belongs to housekeeping while ask_ is answered
   std::atomic<Ask> ask_{Ask::none};

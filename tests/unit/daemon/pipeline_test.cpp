@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "daemon/health/status_report.h"
 #include "drivers/host/driver_instance.h"
 
 namespace ifog {
@@ -30,7 +31,10 @@ class MemoryTransport final : public Transport {
   Delivery receive(std::int64_t) noexcept override {
     Delivery out;
     if (at_ >= bytes_to_give_.size()) {
-      end(0);
+      if (stays_open_.load())
+        std::this_thread::sleep_for(1ms);
+      else
+        end(0);
       return out;
     }
     const std::size_t n = std::min(portion_, bytes_to_give_.size() - at_);
@@ -49,6 +53,7 @@ class MemoryTransport final : public Transport {
 
  public:
   std::atomic<std::size_t> given_{0};
+  std::atomic<bool> stays_open_{false};
 };
 
 class KeepingPublisher final : public Publisher {
@@ -315,6 +320,45 @@ TEST(Pipeline, HousekeepingGetsASnapshotWhileSamplesFlow) {
   EXPECT_GT(taken, 3);
   EXPECT_TRUE(snapshot.has_health);
   EXPECT_GT(snapshot.allan_octaves, 5);
+}
+
+// By the definition (IEEE Std 952, overlapping) from what was published, at averaging times that the stream
+// evaluates at every sample.
+TEST(Pipeline, TheStatusCarriesTheAllanDeviation) {
+  constexpr int kCount = 4000;
+  Rig rig(frames(kCount), kFrame, true);
+  rig.transport->stays_open_ = true;
+  rig.pipeline->start();
+  while (rig.publisher->messages().size() < kCount) std::this_thread::sleep_for(5ms);
+  rig.pipeline->filter().ask();
+  FilterSnapshot snapshot;
+  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  rig.pipeline->stop();
+
+  StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"});
+  const status_t& sent = report.update(*rig.pipeline, snapshot, 1.0);
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(sent.getEncodedSize()));
+  ASSERT_EQ(sent.encode(bytes.data(), 0, sent.getEncodedSize()), sent.getEncodedSize());
+  status_t status{};
+  ASSERT_GT(status.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
+
+  const std::vector<rate_t> messages = rig.publisher->messages();
+  ASSERT_EQ(messages.size(), static_cast<std::size_t>(kCount));
+  ASSERT_GT(status.octaves, 8);
+  for (std::size_t octave = 0; octave < 3; ++octave) {
+    const std::size_t m = std::size_t{1} << octave;
+    double squares = 0.0, count = 0.0;
+    for (std::size_t i = 0; i + 2 * m <= messages.size(); ++i) {
+      double difference = 0.0;
+      for (std::size_t k = 0; k < m; ++k)
+        difference += messages[i + k].compensated[1] - messages[i + m + k].compensated[1];
+      squares += difference * difference / static_cast<double>(m * m);
+      count += 1.0;
+    }
+    const double deviation = std::sqrt(0.5 * squares / count);
+    EXPECT_NEAR(status.allan_rate_radps[1][octave], deviation, 1e-9 * deviation) << "octave " << octave;
+  }
+  EXPECT_NEAR(status.allan_tau0_s, 1e-3, 1e-15);
 }
 
 }  // namespace
