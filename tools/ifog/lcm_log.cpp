@@ -1,6 +1,7 @@
 #include "tools/ifog/lcm_log.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <ifog/rate_t.hpp>
 #include <lcm/lcm-cpp.hpp>
@@ -44,8 +45,10 @@ void for_each_rate(const std::string& path, const std::string& channel,
   std::int64_t start_ns = 0;
   std::size_t number = 0, axes = 0;
   double last_s = -1.0;
+  long end = 0;  // of the last whole message
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     ++number;
+    end = std::ftell(log.getFilePtr());
     if (event->channel != wanted) continue;
     const auto refuse = [&](const std::string& why) {
       throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
@@ -64,6 +67,11 @@ void for_each_rate(const std::string& path, const std::string& channel,
     sink(message, time_s);
   }
   if (last_s < 0.0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  // LCM's reader does not tell the end of the file from a message that is cut off.
+  std::fseek(log.getFilePtr(), 0, SEEK_END);
+  if (const long left = std::ftell(log.getFilePtr()) - end; left > 0)
+    std::fprintf(stderr, "%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(),
+                 left);
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
 #include "tools/ifog/replay_target.h"
 
 #include <fcntl.h>
-#include <poll.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <ctime>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -23,47 +20,28 @@ namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kHeld = 1U << 16U;  // bytes collected when nothing is due at a time of its own
-constexpr int kPatience_ms = 100;         // between two looks at whether the user wants to stop
 
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
   throw std::runtime_error(name + ": " + what + ": " + std::generic_category().message(error));
 }
 
-// Waits for room in fd.
-void await_room(int fd) {
-  pollfd ask{fd, POLLOUT, 0};
-  poll(&ask, 1, kPatience_ms);
-}
-
 class CanTarget final : public ReplayTarget {
  public:
   CanTarget(const std::string& interface, const ReplayTimeline& timeline)
-      : interface_(interface), timeline_(timeline), socket_(interface) {
-    socket_.receive_nothing();
-  }
+      : CanTarget(CanSocket(interface), interface, timeline) {}
 
   bool send(std::size_t i) override {
     canfd_frame frame{};
     const std::size_t size = to_socket(timeline_.frames[i], frame);
-    while (write(socket_.fd(), &frame, size) != static_cast<ssize_t>(size)) {
-      const int error = errno;
-      if (interrupted()) return false;
-      if (error == EINTR) continue;
-      if (error != ENOBUFS && error != EAGAIN) fail(interface_, "cannot send", error);
-      ++retries_;
-      if (error == EAGAIN) {
-        await_room(socket_.fd());
-      } else {
-        // The interface's queue is full, and poll() knows nothing of it: wait for about a frame at 1 Mbit/s.
-        const timespec pause{0, 100'000};
-        nanosleep(&pause, nullptr);
-      }
-    }
-    return true;
+    return outlet_.send_datagram(&frame, size);
   }
 
  private:
-  std::string interface_;
+  CanTarget(CanSocket socket, const std::string& interface, const ReplayTimeline& timeline)
+      : ReplayTarget(interface, socket.fd()), timeline_(timeline), socket_(std::move(socket)) {
+    socket_.receive_nothing();
+  }
+
   const ReplayTimeline& timeline_;
   CanSocket socket_;
 };
@@ -71,16 +49,17 @@ class CanTarget final : public ReplayTarget {
 // Anything that takes bytes.
 class ByteTarget final : public ReplayTarget {
  public:
-  ByteTarget(std::string name, int fd, const ReplayTimeline& timeline, bool hold)
-      : name_(std::move(name)), timeline_(timeline), fd_(fd), hold_(hold) {
+  ByteTarget(const std::string& name, int fd, const ReplayTimeline& timeline, bool hold)
+      : ReplayTarget(name, fd), timeline_(timeline), hold_(hold) {
     held_.reserve(kHeld + 2 * kCandumpLineMax);
   }
-  ByteTarget(std::unique_ptr<SerialPort> port, std::string name, const ReplayTimeline& timeline, bool hold)
-      : ByteTarget(std::move(name), port->fd(), timeline, hold) {
+  ByteTarget(std::unique_ptr<SerialPort> port, const std::string& name, const ReplayTimeline& timeline,
+             bool hold)
+      : ByteTarget(name, port->fd(), timeline, hold) {
     port_ = std::move(port);
   }
   ~ByteTarget() override {
-    if (port_ == nullptr && fd_ != STDOUT_FILENO) close(fd_);
+    if (port_ == nullptr && outlet_.fd() != STDOUT_FILENO) close(outlet_.fd());
   }
   ByteTarget(const ByteTarget&) = delete;
   ByteTarget& operator=(const ByteTarget&) = delete;
@@ -97,43 +76,23 @@ class ByteTarget final : public ReplayTarget {
 
   bool finish() override {
     if (!flush()) return false;
-    if (port_ != nullptr) tcdrain(fd_);
+    if (port_ != nullptr) tcdrain(outlet_.fd());
     return true;
   }
 
  private:
   bool put(const std::uint8_t* bytes, std::size_t n) {
-    if (!hold_) return write_all(bytes, n);
+    if (!hold_) return outlet_.send_bytes(bytes, n);
     held_.insert(held_.end(), bytes, bytes + n);
     return held_.size() < kHeld || flush();
   }
   bool flush() {
-    const bool done = write_all(held_.data(), held_.size());
+    const bool done = outlet_.send_bytes(held_.data(), held_.size());
     held_.clear();
     return done;
   }
-  bool write_all(const std::uint8_t* bytes, std::size_t n) {
-    while (n > 0) {
-      const ssize_t written = write(fd_, bytes, n);
-      if (written > 0) {
-        bytes += written;
-        n -= static_cast<std::size_t>(written);
-        continue;
-      }
-      const int error = written < 0 ? errno : EAGAIN;
-      if (interrupted()) return false;
-      if (error == EINTR) continue;
-      if (error == EPIPE) throw std::runtime_error(name_ + ": the reader went away");
-      if (error != EAGAIN) fail(name_, "cannot write", error);
-      ++retries_;
-      await_room(fd_);
-    }
-    return true;
-  }
 
-  std::string name_;
   const ReplayTimeline& timeline_;
-  int fd_;
   bool hold_;
   std::unique_ptr<SerialPort> port_;
   std::vector<std::uint8_t> held_;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "drivers/transport/serial_port.h"
+#include "tools/ifog/outlet.h"
 #include "tools/ifog/replay_timeline.h"
 
 namespace ifog::tools {
@@ -20,10 +21,11 @@ class ReplayTarget {
   // Sends what is still held. False: interrupted.
   virtual bool finish() { return true; }
 
-  [[nodiscard]] std::uint64_t retries() const { return retries_; }
+  [[nodiscard]] std::uint64_t retries() const { return outlet_.retries(); }
 
  protected:
-  std::uint64_t retries_ = 0;  // times the system had no room (ENOBUFS, EAGAIN)
+  ReplayTarget(std::string name, int fd) : outlet_(std::move(name), fd) {}
+  Outlet outlet_;
 };
 
 struct ReplayDestination {

@@ -1,0 +1,162 @@
+// Logs of lcm-logger as captures: written here with LCM's own library, read by ours.
+#include "tools/ifog/lcm_log.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <ifog/channel_t.hpp>
+#include <ifog/rate_t.hpp>
+#include <lcm/lcm-cpp.hpp>
+#include <stdexcept>
+
+namespace ifog::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LcmLog : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::temp_directory_path() / ("ifog-lcm-log-" + std::to_string(getpid()));
+    writer_ = std::make_unique<lcm::LogFile>(path_, "w");
+    ASSERT_TRUE(writer_->good());
+  }
+  void TearDown() override { fs::remove(path_); }
+
+  template <typename Message>
+  void add(const std::string& channel, const Message& message) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    lcm::LogEvent event{};
+    event.channel = channel;
+    event.datalen = static_cast<int>(bytes.size());
+    event.data = bytes.data();
+    ASSERT_EQ(writer_->writeEvent(&event), 0);
+  }
+  // Sample n of a sensor with so many axes; every number in it is another.
+  static rate_t sample(int n, int axes, std::int64_t sensor_time_ns = -1) {
+    rate_t out{};
+    out.utime = 1'700'000'000'000'000 + n * 1000;
+    out.sensor_time_ns = sensor_time_ns;
+    out.dt = 0.001;
+    out.axes = static_cast<std::int8_t>(axes);
+    double next = 100.0 * n;
+    for (auto* field : {&out.raw, &out.compensated, &out.denoised, &out.variance, &out.delta_theta,
+                        &out.covered, &out.angle, &out.innovation, &out.innovation_variance, &out.gain})
+      for (int axis = 0; axis < axes; ++axis) field->push_back(next++);
+    return out;
+  }
+  void finish() { writer_.reset(); }
+  std::string refusal(const std::string& channel = "") {
+    finish();
+    try {
+      read_lcm_log(path_, channel);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::string path_;
+  std::unique_ptr<lcm::LogFile> writer_;
+};
+
+TEST_F(LcmLog, TakesTheOnlyChannelWithRates) {
+  channel_t other{};
+  for (int n = 0; n < 5; ++n) {
+    add("IFOG_NOSE_STATUS", other);
+    add("IFOG_NOSE", sample(n, 3));
+    add("HULL", other);
+  }
+  finish();
+  const Capture capture = read_lcm_log(path_, "");
+  ASSERT_EQ(capture.time_s.size(), 5U);
+  EXPECT_EQ(capture.axes, (std::vector<std::string>{"x", "y", "z"}));
+  for (std::size_t n = 0; n < 5; ++n) {
+    EXPECT_NEAR(capture.time_s[n], 0.001 * static_cast<double>(n), 1e-12);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(capture.rate_radps[axis][n], 100.0 * static_cast<double>(n) + static_cast<double>(axis));
+  }
+}
+
+TEST_F(LcmLog, TheSensorsOwnClockGoesBeforeTheFittedTime) {
+  for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 1, 5'000'000'000 + n * 250'000'000LL));
+  finish();
+  const Capture capture = read_lcm_log(path_, "IFOG_NOSE");
+  EXPECT_EQ(capture.time_s, (std::vector<double>{0.0, 0.25, 0.5}));
+  EXPECT_EQ(capture.axes, std::vector<std::string>{""});
+}
+
+TEST_F(LcmLog, WhatWasPublishedComesInTheColumnsOfDenoise) {
+  for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 2));
+  finish();
+  const Table table = read_published(path_, "");
+  std::vector<std::string> names;
+  for (const CaptureColumn& column : table.columns) names.push_back(column.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"raw_x_radps", "compensated_x_radps", "denoised_x_radps",
+                                             "variance_x_rad2ps2", "raw_y_radps", "compensated_y_radps",
+                                             "denoised_y_radps", "variance_y_rad2ps2"}));
+  // Fields in the message's order, both axes each: raw 0 1, compensated 2 3, denoised 4 5, variance 6 7.
+  const double expected[] = {0, 2, 4, 6, 1, 3, 5, 7};
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    for (std::size_t n = 0; n < 3; ++n)
+      EXPECT_EQ(table.columns[c].values[n], 100.0 * static_cast<double>(n) + expected[c]) << names[c];
+  EXPECT_NEAR(table.time_s[2], 0.002, 1e-12);
+}
+
+TEST_F(LcmLog, SeveralSensorsMustBeChosenFrom) {
+  add("IFOG_NOSE", sample(0, 1));
+  add("IFOG_TAIL", sample(0, 1));
+  EXPECT_EQ(refusal(), path_ + ": has several channels, expected --channel with one of IFOG_NOSE, IFOG_TAIL");
+  EXPECT_EQ(refusal("IFOG_TAIL"), "accepted");
+  EXPECT_EQ(refusal("IFOG_WING"), path_ + ": has no message on channel IFOG_WING");
+}
+
+TEST_F(LcmLog, RefusesWhatIsNoLogOrHasNoRates) {
+  add("HULL", channel_t{});
+  EXPECT_EQ(refusal(), path_ + ": has no channel IFOG_<NAME>");
+  fs::remove(path_);
+  EXPECT_EQ(refusal("IFOG_NOSE"), path_ + ": cannot open as an LCM log");
+}
+
+TEST_F(LcmLog, RefusesMessagesThatCannotBe) {
+  add("IFOG_NOSE", sample(1, 1));
+  add("IFOG_NOSE", channel_t{});
+  EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE is no ifog.rate_t of this version");
+}
+
+TEST_F(LcmLog, RefusesTimeThatStandsStill) {
+  add("IFOG_NOSE", sample(1, 1));
+  add("IFOG_NOSE", sample(1, 1));
+  EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE is not later than the one before");
+}
+
+TEST_F(LcmLog, RefusesAnotherNumberOfAxes) {
+  add("IFOG_NOSE", sample(0, 1));
+  add("IFOG_NOSE", sample(1, 3));
+  EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE has another number of axes");
+}
+
+TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
+  for (int n = 0; n < 4; ++n) add("IFOG_NOSE", sample(n, 1));
+  finish();
+  fs::resize_file(path_, fs::file_size(path_) - 20);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(read_lcm_log(path_, "").time_s.size(), 3U);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(said.rfind(path_ + ": its last ", 0), 0U) << said;
+  EXPECT_NE(said.find(" bytes are no whole message (is the file cut off?)\n"), std::string::npos) << said;
+  // A whole one is not complained of.
+  fs::resize_file(path_, 0);
+  SetUp();
+  add("IFOG_NOSE", sample(0, 1));
+  finish();
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(read_lcm_log(path_, "").time_s.size(), 1U);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace ifog::tools
