@@ -1,41 +1,62 @@
 #include "filters/random/exponential.h"
 
-#include "filters/random/logarithm.h"
+#include <algorithm>
+#include <cstring>
+
+#include "filters/random/inverse_law.h"
 
 namespace ifog {
 namespace {
 
-// The last counter word tells the two uses apart: rows below for at(), above for fill().
-constexpr std::uint32_t kFillRows = 0x80000000U;
+// The counter's third word tells the two uses apart.
+enum Use : std::uint64_t { kSingle, kRow };
 
-PhiloxBlock counter(std::uint64_t index, std::uint32_t stream, std::uint32_t last) noexcept {
-  return {static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32U), stream, last};
+// Two deviates for every 64 bits.
+void to_law(DeviateStream::Law law, std::span<const std::uint64_t> bits, double* out) noexcept {
+  const auto put = [&out](DoublePair pair) {
+    std::memcpy(out, &pair, sizeof pair);
+    out += 2;
+  };
+  if (law == DeviateStream::Law::kExponential) {
+    for (const std::uint64_t word : bits) put(exponential_deviates(word));
+  } else {
+    for (const std::uint64_t word : bits) put(uniform_deviates(word));
+  }
 }
 
 }  // namespace
 
-double DeviateStream::deviate(std::uint32_t bits) const noexcept {
-  const double uniform = (static_cast<double>(bits) + 0.5) * 0x1p-32;  // never 0 nor 1
-  return law_ == Law::kExponential ? -logarithm(uniform) : uniform;
-}
-
 double DeviateStream::at(std::uint64_t index, std::uint32_t row) noexcept {
-  const std::uint64_t block = index >> 2U;
-  if (block != kept_block_ || row != kept_row_) {
-    kept_ = philox(counter(block, stream_, row), key_);
-    kept_block_ = block;
+  const std::uint64_t together = index / kTogether;
+  if (together != kept_index_ || row != kept_row_) {
+    to_law(law_, philox_wide({together, row, kSingle, 0}, keys_), kept_.data());
+    kept_index_ = together;
     kept_row_ = row;
   }
-  return deviate(kept_[index & 3U]);
+  return kept_[index % kTogether];
 }
 
+// All bits first, then all deviates: a loop that did both would keep the processor waiting for the ten rounds
+// of each block.
 void DeviateStream::fill(std::uint64_t index, std::uint32_t row, std::span<double> out) const noexcept {
-  const auto count = static_cast<std::uint32_t>(out.size());
-  const std::uint32_t blocks = (count + 3) / 4;
-  for (std::uint32_t b = 0; b < blocks; ++b) {
-    const PhiloxBlock bits = philox(counter(index, stream_, kFillRows + row * blocks + b), key_);
-    for (std::uint32_t lane = 0; lane < 4 && 4 * b + lane < count; ++lane)
-      out[4 * b + lane] = deviate(bits[lane]);
+  constexpr std::size_t kBlocks = 8;
+  std::array<std::uint64_t, 4 * kBlocks> bits;
+  std::uint64_t block = 0;
+  while (!out.empty()) {
+    const std::size_t count = std::min(out.size(), kBlocks * kTogether);
+    const std::size_t blocks = (count + kTogether - 1) / kTogether;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const auto [w0, w1, w2, w3] = philox_wide({index, row, kRow, block++}, keys_);
+      bits[4 * b] = w0, bits[4 * b + 1] = w1, bits[4 * b + 2] = w2, bits[4 * b + 3] = w3;
+    }
+    const std::size_t whole = count / 2;
+    to_law(law_, {bits.data(), whole}, out.data());
+    if (count % 2 != 0) {
+      std::array<double, 2> last;
+      to_law(law_, {bits.data() + whole, 1}, last.data());
+      out[count - 1] = last[0];
+    }
+    out = out.subspan(count);
   }
 }
 

@@ -17,7 +17,8 @@ class SageHusa final : public Rule {
         estimate_(noise_) {}
 
   double innovation_covariance(const RuleInput& in) noexcept override {
-    power_ *= fading_;
+    // To zero once it no longer counts: its last values would be subnormal, and slow, for good.
+    power_ = power_ > 1e-30 ? power_ * fading_ : 0.0;
     const double d = (1.0 - fading_) / (1.0 - power_ * fading_);
     estimate_ += d * ((mean_square(in.innovations) - in.projected) / in.noise_scale - estimate_);
     const double c =
