@@ -1,9 +1,12 @@
 // Scores the diagnosis on sensors whose effects it is not told of. Without arguments: 1000 sensors with
 // effects of 12 to 80 sigma and 1000 without any. Every sensor can be made again from its seed.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <thread>
 
 #include "tests/bench/undeclared/oracle_diagnosis.h"
 #include "tests/bench/undeclared/project_diagnosis.h"
@@ -19,12 +22,17 @@ struct Options {
   double sigma_low = 12.0, sigma_high = 80.0;
   std::string kind, method = "ifog";
   bool curve = false, quiet = false;
+  int jobs = 1;
+  std::vector<std::uint64_t> only;
 };
+
+std::uint64_t seed_at(const Options& o, int place, bool with_effect) {
+  return o.seed * 1'000'000U + (with_effect ? 0U : 500'000U) + static_cast<std::uint64_t>(place);
+}
 
 // The next sensor of the series; `place` walks through the kinds so that every size meets every kind.
 Sensor sensor_at(const Options& o, int place, bool with_effect) {
-  const std::uint64_t seed =
-      o.seed * 1'000'000U + (with_effect ? 0U : 500'000U) + static_cast<std::uint64_t>(place);
+  const std::uint64_t seed = seed_at(o, place, with_effect);
   Draw draw(seed, 999);
   const auto& kinds = kinds_with_effect();
   Kind kind = with_effect      ? kinds[static_cast<std::size_t>(place) % kinds.size()]
@@ -55,17 +63,32 @@ int main(int argc, char** argv) {
   app.add_option("--method", o.method)->check(CLI::IsMember({"ifog", "oracle", "blind"}));
   app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
   app.add_flag("--quiet", o.quiet, "no list of failures");
+  app.add_option("--jobs", o.jobs, "sensors at a time")->check(CLI::Range(1, 256));
+  app.add_option("--only", o.only, "only the sensors of these seeds, as the list of failures gives them");
   CLI11_PARSE(app, argc, argv);
 
   std::vector<Score> scores;
+  // Sensors are independent of each other; each score stands at its place, whichever thread makes it.
   const auto run = [&](int count, bool with_effect) {
-    for (int i = 0; i < count; ++i) {
-      const Sensor sensor = sensor_at(o, i, with_effect);
-      scores.push_back(score(sensor, o.method == "ifog"     ? project_diagnosis()
-                                     : o.method == "oracle" ? oracle_diagnosis(sensor)
-                                                            : blind_diagnosis()));
-      if ((i + 1) % 50 == 0) std::fprintf(stderr, "%d of %d\n", i + 1, count);
-    }
+    std::vector<int> places;
+    for (int i = 0; i < count; ++i)
+      if (o.only.empty() || std::count(o.only.begin(), o.only.end(), seed_at(o, i, with_effect)) > 0)
+        places.push_back(i);
+    std::vector<Score> made(places.size());
+    std::atomic<std::size_t> next{0}, done{0};
+    std::vector<std::jthread> threads(static_cast<std::size_t>(o.jobs));
+    for (std::jthread& thread : threads)
+      thread = std::jthread([&] {
+        for (std::size_t i = next++; i < places.size(); i = next++) {
+          const Sensor sensor = sensor_at(o, places[i], with_effect);
+          made[i] = score(sensor, o.method == "ifog"     ? project_diagnosis()
+                                  : o.method == "oracle" ? oracle_diagnosis(sensor)
+                                                         : blind_diagnosis());
+          if (++done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", done.load(), places.size());
+        }
+      });
+    threads.clear();
+    scores.insert(scores.end(), made.begin(), made.end());
   };
   run(o.with, true);
   run(o.without, false);
