@@ -36,6 +36,8 @@ struct FineChannel {
   std::vector<double> power;   // variance within each step of the fine grid; empty when a step is one sample
   double low = 0.0, high = 0.0;
   bool varies = false;
+  bool still = false;    // no more than reading noise: its averages are those of white noise
+  bool smooth = false;   // moves smoothly, so that it has no power of its own above its slope
   bool rotates = false;  // follows the sensor's own rotation; a linear use of it would cancel rotation
 };
 

@@ -32,9 +32,19 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
     candidate.time_constant_s = tau;
     found.push_back(candidate);
   };
-  for (const Form form : {Form::kLinear, Form::kQuadratic, Form::kCubic}) add(form, 0.0);
-  for (const Form form : {Form::kRate, Form::kSecondRate, Form::kLagged, Form::kBandPower}) {
-    for (const double tau : time_constants(data.grid, form)) add(form, tau);
+  const FineChannel& source = data.channels[channel];
+  add(Form::kLinear, 0.0);
+  // Of a channel that stands still the rest are pictures of reading noise, low-passed into a random walk that
+  // slow noise will follow somewhere.
+  if (!source.still) {
+    for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
+    for (const Form form : {Form::kRate, Form::kSecondRate, Form::kLagged}) {
+      for (const double tau : time_constants(data.grid, form)) add(form, tau);
+    }
+  }
+  // Of a smooth one, what is above the low-pass is its slope.
+  if (!source.smooth) {
+    for (const double tau : time_constants(data.grid, Form::kBandPower)) add(Form::kBandPower, tau);
   }
 }
 
@@ -49,7 +59,8 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
   }
   candidate.form = Form::kProduct;
   for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
-    if (channel == reference || !data.channels[channel].varies || data.channels[channel].rotates) continue;
+    const FineChannel& source = data.channels[channel];
+    if (channel == reference || !source.varies || source.rotates || source.still) continue;
     // The channel's own scale factor sensitivity, its nonlinearity's, and its square's.
     candidate.channel = channel;
     candidate.with_channel = reference;
@@ -165,6 +176,8 @@ double complexity(const Candidate& candidate) {
                     // thing
     case Form::kWarmUp:
       return 8.0;
+    case Form::kProduct:  // a scale factor that depends on a channel, or its nonlinearity that does
+      return candidate.with_form == Form::kLinear ? 4.0 : 8.0;
     default:
       return 4.0;
   }

@@ -61,7 +61,8 @@ class Account {
     take_effects();
     // Lines are looked for in what the effects leave; a slow one then competes with them in a second search.
     lines_ = coherent_lines(errors_, data_.grid, options_.significance / 20.0);
-    if (data_.reference >= 0 && data_.channels[static_cast<std::size_t>(data_.reference)].varies) lines_ = {};
+    if (data_.grid.dwells) lines_ = {};
+    leave_out_periodic(data_, lines_);
     blame_rotation();
     while (!lines_.slow.empty()) {
       search.given = lines_.slow;
@@ -89,7 +90,8 @@ class Account {
   // The last word is the error on held-out data: effects that make it larger are no model, whatever their
   // p-values.
   void drop_what_does_not_hold(SearchOptions& search) {
-    if (found_.chosen.size() <= search.given.size()) return;
+    const auto corrects = [](const Chosen& chosen) { return carries_over(chosen.candidate.form); };
+    if (std::none_of(found_.chosen.begin(), found_.chosen.end(), corrects)) return;
     double before = 0.0;
     double after = 0.0;
     for (const EvenError& error : errors_) {

@@ -1,6 +1,9 @@
 #include "filters/diagnosis/record_lines.h"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "filters/effects/meaning.h"
 
@@ -12,7 +15,75 @@ constexpr std::size_t kMostSlowLines = 6;  // in one fit; the strongest come fir
 // Slow enough for block means to carry it; faster lines are fitted to the samples themselves.
 bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz * grid.block_s < 0.4; }
 
+constexpr int kMostHarmonic = 8;
+// Share of a channel's variance within one bin of its largest peak that makes it periodic.
+constexpr double kPeriodic = 0.3;
+
+// Frequency of a periodic series in cycles over its length, 0 when it has none. The peak may lie between the
+// first few bins, where no spectrum would show a line.
+double cycles_of(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0;
+  for (const double v : values) mean += v / n;
+  double total = 0.0;
+  for (const double v : values) total += (v - mean) * (v - mean);
+  const auto share = [&](double cycles) {
+    const std::complex<double> turn = std::polar(1.0, -2.0 * std::numbers::pi * cycles / n);
+    std::complex<double> carrier = 1.0;
+    std::complex<double> sum = 0.0;
+    for (const double v : values) {
+      sum += (v - mean) * carrier;
+      carrier *= turn;
+    }
+    return 2.0 * std::norm(sum) / (n * std::max(total, 1e-300));
+  };
+  double best = 0.0;
+  double most = kPeriodic;
+  const double last = std::min(256.0, n / 4.0);
+  for (double cycles = 1.25; cycles < last; cycles += 0.25) {
+    const double value = share(cycles);
+    if (value > most) {
+      most = value;
+      best = cycles;
+    }
+  }
+  return best;
+}
+
 }  // namespace
+
+void leave_out_periodic(const BlockData& data, Lines& lines) {
+  const BlockGrid& grid = data.grid;
+  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+    const std::size_t from = grid.starts[r] * grid.fine;
+    const std::size_t steps = grid.starts[r + 1] * grid.fine - from;
+    const double span_s = static_cast<double>(steps) * grid.fine_s;
+    for (const FineChannel& channel : data.channels) {
+      if (!channel.varies) continue;
+      // A few thousand means keep every period that counts here.
+      const std::size_t stride = std::max<std::size_t>(1, steps / 2048);
+      std::vector<double> means;
+      for (std::size_t k = 0; k + stride <= steps; k += stride) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < stride; ++i) sum += channel.values[from + k + i];
+        means.push_back(sum / static_cast<double>(stride));
+      }
+      const double cycles = cycles_of(means);
+      if (cycles <= 0.0) continue;
+      const auto harmonic = [&](double frequency_hz) {
+        const double times = frequency_hz * span_s / cycles;
+        const double nearest = std::round(times);
+        return nearest >= 1.0 && nearest <= kMostHarmonic &&
+               std::abs(times - nearest) * cycles < 0.5 + 0.25 * nearest;
+      };
+      std::erase_if(lines.slow,
+                    [&](const Candidate& line) { return line.record == r && harmonic(line.frequency_hz); });
+      std::erase_if(lines.fast, [&](const FastLine& line) {
+        return line.record == r && harmonic(line.line.frequency_hz);
+      });
+    }
+  }
+}
 
 Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance) {
   Lines found;

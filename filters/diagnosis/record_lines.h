@@ -18,6 +18,10 @@ struct Lines {
   std::vector<FastLine> fast;
 };
 
+// Lines at a frequency at which something that was recorded has one, or at a multiple of it, are left out:
+// they are what the fit leaves of its effect, and what would explain them is not a line.
+void leave_out_periodic(const BlockData& data, Lines& lines);
+
 // Of what is left of each record's error.
 Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filters/diagnosis/search.h"
+#include "filters/diagnosis/tries.h"
 
 namespace ifog {
 namespace {
@@ -65,6 +66,10 @@ Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseSha
   }
   projected.square = projected.y.squaredNorm();
   return projected;
+}
+
+double Scan::independent(const std::vector<Candidate>& base, const NoiseShape& shape) const {
+  return independent_columns(project(base, shape, columns_).columns);
 }
 
 std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough,

@@ -25,6 +25,9 @@ class Scan {
 
   [[nodiscard]] std::size_t size() const { return candidates_.size(); }
 
+  // So many independent tries the library amounts to, beside `base`; see tries.h.
+  [[nodiscard]] double independent(const std::vector<Candidate>& base, const NoiseShape& shape) const;
+
   // thorough: the full spread of noise models; otherwise a few of them.
   [[nodiscard]] std::vector<Scored> score(const std::vector<Candidate>& base, const NoiseFit& noise,
                                           bool thorough, const Candidate* compared = nullptr,

@@ -6,7 +6,11 @@
 #include <numeric>
 #include <set>
 
+#include "filters/diagnosis/consistent.h"
+#include "filters/diagnosis/online_twin.h"
+#include "filters/diagnosis/reconstruct.h"
 #include "filters/diagnosis/scan.h"
+#include "filters/diagnosis/tries.h"
 
 namespace ifog {
 namespace {
@@ -16,37 +20,47 @@ constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a p
 constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
 constexpr double kWorse = 1.25;  // chance makes slow noise and an effect run together or against each other
 constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
-constexpr double kAlike = 0.98;       // or this correlation of the whitened regressors
-
-// Probability of a likelihood ratio this large for one regressor that has no effect.
-double tail(double ratio, int columns) {
-  if (ratio <= 0.0) return 1.0;
-  return columns == 1 ? std::erfc(std::sqrt(ratio / 2.0)) : std::exp(-ratio / 2.0);
-}
+constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
+constexpr double kDisagree = 3.0;         // standard deviations
+constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
 
 class Loop {
  public:
   Loop(const BlockData& data, const SearchOptions& options)
-      : data_(data), options_(options), scan_(data, library(data)), model_(options.given) {
-    tries_ = scan_.size() + data.grid.used() / 2;  // and the positions of a step, half of them independent
-    least_ratio_ = 1.0;
-    while (tail(least_ratio_, 1) * static_cast<double>(tries_) > options.significance) least_ratio_ += 0.25;
-  }
+      : data_(data), options_(options), scan_(data, library(data)), model_(options.given) {}
 
   SearchResult run() {
     SearchResult result;
     noise_ = fit_noise(data_.grid, design(data_, model_));
     result.noise_without = noise_;
+    count_tries();
     while (model_.size() < options_.most_effects + options_.given.size()) {
       if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
       if (!add_one() && !add_pair()) break;
       revise();
     }
+    drop_what_slow_denies();
     finish(result);
     return result;
   }
 
  private:
+  // The chance of a false effect is shared out between channels and steps.
+  void count_tries() {
+    const double level = 20.0;  // near what will be asked for
+    tries_of_channels_ = scan_.independent(model_, noise_.shape) / kShareOfChannels;
+    tries_of_steps_ = independent_steps(data_.grid, noise_.shape, level) / (1.0 - kShareOfChannels);
+    if (data_.grid.dwells) tries_of_channels_ *= kShareOfChannels;
+    least_ratio_ = 1.0;
+    while (tail(least_ratio_, 1) * tries_of_channels_ > options_.significance) least_ratio_ += 0.25;
+  }
+
+  [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
+    const int columns = candidate.form == Form::kLine ? 2 : 1;
+    const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
+    return std::min(1.0, tail(ratio, columns) * tries);
+  }
+
   struct Trial {
     std::vector<Candidate> model;
     NoiseFit noise;
@@ -141,16 +155,43 @@ class Loop {
     Trial best = best_addition(model_, noise_, true);
     if (best.model.empty()) return false;
     const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
-    if (ratio < least_ratio_ + complexity(best.model.back())) return false;
-    if (best.model.back().form == Form::kStep ? !stays(best) : !predicts(best)) return false;
-    if (left_over(best.model, best.noise.shape) > kWorse * left_over(model_, noise_.shape)) return false;
+    const Candidate& added = best.model.back();
+    if (p_value(added, ratio - complexity(added)) > options_.significance) return false;
+    if (added.form == Form::kStep ? !stays(best) : !predicts(best)) return false;
     model_ = best.model;
     noise_ = best.noise;
     return true;
   }
 
-  // Variance of the block means less the effects. Innovations see what is quick; a coefficient that only fits
-  // that can be far too large for what is slow, and a correction must not make the error larger.
+  // A correction must not make the error larger than slow noise makes it by chance: where it does grow, the
+  // coefficient that plain least squares finds has to agree with the one found in innovations. Judged when
+  // all effects are in: one of two that oppose each other makes the error larger until the other comes.
+  void drop_what_slow_denies() {
+    for (std::size_t i = options_.given.size(); i < model_.size();) {
+      std::vector<Candidate> rest = model_;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      std::vector<Candidate> ordered = rest;
+      ordered.push_back(model_[i]);
+      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+      if (left_over(ordered, noise_.shape) <= kWorse * left_over(rest, without.shape)) {
+        ++i;
+        continue;
+      }
+      const Columns columns = design(data_, ordered);
+      Eigen::MatrixXd covariance;
+      const Eigen::VectorXd c = solve(data_.grid, noise_.shape, columns, &covariance);
+      if (disagreement(data_.grid, noise_, columns, constants(data_.grid).cols(), c, covariance) <
+          kDisagree) {
+        ++i;
+        continue;
+      }
+      model_ = rest;
+      noise_ = without;
+      i = options_.given.size();
+    }
+  }
+
+  // Sum of squares of the block means less the effects, about each record's mean.
   double left_over(const std::vector<Candidate>& model, const NoiseShape& shape) const {
     const Columns columns = design(data_, model);
     const Eigen::Index p = columns.cols() - 1 - constants(data_.grid).cols();
@@ -214,7 +255,6 @@ class Loop {
     // Tries grow as the square, and so does what two have to bring.
     if (ratio < 2.0 * least_ratio_ + penalty({trial.model.end() - 2, trial.model.end()}) || !predicts(trial))
       return false;
-    if (left_over(trial.model, trial.noise.shape) > kWorse * left_over(model_, noise_.shape)) return false;
     model_ = trial.model;
     noise_ = trial.noise;
     return true;
@@ -227,7 +267,8 @@ class Loop {
       std::vector<Candidate> rest = model_;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      if (2.0 * (noise_.log_likelihood - without.log_likelihood) < least_ratio_) {
+      if (p_value(model_[i], 2.0 * (noise_.log_likelihood - without.log_likelihood)) >
+          options_.significance) {
         model_ = rest;
         noise_ = without;
         continue;
@@ -290,13 +331,12 @@ class Loop {
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
       Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - without.log_likelihood), 1.0};
-      const int columns = model_[i].form == Form::kLine ? 2 : 1;
-      chosen.p_value = std::min(1.0, tail(chosen.likelihood_ratio, columns) * static_cast<double>(tries_));
+      chosen.p_value = p_value(model_[i], chosen.likelihood_ratio);
       result.chosen.push_back(chosen);
       if (i >= first) find_alternatives(result, i, rest, without);
     }
     result.noise = noise_;
-    result.tries = tries_;
+    result.tries = tries_of_channels_;
     result.coefficients = solve(data_.grid, noise_.shape, design(data_, model_), &result.covariance);
   }
 
@@ -324,14 +364,17 @@ class Loop {
   Scan scan_;
   std::vector<Candidate> model_;
   NoiseFit noise_;
-  std::size_t tries_ = 0;
-  double least_ratio_ = 0.0;
+  double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;  // independent ones over their share
+  double least_ratio_ = 0.0;                               // of a channel's effect
 };
 
 }  // namespace
 
 SearchResult search_effects(const BlockData& data, const SearchOptions& options) {
-  return Loop(data, options).run();
+  const BlockData clean = with_reconstructed_channels(data);
+  SearchResult result = Loop(clean, options).run();
+  fit_to_readings(data, clean, result);
+  return result;
 }
 
 Columns constants(const BlockGrid& grid) {

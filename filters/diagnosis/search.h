@@ -30,7 +30,7 @@ struct SearchResult {
   Eigen::VectorXd
       coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
   Eigen::MatrixXd covariance;  // of those
-  std::size_t tries = 0;
+  double tries = 1.0;          // independent ones of a channel's effect, over their share of the significance
 };
 
 struct SearchOptions {

@@ -57,6 +57,53 @@ std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   return found;
 }
 
+// The level a piece's energy exceeds once in a hundred records of white noise, over the median of all pieces.
+// Mean squares of m differences of neighbours scatter like chi-square of 2/3 m degrees of freedom (Wilson and
+// Hilferty's approximation of its quantiles and its median).
+double burst_level(std::size_t piece, std::size_t pieces) {
+  const double freedom = 2.0 / 3.0 * static_cast<double>(piece - 1);
+  const double chance = 0.01 / static_cast<double>(pieces);
+  // Normal quantile of a small chance, Abramowitz and Stegun 26.2.23.
+  const double t = std::sqrt(-2.0 * std::log(chance));
+  const double z =
+      t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  const double width = 2.0 / (9.0 * freedom);
+  const double level = std::pow(1.0 - width + z * std::sqrt(width), 3);
+  return std::max(6.0, level / std::pow(1.0 - width, 3));
+}
+
+struct SlowRest {
+  double over_s = 0.0;  // length of the means that show it best; 0: nothing slow
+  double share = 0.0;   // of their variance that neighbours do not see
+};
+
+// Slow is what makes means scatter more than neighbouring means differ (von Neumann's ratio, whose standard
+// deviation for n means of white noise is 1 / sqrt n).
+SlowRest slow_rest(std::span<const double> left, double period_s) {
+  constexpr double kClear = 5.0;
+  SlowRest found;
+  double most = kClear;
+  for (std::size_t count = 1; left.size() / count >= 16; count *= 4) {
+    const std::vector<double> means = means_over(left, count);
+    double square = 0.0;
+    double n = 0.0;
+    for (std::size_t i = 1; i < means.size(); ++i) {
+      const double d = means[i] - means[i - 1];
+      if (!std::isfinite(d)) continue;
+      square += d * d;
+      n += 1.0;
+    }
+    const double all = variance(means);
+    if (n < 16.0 || !(square > 0.0)) continue;
+    const double neighbours = 0.5 * square / n;
+    const double sigma = (all / neighbours - 1.0) * std::sqrt(n);
+    if (sigma <= most) continue;
+    most = sigma;
+    found = {static_cast<double>(count) * period_s, 1.0 - neighbours / all};
+  }
+  return found;
+}
+
 }  // namespace
 
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
@@ -83,9 +130,10 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
   const std::vector<double> energy = energies(left, piece);
   if (energy.size() >= 16) {
     const double usual = median(energy);
+    const double level = burst_level(piece, energy.size());
     std::size_t bursts = 0;
     for (std::size_t i = 0; i < energy.size(); ++i) {
-      if (energy[i] < 6.0 * usual + 1e-300) continue;
+      if (energy[i] < level * usual + 1e-300) continue;
       ++bursts;
       const double t = start_s + static_cast<double>(i * piece) * period_s;
       if (found.times_s.empty() || t - found.times_s.back() > 2.0) found.times_s.push_back(t);
@@ -104,10 +152,10 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
     double least = 1e300;
     double most = 0.0;
     for (std::size_t p = 0; p < 8; ++p) {
-      const double level = median({energy.begin() + static_cast<std::ptrdiff_t>(p * part),
-                                   energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part)});
-      least = std::min(least, level);
-      most = std::max(most, level);
+      const double typical = median({energy.begin() + static_cast<std::ptrdiff_t>(p * part),
+                                     energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part)});
+      least = std::min(least, typical);
+      most = std::max(most, typical);
     }
     if (most > 2.0 * least) {
       found.kind = "changing_variance";
@@ -118,13 +166,16 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
       return found;
     }
   }
-  const bool slow = noise.shape.walk > 0.0 || noise.shape.flicker > 0.0 || noise.shape.markov > 0.0;
-  if (slow && found.fraction > 0.05) {
+  const SlowRest slow = slow_rest(left, period_s);
+  if (slow.over_s > 0.0) {
     found.kind = "slow";
-    found.hint =
-        "slow drift that follows none of the channels given: the sensor's own random walk or flicker, or an "
-        "environment "
-        "that was not logged. Log the temperature at the coil and at the electronics, and the supply.";
+    found.hint = text(
+        "slow drift that follows none of the channels given: %.2g %% of what %.3g s means scatter. The "
+        "sensor's "
+        "own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
+        "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
+        "supply.",
+        100.0 * slow.share, slow.over_s);
   } else if (found.fraction > 0.05) {
     found.kind = "uncorrelated";
     found.hint = "correlated with nothing that was logged, and with no pattern of its own";

@@ -1,0 +1,189 @@
+// The parts of the search that have an answer of their own: what a channel was, how many tries there are,
+// and whether slow and quick agree about an effect.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/consistent.h"
+#include "filters/diagnosis/reconstruct.h"
+#include "filters/diagnosis/record_lines.h"
+#include "filters/diagnosis/search.h"
+#include "filters/diagnosis/tries.h"
+
+namespace ifog {
+namespace {
+
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+BlockGrid even_grid(std::size_t n) {
+  BlockGrid grid;
+  grid.block_s = grid.fine_s = grid.sample_s = 1.0;
+  grid.starts = {0, n};
+  grid.valid.assign(n, 1);
+  for (std::size_t i = 0; i < n; ++i) grid.time_s.push_back(static_cast<double>(i));
+  return grid;
+}
+
+TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<double> truth, read;
+  for (int i = 0; i < 8000; ++i) {
+    truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
+    read.push_back(std::round(truth.back() + noise(random)));
+  }
+  const Reconstruction found = reconstructed(read);
+  EXPECT_TRUE(found.smooth);
+  EXPECT_GT(rms_difference(read, truth), 0.25);
+  EXPECT_LT(rms_difference(found.values, truth), 0.1);
+}
+
+TEST(Reconstruct, ReadingNoiseOfASmoothChannelIsSmoothedAway) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<double> truth, read;
+  for (int i = 0; i < 8000; ++i) {
+    truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
+    read.push_back(truth.back() + noise(random));
+  }
+  const Reconstruction found = reconstructed(read);
+  EXPECT_TRUE(found.smooth);
+  EXPECT_LT(rms_difference(found.values, truth), 0.0025);
+}
+
+// A spline through jumps or jitter would be another channel.
+TEST(Reconstruct, WhatJumpsOrJittersStaysAsItWasRead) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise;
+  std::vector<double> jumps, walk;
+  double level = 0.0;
+  double place = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    if (i % 200 == 0) level = 5.0 * noise(random);
+    place += 0.05 * noise(random);
+    jumps.push_back(level + 0.002 * noise(random));
+    walk.push_back(place + 0.002 * noise(random));
+  }
+  for (const std::vector<double>& channel : {jumps, walk}) {
+    const Reconstruction found = reconstructed(channel);
+    EXPECT_FALSE(found.smooth);
+    EXPECT_EQ(found.values, channel);
+    EXPECT_FALSE(stands_still(channel));
+  }
+}
+
+TEST(Reconstruct, ReadingNoiseAloneIsStandingStill) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise;
+  int moving = 0;
+  for (int channel = 0; channel < 50; ++channel) {
+    std::vector<double> read;
+    for (int i = 0; i < 5000; ++i) read.push_back(3.9 + 0.002 * noise(random));
+    moving += stands_still(read) ? 0 : 1;
+  }
+  EXPECT_EQ(moving, 0);
+}
+
+// Orthogonal columns are as many tries as columns, copies of one are a single try.
+TEST(Tries, AreThoseOfIndependentColumns) {
+  constexpr Eigen::Index n = 256;
+  Columns orthogonal = Columns::Zero(n, 64);
+  for (Eigen::Index j = 0; j < 64; ++j) orthogonal(3 * j, j) = 1.0 + static_cast<double>(j);
+  EXPECT_NEAR(independent_columns(orthogonal), 64.0, 20.0);
+  Columns alike(n, 64);
+  for (Eigen::Index i = 0; i < n; ++i) alike.row(i).setConstant(std::sin(0.1 * static_cast<double>(i)));
+  EXPECT_LT(independent_columns(alike), 2.0);
+}
+
+// In white noise a step a block later is nearly the same step, in a walk it is another.
+TEST(Tries, OfStepsDependOnTheNoise) {
+  const BlockGrid grid = even_grid(2000);
+  EXPECT_LT(independent_steps(grid, {}, 20.0), 300.0);
+  EXPECT_GT(independent_steps(grid, {1e3, 0.0, 0.0, 0.0}, 20.0), 1900.0);
+}
+
+TEST(Tries, TailsAreTheTablesOfChiSquare) {
+  EXPECT_NEAR(tail(3.841459, 1), 0.05, 1e-6);
+  EXPECT_NEAR(tail(10.827566, 1), 0.001, 1e-8);
+  EXPECT_NEAR(tail(5.991465, 2), 0.05, 1e-6);
+}
+
+struct Drawn {
+  BlockGrid grid;
+  Columns columns;  // measurement, constant, regressor
+};
+
+Drawn drawn(std::uint64_t seed, double coefficient_of_quick, double coefficient_of_slow) {
+  constexpr std::size_t n = 1500;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise;
+  Drawn d{even_grid(n), Columns(static_cast<Eigen::Index>(n), 3)};
+  double walk = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i);
+    walk += 0.05 * noise(random);
+    const double slow = std::sin(2.0 * M_PI * t / 1500.0);
+    const double quick = std::sin(2.0 * M_PI * t / 40.0);
+    const auto row = static_cast<Eigen::Index>(i);
+    d.columns(row, 0) = noise(random) + walk + coefficient_of_slow * slow + coefficient_of_quick * quick;
+    d.columns(row, 1) = 1.0;
+    d.columns(row, 2) = slow + quick;
+  }
+  d.grid.error = d.columns.col(0);
+  return d;
+}
+
+double disagreement_of(const Drawn& d) {
+  const NoiseShape shape{0.0025, 0.0, 0.0, 0.0};
+  Eigen::MatrixXd covariance;
+  const Eigen::VectorXd c = solve(d.grid, shape, d.columns, &covariance);
+  return disagreement(d.grid, {shape, 0.0, 1.0}, d.columns, 1, c, covariance);
+}
+
+// Of an effect that is one, the two coefficients differ by chance alone: squares of unit mean.
+TEST(Disagreement, HasUnitVarianceWhereThereIsNone) {
+  double sum = 0.0;
+  constexpr int kDraws = 100;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
+    const double z = disagreement_of(drawn(seed, 2.0, 2.0));
+    sum += z * z / kDraws;
+  }
+  EXPECT_GT(sum, 0.6);
+  EXPECT_LT(sum, 1.5);
+}
+
+TEST(Disagreement, SeesAnEffectThatIsQuickOnly) {
+  double least = 1e9;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    least = std::min(least, disagreement_of(drawn(seed, 2.0, -6.0)));
+  EXPECT_GT(least, 3.0);
+}
+
+// What a cycling channel leaves of its effect is periodic and no line; a line elsewhere is one.
+TEST(RecordLines, HarmonicsOfAChannelAreNoLines) {
+  BlockData data;
+  data.grid = even_grid(4000);
+  FineChannel channel;
+  channel.name = "temperature_degC";
+  for (int i = 0; i < 4000; ++i) channel.values.push_back(25.0 + std::sin(2.0 * M_PI * 6.5 * i / 4000.0));
+  channel.varies = true;
+  data.channels = {channel};
+  Lines lines;
+  Candidate line;
+  line.form = Form::kLine;
+  for (const double cycles : {19.5, 26.1, 140.0}) {
+    line.frequency_hz = cycles / 4000.0;
+    lines.slow.push_back(line);
+  }
+  leave_out_periodic(data, lines);
+  ASSERT_EQ(lines.slow.size(), 1U);
+  EXPECT_DOUBLE_EQ(lines.slow[0].frequency_hz, 140.0 / 4000.0);
+}
+
+}  // namespace
+}  // namespace ifog
