@@ -9,11 +9,19 @@ namespace {
 
 // Samples without a new change and with the filter at rest the likeliest, after which the manoeuvre is over.
 constexpr int kQuiet = 64;
+// In coloured noise a tracker may for ever predict better than the filter at rest. A manoeuvre is also over
+// when for this many samples the filter at rest has explained the measurements as well as it does at rest.
+constexpr int kCalmSamples = 256;
 // P raised by a manoeuvre counts as settled when it is back to this multiple of what it was at rest.
 constexpr double kSettledExcess = 1.5;
 // Averages of the filter at rest, in samples.
 constexpr double kRestMemory = 64.0;
 constexpr double kHealthMemory = 512.0;
+// Lost: more than half of the innovations in that memory beyond three of the sigmas the rule gives them,
+// which no rule that has adapted and no outlier brings about. Well again: fewer than a tenth.
+constexpr double kBeyond = 3.0;
+constexpr double kLost = 0.5;
+constexpr double kWell = 0.1;
 // Steps between refreshes of the settled filter's lag, a small linear solve.
 constexpr int kLagEvery = 256;
 // In a manoeuvre a measurement is held back only when the filter at rest, too, finds it this many sigmas
@@ -114,9 +122,10 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
 
 void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
   remember(m.in.rate_radps, m.valid);
-  const InnovationMonitor::Verdict verdict = monitor_.test({m.innovation.data(), axes_}, m.valid);
+  const InnovationMonitor::Verdict verdict =
+      monitor_.test({m.innovation.data(), axes_}, m.valid, !in_manoeuvre_);
   if (in_manoeuvre_) {
-    follow_manoeuvre(m, verdict.changed_since, out);
+    follow_manoeuvre(m, verdict, out);
   } else if (verdict.changed_since > 0) {
     begin_manoeuvre(verdict.changed_since, out);
   } else if (verdict.suspect) {
@@ -154,8 +163,11 @@ void Engine::hold(const Measurement& m, EstimatorOutput& out) noexcept {
   rest_->skip();
   held_ = true;
   for (std::size_t a = 0; a < axes_; ++a) {
-    held_angle_[a] =
-        has(m.valid, a) && !in_manoeuvre_ ? (m.in.rate_radps[a] - last_output_[a]) * m.dt_s : 0.0;
+    held_angle_[a] = 0.0;
+    if (!has(m.valid, a) || in_manoeuvre_) continue;
+    held_angle_[a] = (m.in.rate_radps[a] - last_output_[a]) * m.dt_s;
+    // Clipped, it counts for the scale: what happens to one sample in a hundred is the sensor's noise.
+    monitor_.learn(a, m.innovation[a], m.noise_scale);
   }
 }
 
@@ -204,10 +216,11 @@ void Engine::begin_manoeuvre(int since, EstimatorOutput& out) noexcept {
   trackers_.begin(recent(static_cast<std::size_t>(since)));
   jump(since);
   in_manoeuvre_ = true;
-  quiet_ = 0;
+  quiet_ = calm_ = 0;
 }
 
-void Engine::follow_manoeuvre(const Measurement& m, int changed_since, EstimatorOutput& out) noexcept {
+void Engine::follow_manoeuvre(const Measurement& m, const InnovationMonitor::Verdict& verdict,
+                              EstimatorOutput& out) noexcept {
   out.flags |= kManoeuvre;
   Axes noises{};
   for (std::size_t a = 0; a < axes_; ++a) noises[a] = noise(a);
@@ -221,24 +234,25 @@ void Engine::follow_manoeuvre(const Measurement& m, int changed_since, Estimator
     admit_held();
     trackers_.begin(recent(2));
     jump(1);
-    quiet_ = 0;
+    quiet_ = calm_ = 0;
     return;
   }
   held_ = false;
   trackers_.update(m.in.rate_radps, noises, m.valid, m.innovation, level_factor);
-  if (changed_since > 0) {
-    jump(changed_since);
-    quiet_ = 0;
+  if (verdict.changed_since > 0) {
+    jump(verdict.changed_since);
+    quiet_ = calm_ = 0;
   } else {
     update_rest(m, false);
     quiet_ = trackers_.level_weight() > 0.5 ? quiet_ + 1 : 0;
+    calm_ = verdict.calm ? calm_ + 1 : 0;
   }
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
     grade(a, trackers_.best_innovation(a), trackers_.best_factor() * noises[a]);
     monitor_.learn(a, trackers_.best_innovation(a), trackers_.best_factor() * (1.0 - rest_gain_));
   }
-  if (quiet_ >= kQuiet) end_manoeuvre();
+  if (quiet_ >= kQuiet || calm_ >= kCalmSamples) end_manoeuvre();
 }
 
 bool Engine::far_from_rest(const Measurement& m) const noexcept {
@@ -254,9 +268,20 @@ void Engine::end_manoeuvre() noexcept {
   for (std::size_t a = 0; a < axes_; ++a) ledger_.end_manoeuvre(a, rest_->rate(a));
 }
 
-// A covariance that is no longer one, or a state that is no number: start again from this measurement.
+// Divergence: a covariance that is no longer one, a state that is no number, or a filter that for long has
+// been further from the measurements than it believes possible, its rule having had all the time to adapt.
+// Either way it starts again from this measurement. If that does not help, the noise it was told is wrong,
+// and starting again and again would not mend it: it is then left alone until it has been well.
 void Engine::guard(const Measurement& m, EstimatorOutput& out) noexcept {
-  if (rest_->sound()) return;
+  bool lost = false, well = true;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    lost = lost || grades_[a].beyond > kLost;
+    well = well && grades_[a].beyond < kWell;
+  }
+  if (well) lost_ = false;
+  const bool newly_lost = lost && !lost_;
+  lost_ = lost_ || lost;
+  if (rest_->sound() && !newly_lost) return;
   ++health_.divergences;
   ++health_.restarts;
   out.flags |= kRestarted;
@@ -305,6 +330,8 @@ void Engine::grade(std::size_t axis, double innovation, double variance) noexcep
   grade.square += (normalised * normalised - grade.square) / grade.count;
   grade.product += (normalised * grade.last - grade.product) / grade.count;
   grade.last = normalised;
+  // From zero, so that it takes most of the memory to be lost: not the start-up of an adaptive rule.
+  grade.beyond += ((normalised * normalised > kBeyond * kBeyond ? 1.0 : 0.0) - grade.beyond) / kHealthMemory;
   health_.nis_mean[axis] = grade.square;
   health_.whiteness[axis] = grade.square > 0.0 ? grade.product / grade.square : 0.0;
 }

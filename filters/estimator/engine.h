@@ -40,7 +40,8 @@ class Engine {
   void update_rest(const Measurement& m, bool learn) noexcept;
   void follow(const Measurement& m, EstimatorOutput& out) noexcept;
   void follow_rest(const Measurement& m) noexcept;
-  void follow_manoeuvre(const Measurement& m, int changed_since, EstimatorOutput& out) noexcept;
+  void follow_manoeuvre(const Measurement& m, const InnovationMonitor::Verdict& verdict,
+                        EstimatorOutput& out) noexcept;
   void begin_manoeuvre(int since, EstimatorOutput& out) noexcept;
   void end_manoeuvre() noexcept;
   void hold(const Measurement& m, EstimatorOutput& out) noexcept;
@@ -67,12 +68,13 @@ class Engine {
 
   struct Grade {
     double count = 0.0, square = 0.0, product = 0.0, last = 0.0;
+    double beyond = 0.0;  // share of innovations far outside their own variance
   };
   std::array<Grade, kMaxAxes> grades_{};
 
   std::uint32_t started_ = 0, booked_ = 0;  // axes that have a state, axes whose angle is being kept
-  bool first_ = true, in_manoeuvre_ = false, held_ = false, settling_ = false;
-  int quiet_ = 0, until_lag_ = 0;
+  bool first_ = true, in_manoeuvre_ = false, held_ = false, settling_ = false, lost_ = false;
+  int quiet_ = 0, calm_ = 0, until_lag_ = 0;
   std::int64_t steps_ = 0;
   double rest_variance_ = 0.0, rest_gain_ = 0.0;  // of the rate at rest, averaged
   double lag_s_ = 0.0;

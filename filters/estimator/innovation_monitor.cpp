@@ -11,42 +11,70 @@ constexpr double kScaleMargin = 1.5;
 // Innovations this much larger than third differences allow mean motion, not noise.
 constexpr double kMovedRatio = 2.0;
 
-// 1/sqrt(m) of the ladder, so that the step divides by nothing.
+// What a single sum may say about the colour, in squared sigmas: a manoeuvre about to be found is none.
+constexpr double kColourClip = 16.0;
+
 template <std::size_t n>
-std::array<double, n> inverse_roots(const std::array<int, n>& ladder) {
-  std::array<double, n> roots{};
-  for (std::size_t i = 0; i < n; ++i) roots[i] = 1.0 / std::sqrt(static_cast<double>(ladder[i]));
-  return roots;
+constexpr std::array<double, n> inverses(const std::array<int, n>& ladder) {
+  std::array<double, n> all{};
+  for (std::size_t i = 0; i < n; ++i) all[i] = 1.0 / ladder[i];
+  return all;
 }
 
 }  // namespace
 
 InnovationMonitor::Verdict InnovationMonitor::test(std::span<const double> innovations,
-                                                   std::uint32_t valid_axes) noexcept {
-  static const std::array<double, kLadder.size()> kRoots = inverse_roots(kLadder);
+                                                   std::uint32_t valid_axes, bool at_rest) noexcept {
+  static constexpr auto kInverse = inverses(kLadder);
   Verdict verdict;
   const std::size_t before = at_;
   at_ = (at_ + 1) % kRing;
   length_ = std::min(length_ + 1, static_cast<int>(kRing) - 1);
-  double greatest = threshold_;
+  double greatest = threshold_ * threshold_;
+  const bool learns = armed_ && at_rest && --until_colour_ <= 0;
+  if (learns) until_colour_ = kColourEvery;
+  const double clip = tails_ > kTails ? kTailClip : kClip;
   for (std::size_t axis = 0; axis < innovations.size(); ++axis) {
     std::array<double, kRing>& sums = sums_[axis];
     const bool valid = (valid_axes >> axis & 1U) != 0 && variance_[axis] > 0.0;
     const double normalised = valid ? innovations[axis] / std::sqrt(variance_[axis]) : 0.0;
-    sums[at_] = sums[before] + std::clamp(normalised, -kClip, kClip);
+    sums[at_] = sums[before] + std::clamp(normalised, -clip, clip);
     if (!armed_) continue;
     verdict.suspect = verdict.suspect || std::abs(normalised) > kClip;
     for (std::size_t rung = 0; rung < kLadder.size() && kLadder[rung] <= length_; ++rung) {
       const auto m = static_cast<std::size_t>(kLadder[rung]);
-      const double statistic = std::abs(sums[at_] - sums[(at_ + kRing - m) % kRing]) * kRoots[rung];
-      if (statistic > greatest) {
-        greatest = statistic;
+      const double sum = sums[at_] - sums[(at_ + kRing - m) % kRing];
+      const double white = sum * sum * kInverse[rung];  // square of the statistic if the noise is white
+      if (white <= kCalm * kCalm) continue;             // the colour only ever makes it smaller
+      const double square = white / colour_[axis].widening[rung];
+      verdict.calm = verdict.calm && square <= kCalm * kCalm;
+      if (square > greatest) {
+        greatest = square;
         verdict.changed_since = kLadder[rung];
       }
     }
+    if (learns && valid) learn_colour(axis);
   }
+  if (armed_ && at_rest) tails_ += ((verdict.suspect ? 1.0 : 0.0) - tails_) / kTailMemory;
   if (verdict.changed_since > 0) verdict.suspect = false;
   return verdict;
+}
+
+void InnovationMonitor::learn_colour(std::size_t axis) noexcept {
+  Colour& colour = colour_[axis];
+  colour.count = std::min(colour.count + 1.0, kColourMemory);
+  const double share = 1.0 / colour.count;
+  for (std::size_t rung = 0; rung < kLadder.size() && kLadder[rung] <= length_; ++rung) {
+    const auto m = static_cast<std::size_t>(kLadder[rung]);
+    const double sum = sums_[axis][at_] - sums_[axis][(at_ + kRing - m) % kRing];
+    double& variance = colour.variance[rung];
+    const double square = sum * sum / kLadder[rung];
+    variance += share * (std::min(square, kColourClip * std::max(variance, 1.0)) - variance);
+    // Relative error of such a variance; sums that overlap count for fewer.
+    const double overlap = std::max(1.0, 2.0 * kLadder[rung] / (3.0 * kColourEvery));
+    const double certain = variance / (1.0 + 2.0 * std::sqrt(2.0 * overlap * share));
+    colour.widening[rung] = std::clamp(certain, 1.0, kMostColour);
+  }
 }
 
 bool InnovationMonitor::learn(std::size_t axis, double innovation, double factor) noexcept {

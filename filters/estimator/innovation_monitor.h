@@ -5,6 +5,10 @@
 // the generalised likelihood ratio for a change of mean that began m samples ago (Willsky and Jones, IEEE
 // Trans. AC 21(1), 1976). The clip makes it ask for a sustained change: one sample of any size cannot reach
 // the threshold, two of 5 sigma can.
+//
+// On white noise each sum has variance m. Measured noise has lines and a colour: its sums over some m are
+// wider, and a test that took it for white would see manoeuvres in it. So the variance of each sum is learned
+// at rest, and where it is certainly above that of white noise the threshold rises with it.
 #pragma once
 
 #include <array>
@@ -21,6 +25,10 @@ class InnovationMonitor {
   // tests/bench/quality.
   static constexpr double kThreshold = 6.5;
   static constexpr double kClip = 5.0;
+  // Where more than one sample in a thousand is beyond that, two in a row are no evidence: with this clip it
+  // takes three.
+  static constexpr double kTailClip = 4.3;
+  static constexpr double kTails = 1e-3;
   // Innovations before the scale is trusted.
   static constexpr int kLearning = 64;
 
@@ -28,10 +36,13 @@ class InnovationMonitor {
     int changed_since =
         0;  // > 0: the mean changed and this many samples, the current one included, belong after it
     bool suspect = false;  // beyond the clip, not confirmed by the sample before
+    bool calm = true;      // every sum as it is at rest, within kCalm sigma
   };
+  static constexpr double kCalm = 4.0;
 
-  // One innovation per axis; axes that are not valid hold zero. Does not learn the scale.
-  Verdict test(std::span<const double> innovations, std::uint32_t valid_axes) noexcept;
+  // One innovation per axis; axes that are not valid hold zero. Does not learn the scale; learns the colour
+  // when at_rest.
+  Verdict test(std::span<const double> innovations, std::uint32_t valid_axes, bool at_rest) noexcept;
 
   // Learns the scale of an axis from an innovation whose variance is `factor` times that of the filter at
   // rest. Returns true when this was the sample that armed the monitor and the sensor had moved meanwhile:
@@ -55,10 +66,32 @@ class InnovationMonitor {
   static constexpr std::array kLadder{2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
   static constexpr std::size_t kRing = 128;  // a power of two above the longest window
   static constexpr double kMemory = 1000.0;  // samples; the scale is then good to 2 %
+  static constexpr double kTailMemory = 8192.0;
+  // Every eighth sample is enough for the colour: 8192 samples are then remembered, and the variance of the
+  // longest sum is known to 15 %. White noise counts for the first eight.
+  static constexpr int kColourEvery = 8;
+  static constexpr double kColourPrior = 8.0;
+  static constexpr double kColourMemory = 1024.0;
+  // A slow motion the filter lags behind widens the sums like a colour; it must not silence the test.
+  static constexpr double kMostColour = 4.0;
+
+  void learn_colour(std::size_t axis) noexcept;
 
   std::array<std::array<double, kRing>, kMaxAxes> sums_{};  // of clipped innovations, up to each sample
   std::array<double, kMaxAxes> variance_{};
   std::array<double, kMaxAxes> learned_{};
+  struct Colour {
+    std::array<double, kLadder.size()> variance;  // of each sum over that of white noise
+    std::array<double, kLadder.size()> widening;  // the part of it that is certain, 1 to kMostColour
+    double count = kColourPrior;
+    Colour() noexcept {
+      variance.fill(1.0);
+      widening.fill(1.0);
+    }
+  };
+  std::array<Colour, kMaxAxes> colour_{};
+  double tails_ = 0.0;  // share of samples at rest beyond the clip
+  int until_colour_ = kColourEvery;
   struct Start {
     std::array<double, 3> last{};
     double squares = 0.0;

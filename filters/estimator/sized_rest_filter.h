@@ -2,6 +2,7 @@
 // about the noise, one core each and their weighted mean.
 #pragma once
 
+#include <bit>
 #include <utility>
 
 #include "filters/estimator/rest_filter.h"
@@ -50,8 +51,15 @@ class SizedRestFilter final : public RestFilter {
 
   void update(const Axes& rate, std::uint32_t valid, double noise_scale, std::uint64_t sequence,
               bool learn) noexcept override {
+    // The innovation published is that of the weighted mean of predictions; each core's own covariance and
+    // its distance from that mean make its variance, under the weights from before this measurement.
+    const Axes predicted = rate_;
+    double mixture = 0.0;
+    valid_ = valid;
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
       Core& core = cores_[j];
+      const double weight = rule_->weight(j);
+      mixture += weight * distance(core, predicted);
       Axes innovations{};
       std::array<int, kMaxAxes> axes{};
       std::size_t count = 0;
@@ -66,8 +74,9 @@ class SizedRestFilter final : public RestFilter {
                              : projected + rule_->measurement_noise() * noise_scale;
       core.correct(c);
       for (std::size_t i = 0; i < count; ++i) core.update(axes[i], innovations[i]);
-      if (j == 0) covariance_ = c;
+      mixture += weight * c;
     }
+    covariance_ = mixture;
     refresh();
   }
 
@@ -126,9 +135,22 @@ class SizedRestFilter final : public RestFilter {
       for (int axis = 0; axis < Core::kAxes; ++axis) {
         rate_[static_cast<std::size_t>(axis)] += weight * cores_[j].rate(axis);
       }
-      variance_ += weight * cores_[j].variance();
       gain_ += weight * cores_[j].h.dot(cores_[j].gain);
     }
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
+      variance_ += rule_->weight(j) * (cores_[j].variance() + distance(cores_[j], rate_));
+  }
+
+  // Mean square over the measured axes of a core's rate against this one; zero by itself for a single core.
+  double distance(const Core& core, const Axes& rate) const noexcept {
+    if (hypotheses_.size() == 1 || valid_ == 0) return 0.0;
+    double sum = 0.0;
+    for (int axis = 0; axis < Core::kAxes; ++axis) {
+      if ((valid_ >> static_cast<unsigned>(axis) & 1U) == 0) continue;
+      const double apart = core.rate(axis) - rate[static_cast<std::size_t>(axis)];
+      sum += apart * apart;
+    }
+    return sum / std::popcount(valid_);
   }
 
   std::unique_ptr<StateModel> model_;
@@ -138,6 +160,7 @@ class SizedRestFilter final : public RestFilter {
   typename Core::Vector level_;
   typename Core::Matrix start_, transition_, driving_;
   double discretised_dt_s_ = -1.0;
+  std::uint32_t valid_ = 0;  // axes of the last measurement
 };
 
 template <int n>

@@ -159,10 +159,13 @@ TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
       const double weight = std::exp(log_weight[j]);
       sum += weight;
       s.x += weight * bank[j].x;
-      s.p += weight * bank[j].p;
     }
     s.x /= sum;
-    s.p /= sum;
+    // Magill's covariance of the mean: each filter's own and its distance from the mean.
+    for (std::size_t j = 0; j < kModels; ++j) {
+      const double apart = bank[j].x - s.x;
+      s.p += std::exp(log_weight[j]) / sum * (bank[j].p + apart * apart);
+    }
   });
 }
 

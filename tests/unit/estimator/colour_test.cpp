@@ -1,0 +1,74 @@
+// Noise that is not white, as every measured record's: lines, a colour, tails. The test for manoeuvres must
+// not find any in it, and must still find a real one.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+struct Colour {
+  const char* name;
+  double correlation;  // of neighbouring samples
+  double line;         // amplitude of a line of 48 samples, in sigma of the noise
+  double tails;        // share of samples with four times the noise
+};
+
+void PrintTo(const Colour& c, std::ostream* out) { *out << c.name; }
+
+std::vector<double> coloured(const Colour& c, std::uint64_t seed, int length) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  const double phase = 2 * std::numbers::pi * uniform(random);
+  std::vector<double> made;
+  double noise = normal(random);
+  for (int i = 0; i < length; ++i) {
+    noise = c.correlation * noise + std::sqrt(1 - c.correlation * c.correlation) * normal(random);
+    const double wide = uniform(random) < c.tails ? 4.0 * normal(random) : 0.0;
+    made.push_back(noise + wide + c.line * std::sin(2 * std::numbers::pi * i / 48.0 + phase));
+  }
+  return made;
+}
+
+double spread(const std::vector<double>& values, std::size_t from) {
+  return std::sqrt(mean_square_error(values, std::vector<double>(values.size(), 0.0), from));
+}
+
+class ColouredNoise : public testing::TestWithParam<Colour> {};
+
+TEST_P(ColouredNoise, IsNotTakenForManoeuvres) {
+  constexpr int kLength = 100'000;
+  constexpr std::size_t kLearned = 10'000;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const std::vector<double> measured = coloured(GetParam(), seed, kLength);
+    ifog::FilterSettings settings = told(1e-6);
+    const Filtered followed = run(settings, measured);
+    settings.follow_manoeuvres = false;
+    const Filtered plain = run(settings, measured);
+    std::size_t moving = 0;
+    for (std::size_t i = kLearned; i < followed.flags.size(); ++i)
+      moving += (followed.flags[i] & ifog::kManoeuvre) != 0 ? 1U : 0U;
+    EXPECT_EQ(moving, 0U) << "seed " << seed;
+    EXPECT_LT(spread(followed.denoised, kLearned), 1.15 * spread(plain.denoised, kLearned))
+        << "seed " << seed;
+  }
+}
+
+TEST_P(ColouredNoise, DoesNotHideAChangeOfRate) {
+  constexpr int kAt = 30'000;
+  std::vector<double> measured = coloured(GetParam(), 7, kAt + 200);
+  for (std::size_t i = kAt; i < measured.size(); ++i) measured[i] += 40.0;
+  const Filtered got = run(told(1e-6), measured);
+  EXPECT_EQ(got.health.manoeuvres, 1U);
+  for (std::size_t i = kAt + 20; i < measured.size(); ++i) ASSERT_NEAR(got.denoised[i], 40.0, 6.0) << i - kAt;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ColouredNoise,
+                         testing::Values(Colour{"correlated", 0.5, 0.0, 0.0}, Colour{"line", 0.0, 0.8, 0.0},
+                                         Colour{"tails", 0.0, 0.0, 0.02}, Colour{"all", 0.3, 0.5, 0.01}));
+
+}  // namespace
