@@ -70,8 +70,10 @@ class Machine:
         with open(initrd, "ab") as archive:
             names = subprocess.run(["find", ".", "-print0"], cwd=overlay, check=True, stdout=subprocess.PIPE).stdout
             subprocess.run(["cpio", "--null", "--quiet", "-o", "-H", "newc", "-R", "0:0"], cwd=overlay, input=names, stdout=archive, check=True)
+        # Ahead of the host's other work, where that is allowed: its load is not the service's lateness.
+        ahead = ["nice", "-n", "-10"] if os.geteuid() == 0 else []
         self.process = subprocess.Popen(
-            ["qemu-system-x86_64", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1536",
+            ahead + ["qemu-system-x86_64", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1536",
              "-nodefaults", "-display", "none", "-no-reboot", "-kernel", os.path.join(image, "vmlinuz"), "-initrd", initrd,
              "-append", "rdinit=/lib/systemd/systemd console=ttyS0 panic=1 quiet systemd.show_status=0 net.ifnames=0 mitigations=off",
              "-serial", "file:" + self.path("console.log"),

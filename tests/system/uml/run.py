@@ -74,7 +74,7 @@ class Bus:
         return ran.stdout
 
     def stream(self, folder, seconds, want, *player):
-        self.boot(4 * seconds + 120, os.path.join(HERE, "stream"), self.build, folder, want, *player)
+        self.boot(4 * seconds + 240, os.path.join(HERE, "stream"), self.build, folder, want, *player)
         with open(os.path.join(folder, "count.json")) as file:
             return json.load(file).get("IFOG_GYRO", {"messages": 0})
 
