@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filters/estimator/start_up.h"
+
 namespace ifog {
 namespace {
 
@@ -90,11 +92,11 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
 }
 
 void ChainParts::learn(const Increment& in, const ChainOutput& out) {
-  if (in.valid_axes == 0) return;
+  if (in.valid_axes == 0) return;  // so that at least one axis has enough for the estimate below
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
     start_up_[axis * start_up_size_ + collected_] = out.compensated_radps[axis];
   if (++collected_ < start_up_size_) return;
-  const StartupNoise noise = startup_noise(start_up_, facts_.axes, period_s_);
+  const NoiseEstimate noise = estimate_noise(start_up_, facts_.axes, period_s_);
   if (filter_.process_noise <= 0.0) filter_.process_noise = noise.process_noise;
   if (filter_.measurement_noise <= 0.0) filter_.measurement_noise = noise.measurement_noise;
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);

@@ -15,7 +15,6 @@
 
 #include "filters/chain/filter_choice.h"
 #include "filters/chain/reading.h"
-#include "filters/chain/startup_noise.h"
 #include "filters/effects/compensator.h"
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/settings.h"

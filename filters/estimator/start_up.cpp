@@ -16,8 +16,8 @@ constexpr double kMedianSquare = 0.4549364;
 
 struct Octave {
   double block = 1.0;     // samples
-  double variance = 0.0;  // of the second difference of block means
-  double count = 0.0;     // independent ones
+  double variance = 0.0;  // of the second difference of block means, mean over axes
+  double count = 0.0;     // independent ones, of all axes
 };
 
 // Variance from the median square; where half of the differences are zero (coarse quantisation), from the
@@ -79,21 +79,42 @@ Fit fit(const std::vector<Octave>& all, double ratio) {
   return {noise, misfit};
 }
 
+// Adds an axis to what the ones before it gave: octaves that one of them lacks are dropped.
+void add(std::vector<Octave>& all, const std::vector<Octave>& axis, int before) {
+  if (before == 0) {
+    all = axis;
+    return;
+  }
+  all.resize(std::min(all.size(), axis.size()));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].variance += (axis[k].variance - all[k].variance) / (before + 1.0);
+    all[k].count += axis[k].count;
+  }
+}
+
 }  // namespace
 
-NoiseEstimate estimate_noise(std::span<const double> rate, double dt_s) {
-  const auto present = static_cast<std::size_t>(
-      std::count_if(rate.begin(), rate.end(), [](double r) { return std::isfinite(r); }));
-  if (present < kLeast) {
-    throw std::invalid_argument("start-up data: " + std::to_string(present) +
+NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s) {
+  const std::size_t length = rates.size() / static_cast<std::size_t>(axes);
+  std::vector<Octave> all;
+  std::size_t most = 0;
+  double greatest = 0.0;
+  int taken = 0;
+  for (int axis = 0; axis < axes; ++axis) {
+    const auto rate = rates.subspan(static_cast<std::size_t>(axis) * length, length);
+    const auto present = static_cast<std::size_t>(
+        std::count_if(rate.begin(), rate.end(), [](double r) { return std::isfinite(r); }));
+    most = std::max(most, present);
+    if (present < kLeast) continue;
+    for (const double r : rate)
+      if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
+    add(all, octaves(rate), taken++);
+  }
+  if (taken == 0) {
+    throw std::invalid_argument("start-up data: " + std::to_string(most) +
                                 " measurements, expected at least " + std::to_string(kLeast));
   }
-  const auto n = static_cast<double>(present);
-  const std::vector<Octave> all = octaves(rate);
-  double greatest = 0.0;
-  for (const double r : rate) {
-    if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
-  }
+  const auto n = static_cast<double>(most);
   const double last_digit = std::max(greatest * std::numeric_limits<float>::epsilon(), 1e-12);
   double spread = 0.0;
   for (const Octave& o : all) spread += o.variance;

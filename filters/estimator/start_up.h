@@ -10,13 +10,18 @@ struct NoiseEstimate {
   double measurement_noise = 0.0;  // per sample, (rad/s)^2
 };
 
-// From a record at dt_s, rad/s, NaN where missing. Second differences of block means over octaves of block
-// length do not see a constant or a ramp; of each octave the median is taken, so motion in a part of the
-// record counts little (in a fifth of it, q comes out some five times too large). A random walk of density q
-// in white noise R gives them variance 6 R / m + q dt m at m samples a block; R and q are fitted to all
-// octaves by Gaussian quasi-likelihood. A record that shows no random walk gets the slowest one it could have
-// shown, q dt = R / n^2; a constant record the noise of its last digit. Throws std::invalid_argument for
-// fewer than 32 measurements.
-[[nodiscard]] NoiseEstimate estimate_noise(std::span<const double> rate, double dt_s);
+// From a record of one or more axes, one after the other in `rates` (axes x n values, rad/s, at dt_s, NaN
+// where missing). Axes share one gain, so their variances are averaged; one with fewer than 32 measurements
+// is left out.
+//
+// Second differences of block means over octaves of block length do not see a constant or a ramp; of each
+// octave the median is taken, so motion in a part of the record counts little (in a fifth of it, q comes out
+// some five times too large). A random walk of density q in white noise R gives them variance 6 R / m + q dt
+// m at m samples a block; R and q are fitted to all octaves by Gaussian quasi-likelihood. A record that shows
+// no random walk gets the slowest one it could have shown, q dt = R / n^2; a constant record the noise of its
+// last digit. A few seconds show the white noise well and the random walk badly: `ifog tune` on an hour at
+// rest is the better way. Takes about 0.1 ms a thousand values. Allocates. Throws std::invalid_argument when
+// no axis has 32 measurements.
+[[nodiscard]] NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s);
 
 }  // namespace ifog

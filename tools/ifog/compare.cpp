@@ -13,7 +13,7 @@
 
 #include "drivers/capture/text_file.h"
 #include "filters/allan/stretches.h"
-#include "filters/chain/startup_noise.h"
+#include "filters/estimator/start_up.h"
 #include "filters/model/model.h"
 #include "filters/rules/rule.h"
 #include "tools/ifog/capture_input.h"
@@ -36,12 +36,12 @@ struct Options {
   FilterChoice choice;
 };
 
-// Q and R when nobody says them: from the whole record's short averaging times, all axes together.
+// Q and R when nobody says them: from the whole record, all axes together.
 void fill_noise(FilterSettings& settings, const Capture& capture, double period_s) {
   if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
   std::vector<double> all;
   for (const auto& axis : capture.rate_radps) all.insert(all.end(), axis.begin(), axis.end());
-  const StartupNoise noise = startup_noise(all, static_cast<int>(capture.axes.size()), period_s);
+  const NoiseEstimate noise = estimate_noise(all, static_cast<int>(capture.axes.size()), period_s);
   if (settings.process_noise <= 0.0) settings.process_noise = noise.process_noise;
   if (settings.measurement_noise <= 0.0) settings.measurement_noise = noise.measurement_noise;
 }

@@ -23,14 +23,11 @@ TEST(Heading, IsKeptOverTurnsByHand) {
   const ifog::Capture capture = ifog::read_capture(path);
   const double period = 0.001;
   ifog::FilterSettings settings;
-  double process = 0.0, noise = 0.0;
-  for (const auto& axis : capture.rate_radps) {
-    const auto found = ifog::estimate_noise({axis.data(), 1500}, period);
-    process += found.process_noise / 3;
-    noise += found.measurement_noise / 3;
-  }
-  settings.process_noise = process;
-  settings.measurement_noise = noise;
+  std::vector<double> start;
+  for (const auto& axis : capture.rate_radps) start.insert(start.end(), axis.begin(), axis.begin() + 1500);
+  const auto found = ifog::estimate_noise(start, 3, period);
+  settings.process_noise = found.process_noise;
+  settings.measurement_noise = found.measurement_noise;
   ifog::Estimator estimator(settings, 3, period);
   ifog::EstimatorInput in;
   ifog::EstimatorOutput out;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "tests/unit/estimator/drive.h"
@@ -19,13 +20,13 @@ TEST(StartUp, FindsTheNoiseThroughDriftMotionAndMissingSamples) {
     constexpr int kSeeds = 10;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       Record r = record(seed, 20'000, ratio);
-      const auto plain = ifog::estimate_noise(r.measured, kPeriod);
+      const auto plain = ifog::estimate_noise(r.measured, 1, kPeriod);
       for (std::size_t i = 0; i < r.measured.size(); ++i) {
         r.measured[i] += 1e-4 * static_cast<double>(i);
         if (i % 10 == 3) r.measured[i] = std::numeric_limits<double>::quiet_NaN();
         if (i > 8000 && i < 12'000) r.measured[i] += 200 * std::sin(0.01 * static_cast<double>(i));
       }
-      const auto rough = ifog::estimate_noise(r.measured, kPeriod);
+      const auto rough = ifog::estimate_noise(r.measured, 1, kPeriod);
       plain_q += std::log(plain.process_noise * kPeriod / ratio) / kSeeds;
       plain_r += std::log(plain.measurement_noise) / kSeeds;
       rough_q += std::log(rough.process_noise * kPeriod / ratio) / kSeeds;
@@ -40,16 +41,27 @@ TEST(StartUp, FindsTheNoiseThroughDriftMotionAndMissingSamples) {
 
 TEST(StartUp, OfWhiteNoiseIsTheSlowestWalkTheRecordCouldShow) {
   const Record r = record(3, 5000, 0.0);
-  const auto found = ifog::estimate_noise(r.measured, kPeriod);
+  const auto found = ifog::estimate_noise(r.measured, 1, kPeriod);
   EXPECT_NEAR(found.measurement_noise, 1.0, 0.15);
   EXPECT_GT(found.process_noise, 0.0);
   // The longest octave, 256 samples with some ten differences, knows 6 R / 256 to a half: q to 5e-5.
   EXPECT_LT(found.process_noise * kPeriod, 1e-4);
 }
 
+TEST(StartUp, AveragesTheAxesThatMeasure) {
+  std::vector<double> both = record(1, 5000, 1e-3).measured;
+  for (const double r : record(2, 5000, 1e-3).measured) both.push_back(3.0 * r + 7.0);
+  const auto found = ifog::estimate_noise(both, 2, kPeriod);
+  EXPECT_NEAR(found.measurement_noise, (1.0 + 9.0) / 2, 0.5);
+  const auto first = ifog::estimate_noise(std::span(both).first(5000), 1, kPeriod);
+  both.resize(15'000, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 5000; i < both.size(); ++i) both[i] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(ifog::estimate_noise(both, 3, kPeriod).measurement_noise, first.measurement_noise);
+}
+
 TEST(StartUp, RefusesTooShortARecordAndSurvivesAConstantOne) {
-  EXPECT_THROW((void)ifog::estimate_noise(std::vector<double>(31, 1.0), kPeriod), std::invalid_argument);
-  const auto constant = ifog::estimate_noise(std::vector<double>(1000, 0.5), kPeriod);
+  EXPECT_THROW((void)ifog::estimate_noise(std::vector<double>(31, 1.0), 1, kPeriod), std::invalid_argument);
+  const auto constant = ifog::estimate_noise(std::vector<double>(1000, 0.5), 1, kPeriod);
   EXPECT_GT(constant.measurement_noise, 0.0);
   EXPECT_GT(constant.process_noise, 0.0);
 }
