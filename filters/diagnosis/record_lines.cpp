@@ -53,6 +53,7 @@ double cycles_of(std::span<const double> values) {
 }  // namespace
 
 void leave_out_periodic(const BlockData& data, Lines& lines) {
+  if (lines.slow.empty() && lines.fast.empty()) return;
   const BlockGrid& grid = data.grid;
   for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
     const std::size_t from = grid.starts[r] * grid.fine;

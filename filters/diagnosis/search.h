@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "filters/diagnosis/candidates.h"
+#include "filters/diagnosis/design.h"
 #include "filters/diagnosis/noise_fit.h"
 
 namespace ifog {
@@ -41,20 +42,5 @@ struct SearchOptions {
 };
 
 SearchResult search_effects(const BlockData& data, const SearchOptions& options);
-
-// One constant a record.
-Columns constants(const BlockGrid& grid);
-
-// Measurement, constants, and the regressors of the effects.
-Columns design(const BlockData& data, const std::vector<Candidate>& effects);
-
-// Which of `folds` each block belongs to: short contiguous pieces in turn, so that every fold sees the whole
-// record.
-std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);
-
-// Coefficients of the columns after the first by generalised least squares, on the rows where `use` says so.
-// Covariance too, when asked for.
-Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
-                      Eigen::MatrixXd* covariance = nullptr);
 
 }  // namespace ifog
