@@ -120,6 +120,24 @@ std::vector<Candidate> library(const BlockData& data) {
   return found;
 }
 
+std::vector<Candidate> products_of(const BlockData& data, std::size_t channel) {
+  const auto usable = [&](std::size_t i) {
+    const FineChannel& c = data.channels[i];
+    return static_cast<std::ptrdiff_t>(i) != data.reference && c.varies && !c.rotates && !c.still;
+  };
+  std::vector<Candidate> found;
+  if (!usable(channel)) return found;
+  for (std::size_t other = 0; other < data.channels.size(); ++other) {
+    if (other == channel || !usable(other)) continue;
+    Candidate candidate;
+    candidate.form = Form::kProduct;
+    candidate.channel = std::min(channel, other);
+    candidate.with_channel = std::max(channel, other);
+    found.push_back(candidate);
+  }
+  return found;
+}
+
 Columns regressors(const BlockData& data, const Candidate& candidate) {
   const BlockGrid& grid = data.grid;
   const auto n = static_cast<Eigen::Index>(grid.size());

@@ -28,7 +28,15 @@ struct Candidate {
 // show.
 std::vector<double> time_constants(const BlockGrid& grid, Form form);
 
+// lookup is not among them: a table of a channel has a coefficient a knot, and polynomials to the cubic say
+// what a few knots would (the feedback ramp's table, periodic and dense, is fitted in ramp.h). Neither are
+// the forms that have nothing to subtract: outliers, noise_change and quantisation are described by
+// unexplained.h, and earth_rate is the same regressor as acceleration, see diagnose.cpp.
 std::vector<Candidate> library(const BlockData& data);
+
+// Products of a channel with the others, worth trying once the channel has an effect of its own: the effect's
+// size may depend on a second channel.
+std::vector<Candidate> products_of(const BlockData& data, std::size_t channel);
 
 // Regressors: one column, or two (cosine, sine) for a line. Unit: that of the form's value.
 Columns regressors(const BlockData& data, const Candidate& candidate);

@@ -36,12 +36,25 @@ Scan::Scan(const BlockData& data, std::vector<Candidate> candidates)
     : data_(data),
       candidates_(std::move(candidates)),
       columns_(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(candidates_.size())) {
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    Eigen::VectorXd column = regressors(data_, candidates_[i]).col(0);
-    const double size = std::sqrt(column.squaredNorm() / static_cast<double>(column.size()));
-    if (size > 0.0) column /= size;
-    columns_.col(static_cast<Eigen::Index>(i)) = column;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) fill(i);
+}
+
+void Scan::add(const std::vector<Candidate>& more) {
+  const std::size_t before = candidates_.size();
+  for (const Candidate& candidate : more) {
+    const auto alike = [&](const Candidate& other) { return other.same_shape(candidate); };
+    if (std::none_of(candidates_.begin(), candidates_.end(), alike)) candidates_.push_back(candidate);
   }
+  columns_.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(candidates_.size()));
+  for (std::size_t i = before; i < candidates_.size(); ++i) fill(i);
+}
+
+// Columns of unit size: units of channels are many decades apart.
+void Scan::fill(std::size_t candidate) {
+  Eigen::VectorXd column = regressors(data_, candidates_[candidate]).col(0);
+  const double size = std::sqrt(column.squaredNorm() / static_cast<double>(column.size()));
+  if (size > 0.0) column /= size;
+  columns_.col(static_cast<Eigen::Index>(candidate)) = column;
 }
 
 Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseShape& shape,

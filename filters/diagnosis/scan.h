@@ -25,6 +25,9 @@ class Scan {
 
   [[nodiscard]] std::size_t size() const { return candidates_.size(); }
 
+  // Further candidates; those of a shape that is there already are passed over.
+  void add(const std::vector<Candidate>& more);
+
   // So many independent tries the library amounts to, beside `base`; see tries.h.
   [[nodiscard]] double independent(const std::vector<Candidate>& base, const NoiseShape& shape) const;
 
@@ -41,6 +44,7 @@ class Scan {
                                                                          const NoiseFit& noise) const;
 
  private:
+  void fill(std::size_t candidate);
   struct Projected {
     Eigen::VectorXd y;
     Columns columns;

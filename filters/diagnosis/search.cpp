@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
 constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
+constexpr double kSecondLag = 16.0;    // and a second time constant of a lag
 constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
 constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
@@ -36,6 +37,7 @@ class Loop {
       revise();
     }
     drop_what_slow_denies();
+    try_second_lags();
     finish(result);
     return result;
   }
@@ -114,7 +116,14 @@ class Loop {
     if (!proven(best)) return false;
     model_ = best.model;
     noise_ = best.noise;
+    if (model_.back().channel != Candidate::kNone) offer_products(model_.back().channel);
     return true;
+  }
+
+  void offer_products(std::size_t channel) {
+    const std::size_t before = scan_.size();
+    scan_.add(products_of(data_, channel));
+    tries_of_channels_ += static_cast<double>(scan_.size() - before) / kShareOfChannels;
   }
 
   [[nodiscard]] bool proven(const Trial& trial) const {
@@ -138,6 +147,30 @@ class Loop {
       model_ = rest;
       noise_ = without;
       i = options_.given.size();
+    }
+  }
+
+  // A coil inside a housing follows the thermometer through two time constants. One more parameter has to
+  // earn what it costs after the choice of one lag is made.
+  void try_second_lags() {
+    for (std::size_t i = options_.given.size(); i < model_.size(); ++i) {
+      if (model_[i].form != Form::kLagged) continue;
+      const double before = noise_.log_likelihood;
+      for (const double share : {0.1, 0.5}) {
+        std::vector<Candidate> trial = model_;
+        trial[i].second_time_constant_s = share * trial[i].time_constant_s;
+        for (int round = 0; round < 2; ++round) {
+          refine(data_, noise_.shape, trial, i, &Candidate::second_time_constant_s);
+          refine(data_, noise_.shape, trial, i);
+        }
+        const NoiseFit noise = fit_noise(data_.grid, design(data_, trial), noise_.shape);
+        if (2.0 * (noise.log_likelihood - before) < kSecondLag ||
+            noise.log_likelihood <= noise_.log_likelihood) {
+          continue;
+        }
+        model_ = trial;
+        noise_ = noise;
+      }
     }
   }
 

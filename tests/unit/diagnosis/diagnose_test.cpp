@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -77,6 +78,43 @@ TEST(Diagnose, TwoEffectsAtOnce) {
   const Diagnosis d = diagnose({s.record()}, {});
   ASSERT_EQ(d.effects.size(), 2U);
   EXPECT_NE(d.effects[0].effect.channel, d.effects[1].effect.channel);
+}
+
+// An effect whose size depends on a second channel is tried once the first channel has one.
+TEST(Diagnose, AProductOfTwoChannels) {
+  Sensor s = quiet(28);
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    const double warm = s.temperature[i] - 25.0;
+    s.rate[i] += 5e-8 * warm + 3e-6 * warm * (s.supply[i] - 12.0);
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_EQ(d.effects.size(), 2U);
+  const auto product = [](const FoundEffect& found) { return found.effect.form == "product"; };
+  const auto found = std::find_if(d.effects.begin(), d.effects.end(), product);
+  ASSERT_NE(found, d.effects.end());
+  EXPECT_NE(found->effect.channel, found->effect.with_channel);
+  EXPECT_NEAR(found->effect.parameters[0].value, 3e-6, 4.0 * found->effect.parameters[0].std_error);
+}
+
+// A coil behind a housing: two time constants in a row.
+TEST(Diagnose, ALagOfTwoTimeConstants) {
+  Sensor s = quiet(29);
+  double housing = s.temperature[0];
+  double coil = housing;
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    housing += (1.0 - std::exp(-0.1 / 60.0)) * (s.temperature[i] - housing);
+    coil += (1.0 - std::exp(-0.1 / 150.0)) * (housing - coil);
+    s.rate[i] += 1e-6 * (coil - 25.0);
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].effect.form, "lagged");
+  double sum = 0.0;  // the sum of both is the delay, which is what the data say best
+  for (const ModelParameter& p : d.effects[0].effect.parameters) {
+    if (p.name == "lag_s" || p.name == "second_lag_s") sum += p.value;
+  }
+  EXPECT_EQ(d.effects[0].effect.parameters.size(), 3U);
+  EXPECT_NEAR(sum, 210.0, 15.0);
 }
 
 // The model it writes corrects the sensor's next record by the code the daemon runs.
