@@ -9,9 +9,8 @@ namespace {
 
 // Readings that repeat more often than this come in steps coarser than the channel's changes.
 constexpr double kRepeats = 0.6;
-// Readings used to find the smoothness, in pieces spread over the record; more change nothing.
-constexpr std::size_t kPieces = 6;
-constexpr std::size_t kPiece = 1000;
+// Readings, or means of some, that the smoothness is found from.
+constexpr std::size_t kMostReadings = 4096;
 // Log-likelihood by which a smooth motion must beat a random walk, whose jumps a spline would blur.
 constexpr double kSmoother = 5.0;
 constexpr double kScatter = 6.0;
@@ -108,8 +107,8 @@ struct Likelihood {
 // Both explain the readings after the second, so that their likelihoods compare.
 enum class Motion { kSmooth, kWalk };
 
-void add_piece(std::span<const Reading> readings, Motion motion, double drive, Likelihood& sum) {
-  if (readings.size() < 3) return;
+double likelihood(std::span<const Reading> readings, Motion motion, double drive) {
+  Likelihood sum;
   State s = started(readings[0], readings[1], drive);
   if (motion == Motion::kWalk) s = {readings[1].value, 0.0, 1.0, 0.0, 0.0};
   for (std::size_t i = 2; i < readings.size(); ++i) {
@@ -124,18 +123,24 @@ void add_piece(std::span<const Reading> readings, Motion motion, double drive, L
     sum.determinant += std::log(variance);
     sum.count += 1.0;
   }
+  return sum.value();
 }
 
-double likelihood(std::span<const Reading> readings, Motion motion, double drive) {
-  Likelihood sum;
-  if (readings.size() <= kPieces * kPiece) {
-    add_piece(readings, motion, drive, sum);
-  } else {
-    for (std::size_t p = 0; p < kPieces; ++p) {
-      add_piece(readings.subspan(p * (readings.size() - kPiece) / (kPieces - 1), kPiece), motion, drive, sum);
+// Means of so many readings that few enough are left. All of the record is used: the few kinks in it are what
+// the spline must be able to follow.
+std::vector<Reading> thinned(const std::vector<Reading>& readings) {
+  const std::size_t share = (readings.size() + kMostReadings - 1) / kMostReadings;
+  if (share < 2) return readings;
+  std::vector<Reading> means;
+  for (std::size_t i = 0; i + share <= readings.size(); i += share) {
+    Reading mean{0.0, 0.0};
+    for (std::size_t j = i; j < i + share; ++j) {
+      mean.step += readings[j].step / static_cast<double>(share);
+      mean.value += readings[j].value / static_cast<double>(share);
     }
+    means.push_back(mean);
   }
-  return sum.count > 0.0 ? sum.value() : 0.0;
+  return means;
 }
 
 struct Drive {
@@ -218,9 +223,12 @@ Reconstruction reconstructed(std::span<const double> readings) {
     for (std::size_t i = 0; i < readings.size(); ++i) used.push_back({static_cast<double>(i), readings[i]});
   }
   if (used.size() < 8) return as_read;
-  const Drive smooth = best_drive(used, Motion::kSmooth);
-  if (smooth.likelihood < best_drive(used, Motion::kWalk).likelihood + kSmoother) return as_read;
-  const std::vector<State> states = smoothed(used, smooth.drive);
+  const std::vector<Reading> few = thinned(used);
+  const Drive smooth = best_drive(few, Motion::kSmooth);
+  if (smooth.likelihood < best_drive(few, Motion::kWalk).likelihood + kSmoother) return as_read;
+  // The variance of a mean of readings is that share of a reading's.
+  const double share = static_cast<double>(few.size()) / static_cast<double>(used.size());
+  const std::vector<State> states = smoothed(used, smooth.drive * share);
   Reconstruction spline{std::vector<double>(readings.size()), true};
   std::vector<double>& result = spline.values;
   std::size_t i = 0;
@@ -242,6 +250,10 @@ Reconstruction reconstructed(std::span<const double> readings) {
     mean += value / static_cast<double>(readings.size());
     noise += (readings[k] - value) * (readings[k] - value);
   }
+  // What was taken away has to be reading noise and nothing else.
+  std::vector<double> taken(readings.begin(), readings.end());
+  for (std::size_t k = 0; k < taken.size(); ++k) taken[k] -= result[k];
+  if (!coarse && !stands_still(taken)) return as_read;
   double signal = 0.0;
   for (const double value : result) signal += (value - mean) * (value - mean);
   return signal > kAboveNoise * kAboveNoise * noise ? spline : as_read;

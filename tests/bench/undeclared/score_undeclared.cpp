@@ -3,9 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <optional>
+#include <sstream>
 #include <thread>
 
 #include "tests/bench/undeclared/oracle_diagnosis.h"
@@ -23,11 +26,16 @@ struct Options {
   std::string kind, method = "ifog";
   bool curve = false, quiet = false;
   int jobs = 1;
+  double minutes = 1e6;
   std::vector<std::uint64_t> only;
 };
 
 std::uint64_t seed_at(const Options& o, int place, bool with_effect) {
   return o.seed * 1'000'000U + (with_effect ? 0U : 500'000U) + static_cast<std::uint64_t>(place);
+}
+
+bool wanted(const Options& o, std::uint64_t seed) {
+  return o.only.empty() || std::find(o.only.begin(), o.only.end(), seed) != o.only.end();
 }
 
 // The next sensor of the series; `place` walks through the kinds so that every size meets every kind.
@@ -64,34 +72,52 @@ int main(int argc, char** argv) {
   app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
   app.add_flag("--quiet", o.quiet, "no list of failures");
   app.add_option("--jobs", o.jobs, "sensors at a time")->check(CLI::Range(1, 256));
+  app.add_option("--minutes", o.minutes,
+                 "no new sensor after so long; the tables are of those scored by then");
   app.add_option("--only", o.only, "only the sensors of these seeds, as the list of failures gives them");
   CLI11_PARSE(app, argc, argv);
 
-  std::vector<Score> scores;
+  // With and without in turn, so that a run cut short has seen both.
+  struct Place {
+    int number;
+    bool with_effect;
+  };
+  std::vector<Place> places;
+  for (int i = 0; i < std::max(o.with, o.without); ++i)
+    for (const bool with_effect : {true, false})
+      if (i < (with_effect ? o.with : o.without) && wanted(o, seed_at(o, i, with_effect)))
+        places.push_back({i, with_effect});
+
   // Sensors are independent of each other; each score stands at its place, whichever thread makes it.
-  const auto run = [&](int count, bool with_effect) {
-    std::vector<int> places;
-    for (int i = 0; i < count; ++i)
-      if (o.only.empty() || std::count(o.only.begin(), o.only.end(), seed_at(o, i, with_effect)) > 0)
-        places.push_back(i);
-    std::vector<Score> made(places.size());
-    std::atomic<std::size_t> next{0}, done{0};
-    std::vector<std::jthread> threads(static_cast<std::size_t>(o.jobs));
-    for (std::jthread& thread : threads)
-      thread = std::jthread([&] {
-        for (std::size_t i = next++; i < places.size(); i = next++) {
-          const Sensor sensor = sensor_at(o, places[i], with_effect);
+  std::vector<std::optional<Score>> made(places.size());
+  const auto start = std::chrono::steady_clock::now();
+  const auto late = [&] {
+    return std::chrono::steady_clock::now() - start > std::chrono::duration<double>(60.0 * o.minutes);
+  };
+  std::atomic<std::size_t> next{0}, done{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int job = 0; job < o.jobs; ++job)
+      threads.emplace_back([&] {
+        for (std::size_t i = next++; i < places.size() && !late(); i = next++) {
+          const Sensor sensor = sensor_at(o, places[i].number, places[i].with_effect);
           made[i] = score(sensor, o.method == "ifog"     ? project_diagnosis()
                                   : o.method == "oracle" ? oracle_diagnosis(sensor)
                                                          : blind_diagnosis());
           if (++done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", done.load(), places.size());
+          std::ostringstream wrong;
+          print_failures(wrong, {*made[i]});
+          std::fputs(wrong.str().c_str(), stderr);
         }
       });
-    threads.clear();
-    scores.insert(scores.end(), made.begin(), made.end());
-  };
-  run(o.with, true);
-  run(o.without, false);
+  }
+  std::vector<Score> scores;
+  for (const bool with_effect : {true, false})
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (made[i] && places[i].with_effect == with_effect) scores.push_back(*made[i]);
+  if (scores.size() < places.size())
+    std::cout << "stopped after " << o.minutes << " minutes: " << scores.size() << " of " << places.size()
+              << " sensors\n";
   if (!o.quiet) print_failures(std::cout, scores);
   print(std::cout, scores);
   return 0;

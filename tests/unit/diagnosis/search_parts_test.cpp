@@ -56,6 +56,23 @@ TEST(Reconstruct, ReadingNoiseOfASmoothChannelIsSmoothedAway) {
   EXPECT_LT(rms_difference(found.values, truth), 0.0025);
 }
 
+// Two kinks in hours of straight lines, and the spline has to turn there all the same.
+TEST(Reconstruct, ARampBetweenSoaksKeepsItsKinks) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<double> truth, read;
+  double filtered = 10.0;
+  for (int i = 0; i < 22000; ++i) {
+    const double target = 10.0 + 24.0 * std::clamp((i - 4000.0) / 13000.0, 0.0, 1.0);
+    filtered += (target - filtered) / 200.0;
+    truth.push_back(filtered);
+    read.push_back(truth.back() + noise(random));
+  }
+  const Reconstruction found = reconstructed(read);
+  EXPECT_TRUE(found.smooth);
+  EXPECT_LT(rms_difference(found.values, truth), 0.003);
+}
+
 // A spline through jumps or jitter would be another channel.
 TEST(Reconstruct, WhatJumpsOrJittersStaysAsItWasRead) {
   std::mt19937_64 random(3);
