@@ -8,16 +8,16 @@
 
 #include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
+#include "filters/diagnosis/findings.h"
 #include "filters/diagnosis/judge.h"
 #include "filters/diagnosis/lines.h"
 #include "filters/diagnosis/moving_line.h"
 #include "filters/diagnosis/prediction.h"
 #include "filters/diagnosis/ramp.h"
+#include "filters/diagnosis/reconstruct.h"
 #include "filters/diagnosis/record_lines.h"
 #include "filters/diagnosis/search.h"
-#include "filters/diagnosis/separate.h"
 #include "filters/diagnosis/unexplained.h"
-#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -77,8 +77,8 @@ class Account {
     }
     take_effects();
     drop_what_does_not_hold(search);
+    fit_jointly();
     write_effects();
-    write_alternatives();
     write_figures();
     write_series();
     return std::move(result_);
@@ -264,124 +264,28 @@ class Account {
     return values[low] + share * (values[high] - values[low]);
   }
 
+  // Coefficients averaged over the noise the record allows, and their honest errors.
+  void fit_jointly() {
+    clean_data_ = with_reconstructed_channels(data_);
+    joint_ = settle(data_, clean_data_, found_);
+    take_effects();
+  }
+
   void write_effects() {
-    const BlockGrid& grid = data_.grid;
-    std::vector<double> used;
-    for (std::size_t b = 0; b < grid.size(); ++b) {
-      if (grid.valid[b]) used.push_back(grid.error[static_cast<Eigen::Index>(b)]);
-    }
-    const double total = variance_of(used);
-    Eigen::Index at = constant_columns();
-    std::vector<std::pair<Eigen::Index, std::size_t>> rows;  // column of coefficient, parameter index
-    for (const Chosen& chosen : found_.chosen) {
-      FoundEffect found;
-      found.effect = effect_of(data_, chosen.candidate);
-      found.effect.axis = options_.axis;
-      found.p_value = chosen.p_value;
-      found.likelihood_ratio = chosen.likelihood_ratio;
-      const Eigen::Index width = chosen.candidate.form == Form::kLine ? 2 : 1;
-      Eigen::VectorXd part = Eigen::VectorXd::Zero(columns_.rows());
-      for (Eigen::Index j = 0; j < width; ++j) {
-        ModelParameter& parameter = found.effect.parameters[static_cast<std::size_t>(j)];
-        parameter.value = found_.coefficients[at + j];
-        parameter.std_error = std::sqrt(found_.covariance(at + j, at + j));
-        part += columns_.col(1 + at + j) * parameter.value;
-      }
-      std::vector<double> of_used;
-      for (std::size_t b = 0; b < grid.size(); ++b) {
-        if (grid.valid[b]) of_used.push_back(part[static_cast<Eigen::Index>(b)]);
-      }
-      found.variance_explained = total > 0.0 ? std::min(1.0, variance_of(of_used) / total) : 0.0;
-      parts_.push_back(part);
-      columns_of_.push_back(at);
-      at += width;
-      result_.effects.push_back(std::move(found));
-    }
+    Findings findings = findings_of(data_, clean_data_, found_, joint_, options_.axis);
+    result_.effects = std::move(findings.effects);
+    result_.indistinguishable = std::move(findings.pairs);
+    result_.others = std::move(findings.others);
+    result_.belief = joint_.noise;
+    parts_ = std::move(findings.parts);
+    const std::size_t jointly = result_.effects.size();
     for (const FastLine& fast : lines_.fast) {
       result_.effects.push_back(line_effect(fast.line, variance_of(errors_[fast.record].before)));
       result_.effects.back().effect.axis = options_.axis;
     }
-    time_constant_errors();
     write_ramps();
-    write_covariance();
-    write_ranges();
-  }
-
-  // Of searched time constants: from the curvature of the likelihood, the coefficients free.
-  void time_constant_errors() {
-    std::vector<Candidate> effects;
-    for (const Chosen& chosen : found_.chosen) effects.push_back(chosen.candidate);
-    for (std::size_t i = 0; i < effects.size(); ++i) {
-      if (!effects[i].searched()) continue;
-      constexpr double kStep = 0.05;
-      const auto value = [&](double factor) {
-        std::vector<Candidate> trial = effects;
-        trial[i].time_constant_s *= factor;
-        return fit_whitened(data_.grid, found_.noise.shape, design(data_, trial)).log_likelihood;
-      };
-      const double curve = (2.0 * value(1.0) - value(1.0 + kStep) - value(1.0 - kStep)) / (kStep * kStep);
-      for (ModelParameter& parameter : result_.effects[i].effect.parameters) {
-        if (parameter.name != time_constant_name(effects[i].form)) continue;
-        parameter.std_error = curve > 0.0 ? parameter.value / std::sqrt(curve) : parameter.value;
-      }
-    }
-  }
-
-  void write_covariance() {
-    std::size_t n = 0;
-    for (const FoundEffect& found : result_.effects) n += found.effect.parameters.size();
-    result_.covariance.assign(n * n, 0.0);
-    std::vector<Eigen::Index> column(n, -1);
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < result_.effects.size(); ++i) {
-      const auto& parameters = result_.effects[i].effect.parameters;
-      for (std::size_t j = 0; j < parameters.size(); ++j, ++row) {
-        result_.covariance[row * n + row] = parameters[j].std_error * parameters[j].std_error;
-        const std::size_t width = result_.effects[i].effect.form == "line" ? 2 : 1;
-        if (i < columns_of_.size() && j < width) column[row] = columns_of_[i] + static_cast<Eigen::Index>(j);
-      }
-    }
-    for (std::size_t a = 0; a < n; ++a) {
-      for (std::size_t b = 0; b < n; ++b) {
-        if (column[a] >= 0 && column[b] >= 0)
-          result_.covariance[a * n + b] = found_.covariance(column[a], column[b]);
-      }
-    }
-  }
-
-  void write_ranges() {
-    for (const FineChannel& channel : data_.channels) {
-      const auto uses = [&](const FoundEffect& found) {
-        return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
-      };
-      if (std::any_of(result_.effects.begin(), result_.effects.end(), uses)) {
-        result_.ranges.push_back({channel.name, channel.low, channel.high});
-      }
-    }
-  }
-
-  void write_alternatives() {
-    for (const Alternative& alternative : found_.alternatives) {
-      Indistinguishable pair;
-      const Candidate& mine = found_.chosen[alternative.of].candidate;
-      pair.effects = {result_.effects[alternative.of].effect, effect_of(data_, alternative.candidate)};
-      pair.correlation = alternative.correlation;
-      pair.separate_by = capture_that_separates(data_, mine, alternative.candidate);
-      result_.indistinguishable.push_back(std::move(pair));
-    }
-    // On one heading the Earth's rate turning into a tilting axis is the same regressor: no data of it can
-    // tell.
-    for (std::size_t i = 0; i < result_.effects.size(); ++i) {
-      const Effect& effect = result_.effects[i].effect;
-      if (effect.form != "linear" || kind_of(effect.channel) != ChannelKind::kAcceleration) continue;
-      Indistinguishable pair;
-      pair.effects = {effect, effect};
-      pair.effects[1].form = "earth_rate";
-      pair.correlation = 1.0;
-      pair.separate_by =
-          "the same capture with the heading reversed: the Earth's rate changes sign, g-sensitivity does not";
-      result_.indistinguishable.push_back(std::move(pair));
-    }
+    result_.covariance = covariance_of(result_.effects, joint_, constant_columns(), jointly);
+    result_.ranges = ranges_of(data_, result_.effects);
   }
 
   void write_figures() {
@@ -407,10 +311,17 @@ class Account {
     result_.unexplained = describe_unexplained(longest->before, longest->after, longest->start_s,
                                                data_.grid.sample_s, found_.noise, data_.grid, peaks);
     if (moving_) describe_moving(*moving_, result_.unexplained);
-    const double span = static_cast<double>(longest->before.size()) * data_.grid.sample_s;
-    const double aligned = std::min(300.0, span / 10.0);
-    result_.heading =
-        predict_heading(data_.grid, found_.noise, aligned, {60.0, 300.0, 600.0, 1800.0, 3600.0});
+    predict();
+  }
+
+  // As if the next capture's channels ran like the longest record's.
+  void predict() {
+    const auto longest =
+        std::max_element(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
+          return a.time_s.back() - a.time_s.front() < b.time_s.back() - b.time_s.front();
+        });
+    const double aligned = std::min(300.0, (longest->time_s.back() - longest->time_s.front()) / 10.0);
+    result_.heading = predict_heading(result_, *longest, aligned, {60.0, 300.0, 600.0, 1800.0, 3600.0});
   }
 
   void write_series() {
@@ -460,15 +371,16 @@ class Account {
   const DiagnoseOptions& options_;
   const std::vector<RampFit>& ramps_;
   BlockData data_;
+  BlockData clean_data_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
   std::vector<std::vector<double>> clean_, clean_held_out_;  // by record: less the ramps
   Lines lines_;
   std::optional<MovingLine> moving_;
   SearchResult found_;
+  JointFit joint_;
   Columns columns_;
   Eigen::VectorXd contribution_;
   std::vector<Eigen::VectorXd> parts_;
-  std::vector<Eigen::Index> columns_of_;
   Diagnosis result_;
 };
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/belief.h"
 #include "filters/model/model.h"
 
 namespace ifog {
@@ -65,12 +66,16 @@ struct Unexplained {
   std::vector<double> times_s;  // "bursts"
 };
 
-// Heading error of the next capture when nothing but the model is known: the bias is taken over the first
-// `aligned_s` seconds at rest and held, and the angle is integrated from then on.
+// Heading error of the next capture, corrected by the model: the bias is taken over the first `aligned_s`
+// seconds at rest and held, and the angle is integrated from then on. Promised is the root of the error's
+// expected square: the noise, as uncertain as the record leaves it; the errors of the effects' parameters,
+// time constants included; the other explanations that the record does not rule out; effects outside the
+// range they were fitted on; and effects that are known but not corrected online, a line at any phase and a
+// ramp going on. Not in it: what the diagnosis did not see, and steps, which nothing announces.
 struct HeadingPrediction {
   double aligned_s = 0.0;
   std::vector<double> after_s;    // times since the end of the alignment
-  std::vector<double> sigma_rad;  // standard deviation of the heading error then
+  std::vector<double> sigma_rad;  // root of the expected square of the heading error then
 };
 
 // What a report draws. Decimated to a few thousand points.
@@ -93,7 +98,9 @@ struct Diagnosis {
   std::map<std::string, double> before, after;  // held-out figures, units in their names
   std::vector<Indistinguishable> indistinguishable;
   Unexplained unexplained;
-  HeadingPrediction heading;
+  HeadingPrediction heading;  // if the channels run as they did in the longest record
+  NoiseBelief belief;
+  std::vector<OtherExplanation> others;
   std::vector<std::string> remarks;  // anything else a person should know, one sentence each
   DiagnosisSeries series;
 };

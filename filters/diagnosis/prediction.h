@@ -1,14 +1,19 @@
-// What the noise of a model does to the heading of a capture not yet made: exact for the linear functional
-// "angle after alignment", from the same state space the diagnosis fits.
+// What a model leaves of the heading of a capture not yet made: exact for the linear functional "angle after
+// alignment", from the state space that the diagnosis fitted and the regressors of the capture's own
+// channels.
 #pragma once
 
 #include "filters/diagnosis/diagnose.h"
-#include "filters/diagnosis/noise_fit.h"
 
 namespace ifog {
 
-// bias taken over aligned_s, angle integrated from then to each of after_s.
-HeadingPrediction predict_heading(const BlockGrid& grid, const NoiseFit& noise, double aligned_s,
+// bias taken over aligned_s, angle integrated from then to each of after_s. Of `next` only times and channels
+// count, and the reference when effects use one. Effects without a channel in it are taken as not corrected
+// and not there.
+HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
                                   const std::vector<double>& after_s);
+
+// Of the noise alone: variance of the heading error, rad^2.
+double heading_variance(const NoiseBelief& belief, double aligned_s, double after_s);
 
 }  // namespace ifog

@@ -272,6 +272,8 @@ class Loop {
 SearchResult search_effects(const BlockData& data, const SearchOptions& options) {
   const BlockData clean = with_reconstructed_channels(data);
   SearchResult result = Loop(clean, options).run();
+  for (const Chosen& chosen : result.chosen) result.clean.push_back(chosen.candidate);
+  result.clean_coefficients = result.coefficients;
   fit_to_readings(data, clean, result);
   return result;
 }

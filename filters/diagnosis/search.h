@@ -31,7 +31,10 @@ struct SearchResult {
   Eigen::VectorXd
       coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
   Eigen::MatrixXd covariance;  // of those
-  double tries = 1.0;          // independent ones of a channel's effect, over their share of the significance
+  // The same as the search had them, of what the channels were; the ones above are of what was read.
+  std::vector<Candidate> clean;
+  Eigen::VectorXd clean_coefficients;
+  double tries = 1.0;  // independent ones of a channel's effect, over their share of the significance
 };
 
 struct SearchOptions {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/diagnosis/prediction.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
 
@@ -50,6 +51,14 @@ Series event(const Effect& effect, const Capture& capture) {
   return out;
 }
 
+// The prediction is not shown the rate: where there is no reference, zero.
+HeadingPrediction predicted(const Diagnosis& diagnosis, const Capture& next) {
+  ifog::Record record = record_of(next, "next", 0);
+  const Series none(next.size(), 0.0);
+  record.rate_radps = record.reference_radps.empty() ? std::span<const double>(none) : record.reference_radps;
+  return predict_heading(diagnosis, record, diagnosis.heading.aligned_s, diagnosis.heading.after_s);
+}
+
 }  // namespace
 
 ifog::Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
@@ -86,7 +95,7 @@ Diagnose project_diagnosis() {
     const Diagnosis diagnosis = diagnose(records, {});
     Finding finding;
     finding.unexplained = diagnosis.unexplained.kind != "nothing" && !diagnosis.unexplained.kind.empty();
-    finding.heading = diagnosis.heading;
+    finding.heading = [diagnosis](const Capture& next) { return predicted(diagnosis, next); };
     for (const FoundEffect& found : diagnosis.effects) {
       const std::optional<Form> form = form_named(found.effect.form);
       if (form && describes_noise(*form)) continue;  // a word about the noise, not an effect

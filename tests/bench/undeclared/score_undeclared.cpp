@@ -24,7 +24,7 @@ struct Options {
   std::uint64_t seed = 1;
   double sigma_low = 12.0, sigma_high = 80.0;
   std::string kind, method = "ifog";
-  bool curve = false, quiet = false;
+  bool curve = false, quiet = false, promises = false;
   int jobs = 1;
   double minutes = 1e6;
   std::vector<std::uint64_t> only;
@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
   app.add_option("--kind", o.kind, "only this kind, as named in the table");
   app.add_option("--method", o.method)->check(CLI::IsMember({"ifog", "oracle", "blind"}));
   app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
+  app.add_flag("--promises", o.promises, "list every interval and heading error by sensor");
   app.add_flag("--quiet", o.quiet, "no list of failures");
   app.add_option("--jobs", o.jobs, "sensors at a time")->check(CLI::Range(1, 256));
   app.add_option("--minutes", o.minutes,
@@ -119,6 +120,7 @@ int main(int argc, char** argv) {
     std::cout << "stopped after " << o.minutes << " minutes: " << scores.size() << " of " << places.size()
               << " sensors\n";
   if (!o.quiet) print_failures(std::cout, scores);
+  if (o.promises) print_promises(std::cout, scores);
   print(std::cout, scores);
   return 0;
 }

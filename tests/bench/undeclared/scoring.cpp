@@ -30,7 +30,7 @@ const ModelParameter* parameter(const Effect& e, const std::string& name) {
 }
 
 const char* shape_name(const TrueEffect& truth) {
-  if (truth.form == "lagged") return "time_constant_s";
+  if (truth.form == "lagged") return "lag_s";
   if (truth.form == "line") return "frequency_hz";
   if (truth.form == "warm_up") return "time_constant_s";
   if (truth.form == "step") return "time_s";
@@ -60,10 +60,12 @@ bool same_place(const TrueEffect& truth, const Effect& found, double record_s) {
   return true;
 }
 
-void add_parameter(Score& s, const std::string& effect, const Effect& found, const char* name, double truth) {
+void add_parameter(Score& s, const std::string& effect, const Effect& found, const char* name, double truth,
+                   double oracle = 0.0) {
   const ModelParameter* p = parameter(found, name);
   if (p == nullptr || !(p->std_error > 0.0)) return;
-  s.parameters.push_back({effect + " " + name, (p->value - truth) / p->std_error});
+  s.parameters.push_back(
+      {effect + " " + name, (p->value - truth) / p->std_error, oracle > 0.0 ? p->std_error / oracle : 0.0});
 }
 
 void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& records, const Finding& finding) {
@@ -77,7 +79,8 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
       used[f] = matched[t] = true;
       ++s.exact;
       const std::string name = name_of(found);
-      if (truth.form != "line") add_parameter(s, name, found, "coefficient", truth.size);
+      if (truth.form != "line")
+        add_parameter(s, name, found, "coefficient", truth.size, std::abs(truth.size) / truth.sigma);
       if (const char* shape = shape_name(truth)) add_parameter(s, name, found, shape, truth.shape);
     }
 
@@ -165,7 +168,8 @@ void score_next_capture(Score& s, const Sensor& sensor, const Finding& finding) 
   s.shape_error = rms(error, mean(error)) / scale;
   s.effect_size = rms(effect, mean(effect)) / scale;
 
-  if (s.transferable) s.heading_square = heading_square(finding.heading, next.noise, difference, sensor.dt_s);
+  if (finding.heading)
+    s.heading_square = heading_square(finding.heading(next.capture), next.noise, difference, sensor.dt_s);
 }
 
 }  // namespace

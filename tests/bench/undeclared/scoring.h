@@ -27,8 +27,9 @@ struct Claim {
 
 struct Finding {
   std::vector<Claim> effects;
-  bool unexplained = false;   // "something is left that no form describes"
-  HeadingPrediction heading;  // empty when none is made
+  bool unexplained = false;  // "something is left that no form describes"
+  // Of another capture of the sensor, from its times and channels alone; empty when none is made.
+  std::function<HeadingPrediction(const Capture& next)> heading;
 };
 
 using Diagnose = std::function<Finding(const std::vector<Capture>&)>;
@@ -36,6 +37,8 @@ using Diagnose = std::function<Finding(const std::vector<Capture>&)>;
 struct Parameter {
   std::string name;  // "linear temperature_degC coefficient"
   double error_in_sigma = 0.0;
+  // Standard error over that of the oracle, which knows the noise and every shape; 0 where there is none.
+  double width = 0.0;
 };
 
 struct Score {
@@ -50,8 +53,9 @@ struct Score {
   double effect_error = 0.0, shape_error = 0.0, effect_size = 0.0;
   bool transferable = true;  // false: a step, or a line, whose phase in another capture nothing can tell
   std::vector<Parameter> parameters;
-  std::optional<double> heading_square;  // (heading error found / predicted)^2 on another capture
-  std::string names;                     // what was found, for the log
+  // (heading error found / predicted)^2 on another capture, at the longest time predicted that it holds.
+  std::optional<double> heading_square;
+  std::string names;  // what was found, for the log
   double seconds = 0.0;
 
   [[nodiscard]] bool right() const { return missed == 0; }

@@ -60,13 +60,19 @@ void print_coverage(std::ostream& out, const std::vector<Score>& scores) {
 
 Totals total(const std::vector<Score>& scores) {
   Totals t;
-  std::vector<double> error, shape;
+  std::vector<double> error, shape, width;
   int inside = 0;
   for (const Score& s : scores) {
     t.seconds_each += s.seconds / static_cast<double>(scores.size());
     if (s.heading_square) {
       t.heading_square += *s.heading_square;
+      t.heading_within += *s.heading_square <= 1.96 * 1.96 ? 1.0 : 0.0;
       ++t.headings;
+      if (!s.right() || s.extra > 0) {
+        ++t.headings_wrong;
+      } else {
+        t.heading_square_right += *s.heading_square;
+      }
       if (effect_free(s)) {
         t.heading_square_free += *s.heading_square;
         ++t.headings_free;
@@ -75,6 +81,7 @@ Totals total(const std::vector<Score>& scores) {
     for (const Parameter& p : s.parameters) {
       inside += std::abs(p.error_in_sigma) <= 1.96 ? 1 : 0;
       ++t.intervals;
+      if (p.width > 0.0) width.push_back(p.width);
     }
     if (effect_free(s)) {
       ++t.effect_free;
@@ -102,7 +109,11 @@ Totals total(const std::vector<Score>& scores) {
   t.shape_error_median = quantile(shape, 0.5);
   t.shape_error_p90 = quantile(shape, 0.9);
   t.coverage = t.intervals == 0 ? std::nan("") : static_cast<double>(inside) / t.intervals;
+  t.interval_width = quantile(width, 0.5);
   t.heading_square = t.headings == 0 ? std::nan("") : t.heading_square / t.headings;
+  t.heading_within = t.headings == 0 ? std::nan("") : t.heading_within / t.headings;
+  const int right = t.headings - t.headings_wrong;
+  t.heading_square_right = right == 0 ? std::nan("") : t.heading_square_right / right;
   t.heading_square_free = t.headings_free == 0 ? std::nan("") : t.heading_square_free / t.headings_free;
   return t;
 }
@@ -150,12 +161,17 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
     line(out, "not covered      %5d, called unexplained %d, made worse %d (target 0)", t.uncovered,
          t.uncovered_said, t.made_worse);
   if (t.intervals > 0)
-    line(out, "95 %% intervals  hold %.1f %% of %d (target 93 to 97)", 100.0 * t.coverage, t.intervals);
-  if (t.headings > 0)
+    line(out, "95 %% intervals  hold %.1f %% of %d (target 93 to 97), median width %.2f of the oracle's",
+         100.0 * t.coverage, t.intervals, t.interval_width);
+  if (t.headings > 0) {
     line(out,
-         "heading error    found / predicted, square: %.3f over %d captures (target 0.9 to 1.1), effect-free "
-         "%.3f",
-         t.heading_square, t.headings, t.heading_square_free);
+         "heading error    (found / predicted)^2 on the next capture: mean %.3f over %d (target 0.9 to 1.1)",
+         t.heading_square, t.headings);
+    line(out,
+         "                 where the diagnosis was right %.3f, wrong in %d; effect-free %.3f; within 1.96 "
+         "sigma %.1f %%",
+         t.heading_square_right, t.headings_wrong, t.heading_square_free, 100.0 * t.heading_within);
+  }
   line(out, "%.2f s a sensor", t.seconds_each);
 }
 
@@ -166,6 +182,20 @@ void print_failures(std::ostream& out, const std::vector<Score>& scores) {
     line(out, "seed %-8llu %-22s %5.1f sigma  missed %d extra %d%s  error %.3f  found: %s",
          static_cast<unsigned long long>(s.seed), name_of(s.kind), s.sigma, s.missed, s.extra,
          worse ? " MADE WORSE" : "", s.effect_error, s.names.empty() ? "nothing" : s.names.c_str());
+  }
+}
+
+void print_promises(std::ostream& out, const std::vector<Score>& scores) {
+  for (const Score& s : scores) {
+    std::string text;
+    for (const Parameter& p : s.parameters) {
+      char part[160];
+      std::snprintf(part, sizeof part, "  %s %+.2f (%.2f)", p.name.c_str(), p.error_in_sigma, p.width);
+      text += part;
+    }
+    line(out, "seed %-8llu %-22s %5.1f sigma  heading %7.3f%s", static_cast<unsigned long long>(s.seed),
+         name_of(s.kind), s.sigma, s.heading_square ? std::sqrt(*s.heading_square) : std::nan(""),
+         text.c_str());
   }
 }
 

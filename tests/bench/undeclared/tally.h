@@ -17,8 +17,10 @@ struct Totals {
   double shape_error_median = 0.0, shape_error_p90 = 0.0;  // the same without the mean
   double coverage = 0.0;                                   // of 95 % intervals
   int intervals = 0;
-  double heading_square = 0.0, heading_square_free = 0.0;  // means: of all, of effect-free sensors
-  int headings = 0, headings_free = 0;
+  double interval_width = 0.0;  // median, coefficients' standard errors over the oracle's
+  // Means of all, of effect-free sensors, of those diagnosed right; share within 1.96 sigma.
+  double heading_square = 0.0, heading_square_free = 0.0, heading_square_right = 0.0, heading_within = 0.0;
+  int headings = 0, headings_free = 0, headings_wrong = 0;
   double seconds_each = 0.0;
 };
 
@@ -29,5 +31,8 @@ void print(std::ostream& out, const std::vector<Score>& scores);
 
 // One line a wrong sensor, enough to make it again.
 void print_failures(std::ostream& out, const std::vector<Score>& scores);
+
+// Every interval (error over standard error) and heading error (found over predicted), by sensor.
+void print_promises(std::ostream& out, const std::vector<Score>& scores);
 
 }  // namespace ifog::undeclared

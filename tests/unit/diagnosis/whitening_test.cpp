@@ -89,14 +89,16 @@ TEST(NoiseFit, FindsTheWalkItWasGiven) {
 // Integral of white noise less its mean over the alignment: N^2 (T + T^2/A); of a walk held from the end of
 // the alignment onwards K^2 (T^3/3 + T^2 A/3).
 TEST(Prediction, IsTheClosedFormOfWhiteNoiseAndWalk) {
-  const BlockGrid grid = even_grid(64);
   const double aligned = 200.0;
   const double horizon = 3600.0;
-  const HeadingPrediction white = predict_heading(grid, {{0.0, 0.0, 0.0, 0.0}, 0.0, 4.0}, aligned, {horizon});
-  EXPECT_NEAR(white.sigma_rad[0], 2.0 * std::sqrt(horizon + horizon * horizon / aligned), 1e-6);
-  NoiseFit walk{{1e12, 0.0, 0.0, 0.0}, 0.0, 1e-12};
+  NoiseBelief white;
+  white.parts = {{.weight = 1.0, .white = 4.0}};
+  const double angle = std::sqrt(heading_variance(white, aligned, horizon));
+  EXPECT_NEAR(angle, 2.0 * std::sqrt(horizon + horizon * horizon / aligned), 1e-6);
+  NoiseBelief walk;
+  walk.parts = {{.weight = 0.5, .walk = 0.5}, {.weight = 0.5, .walk = 1.5}};
   const double expected = std::sqrt(horizon * horizon * horizon / 3.0 + horizon * horizon * aligned / 3.0);
-  EXPECT_NEAR(predict_heading(grid, walk, aligned, {horizon}).sigma_rad[0], expected, 2e-3 * expected);
+  EXPECT_NEAR(std::sqrt(heading_variance(walk, aligned, horizon)), expected, 2e-3 * expected);
 }
 
 }  // namespace
