@@ -1,0 +1,223 @@
+// Heading over a day, accelerated: three gyros of 5 kHz through the daemon's own pipelines (driver, ring,
+// filter, LCM encoding), with reloads and overload all the way. What is published, decoded from the encoded
+// messages, is compared with what was sent, which is known exactly: every rate is a whole multiple of 2^-20
+// rad/s, and the sum is kept in whole numbers.
+//
+//   heading_bench [--hours H] [--sensors N]     exit 1 when an angle is off by more than 1e-9 rad
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ifog/rate_t.hpp>
+#include <memory>
+#include <numbers>
+#include <thread>
+#include <vector>
+
+#include "daemon/pipeline/pipeline.h"
+#include "drivers/host/driver_instance.h"
+
+namespace {
+
+using namespace ifog;
+using namespace std::chrono_literals;
+
+constexpr double kRate_hz = 5000.0;
+constexpr double kUnit_radps = 1.0 / (1 << 20);    // float32 holds whole multiples of it up to 16 rad/s
+constexpr std::size_t kFrame = 36, kPortion = 64;  // bytes of a frame, frames a delivery
+constexpr std::size_t kSlots = 1024;
+constexpr int kBlock = 128 * 512;                // frames that are sent over and over: 13 s
+constexpr std::uint64_t kCalm = 100'000;         // frames between two overloads: 20 s
+constexpr std::uint64_t kOverload = 4 * kSlots;  // frames sent without regard for the filter
+constexpr double kAllowed_rad = 1e-9;
+
+// What one axis measures, in units of kUnit_radps: at rest with the Earth's rate, a turn of 90° with a sharp
+// start and a slow end and one back, and noise of some 1e-4 rad/s.
+int units(int n, int axis) {
+  const double t = n / kRate_hz;
+  const auto turn = [](double s) { return s < 0.0 ? 0.0 : s < 0.5 ? 1.0 : std::exp(-(s - 0.5) / 0.4); };
+  const double motion =
+      axis == 2 ? 1.7 * (turn(t - 2.0) - turn(t - 7.0)) : 0.1 * std::sin(0.7 * t * (axis + 1));
+  const auto noise =
+      static_cast<double>((static_cast<std::uint32_t>(n) * 2654435761U + 977U * static_cast<unsigned>(axis)) %
+                          401U) -
+      200.0;
+  return static_cast<int>(std::lround((7.3e-5 + motion) / kUnit_radps + noise));
+}
+
+struct Block {
+  std::vector<std::uint8_t> bytes;
+  std::array<std::vector<std::int64_t>, 3> sums;  // of the first n frames
+};
+
+Block make_block() {
+  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
+  Block block;
+  for (auto& sums : block.sums) sums.push_back(0);
+  for (int n = 0; n < kBlock; ++n) {
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const int value = units(n, axis);
+      sample.value[a] = value * kUnit_radps;
+      block.sums[a].push_back(block.sums[a].back() + value);
+    }
+    sample.environment_fresh = ~0U;
+    driver.encode_bytes(sample, block.bytes);
+  }
+  return block;
+}
+
+// Sends the block again and again, as fast as the filter follows; now and then faster.
+class DayTransport final : public Transport {
+ public:
+  DayTransport(const Block& block, std::uint64_t frames) : Transport("day"), block_(block), frames_(frames) {}
+  void connect(std::string&) override {}
+  Delivery receive(std::int64_t) noexcept override {
+    if (given_ >= frames_) {
+      end(0);
+      return {};
+    }
+    const bool overload = given_ % (kCalm + kOverload) >= kCalm;
+    if (!overload && given_ - filter_->counters().device_samples.value() > 3 * kSlots / 4) {
+      // An empty delivery, so that the reader looks for room for what it has merged.
+      std::this_thread::sleep_for(200us);
+      return {};
+    }
+    const std::uint64_t at = given_ % kBlock;
+    const std::uint64_t n = std::min({std::uint64_t{kPortion}, kBlock - at, frames_ - given_});
+    Delivery out;
+    out.bytes = std::span(block_.bytes).subspan(at * kFrame, n * kFrame);
+    // No arrival times: the counter alone says that nothing is missing, however fast this runs.
+    given_ += n;
+    return out;
+  }
+  void follow(FilterStage& filter) { filter_ = &filter; }
+
+ private:
+  const Block& block_;
+  std::uint64_t frames_, given_ = 0;
+  FilterStage* filter_ = nullptr;
+};
+
+// Takes the messages apart as a subscriber would.
+class SummingPublisher final : public Publisher {
+ public:
+  bool publish(const char*, std::span<const std::uint8_t> message) noexcept override {
+    if (last.decode(message.data(), 0, static_cast<int>(message.size())) < 0) return false;
+    ++messages;
+    samples += last.merged;
+    gaps += (last.flags & rate_t::FLAG_GAP) != 0 ? 1 : 0;
+    resets += (last.flags & rate_t::FLAG_FILTER_RESET) != 0 ? 1 : 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sum[axis].add(last.delta_theta[axis]);
+      residual_rad[axis] += (last.denoised[axis] - last.compensated[axis]) * last.covered[axis];
+    }
+    return true;
+  }
+  rate_t last{};
+  std::int64_t messages = 0, samples = 0, gaps = 0, resets = 0;
+  std::array<ExactSum, 3> sum;
+  std::array<double, 3> residual_rad{};
+};
+
+struct Sensor {
+  Sensor(const Block& block, std::uint64_t frames) {
+    DriverInstance driver = make_driver("kvh1750", {});
+    PipelinePlan plan;
+    plan.name = plan.lcm_channel = "IFOG_DAY";
+    plan.facts = sensor_facts(driver.description(), kRate_hz, 0);
+    plan.ring_slots = kSlots;
+    plan.reader.name = "read";
+    plan.filter.name = "filter";
+    chain.facts = plan.facts;
+    chain.axes = {"x", "y", "z"};
+    for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
+      chain.channels.emplace_back(driver.description().environment[i]);
+      chain.channel_max_age_s.push_back(0.0);
+    }
+    chain.filter.process_noise = 1e-8;
+    chain.filter.measurement_noise = 1e-8;
+    auto day = std::make_unique<DayTransport>(block, frames);
+    auto summing = std::make_unique<SummingPublisher>();
+    DayTransport* const transport = day.get();
+    publisher = summing.get();
+    pipeline = std::make_unique<Pipeline>(plan, std::move(day), std::move(driver), nullptr,
+                                          std::make_unique<ChainParts>(chain), std::move(summing));
+    transport->follow(pipeline->filter());
+    pipeline->open();
+  }
+  ChainSettings chain;
+  SummingPublisher* publisher;
+  std::unique_ptr<Pipeline> pipeline;
+};
+
+// A new filter for every sensor, as SIGHUP makes it.
+void reload(std::vector<std::unique_ptr<Sensor>>& sensors, int number) {
+  for (auto& sensor : sensors) {
+    sensor->chain.filter.measurement_noise = number % 2 == 0 ? 1e-8 : 2e-8;
+    sensor->pipeline->filter().collect_retired();
+    sensor->pipeline->filter().offer(std::make_unique<ChainParts>(sensor->chain));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  double hours = 24.0;
+  int count = 3;
+  CLI::App app{
+      "published angle against sent angle over accelerated hours of 5 kHz, with reloads and overload"};
+  app.add_option("--hours", hours, "of each sensor")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--sensors", count)->check(CLI::Range(1, 16))->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  const Block block = make_block();
+  const auto frames = static_cast<std::uint64_t>(hours * 3600.0 * kRate_hz);
+  std::vector<std::unique_ptr<Sensor>> sensors;
+  for (int i = 0; i < count; ++i) sensors.push_back(std::make_unique<Sensor>(block, frames));
+  const auto begin = std::chrono::steady_clock::now();
+  for (auto& sensor : sensors) sensor->pipeline->start();
+  int reloads = 0;
+  const auto ended = [&] {
+    return std::all_of(sensors.begin(), sensors.end(), [](const auto& s) { return s->pipeline->ended(); });
+  };
+  while (!ended()) {
+    reload(sensors, ++reloads);
+    std::this_thread::sleep_for(200ms);
+  }
+  for (auto& sensor : sensors) sensor->pipeline->stop();
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  std::printf("%d sensors, %g h at %g Hz in %.0f s (%.0f times as fast), %d reloads\n", count, hours,
+              kRate_hz, took_s, hours * 3600.0 / took_s, reloads);
+  std::printf("%-7s %12s %12s %10s %10s %8s %5s %14s %14s %18s\n", "sensor", "sent", "published", "merged",
+              "overflows", "resets", "gaps", "angle off, rad", "sum off, rad", "denoised off, deg");
+  bool good = true;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const SummingPublisher& got = *sensors[i]->publisher;
+    double angle = 0.0, sum = 0.0, residual = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t sent_units = static_cast<std::int64_t>(frames / kBlock) * block.sums[axis].back() +
+                                      block.sums[axis][frames % kBlock];
+      const double sent = static_cast<double>(sent_units) * kUnit_radps / kRate_hz;
+      angle = std::max(angle, std::abs(got.last.angle[axis] - sent));
+      sum = std::max(sum, std::abs(got.sum[axis].value() - sent));
+      residual = std::max(residual, std::abs(got.residual_rad[axis]) * 180.0 / std::numbers::pi);
+    }
+    const IncrementQueue& queue = sensors[i]->pipeline->queue();
+    std::printf("%-7zu %12llu %12lld %10llu %10llu %8lld %5lld %14.1e %14.1e %18.1e\n", i,
+                static_cast<unsigned long long>(frames), static_cast<long long>(got.messages),
+                static_cast<unsigned long long>(queue.merged()),
+                static_cast<unsigned long long>(queue.overflows()), static_cast<long long>(got.resets),
+                static_cast<long long>(got.gaps), angle, sum, residual);
+    good = good && got.samples == static_cast<std::int64_t>(frames) && got.gaps == 0 &&
+           angle <= kAllowed_rad && sum <= kAllowed_rad;
+  }
+  std::printf("target: every sample published, angle within %g rad: %s\n", kAllowed_rad,
+              good ? "met" : "MISSED");
+  return good ? 0 : 1;
+}
