@@ -21,17 +21,20 @@ struct Named {
   Field Message::*field;
 };
 
-constexpr std::array kOfRate{Named{"raw", &rate_t::raw}, Named{"compensated", &rate_t::compensated},
-                             Named{"denoised", &rate_t::denoised}};
-constexpr std::array kOfStatusByAxis{Named{"nis_mean", &status_t::nis_mean},
-                                     Named{"whiteness", &status_t::whiteness},
-                                     Named{"measurement_noise", &status_t::measurement_noise}};
-constexpr std::array kOfStatus{Named{"input_rate_hz", &status_t::input_rate_hz},
-                               Named{"output_rate_hz", &status_t::output_rate_hz},
-                               Named{"clock_offset_ppm", &status_t::clock_offset_ppm},
-                               Named{"latency_p50_us", &status_t::latency_p50_us},
-                               Named{"latency_p99_us", &status_t::latency_p99_us},
-                               Named{"latency_max_us", &status_t::latency_max_us}};
+using OfRate = Named<rate_t, std::vector<double>>;
+constexpr std::array kOfRate{OfRate{"raw", &rate_t::raw}, OfRate{"compensated", &rate_t::compensated},
+                             OfRate{"denoised", &rate_t::denoised}};
+using OfStatusByAxis = Named<status_t, std::vector<double>>;
+constexpr std::array kOfStatusByAxis{OfStatusByAxis{"nis_mean", &status_t::nis_mean},
+                                     OfStatusByAxis{"whiteness", &status_t::whiteness},
+                                     OfStatusByAxis{"measurement_noise", &status_t::measurement_noise}};
+using OfStatus = Named<status_t, double>;
+constexpr std::array kOfStatus{OfStatus{"input_rate_hz", &status_t::input_rate_hz},
+                               OfStatus{"output_rate_hz", &status_t::output_rate_hz},
+                               OfStatus{"clock_offset_ppm", &status_t::clock_offset_ppm},
+                               OfStatus{"latency_p50_us", &status_t::latency_p50_us},
+                               OfStatus{"latency_p99_us", &status_t::latency_p99_us},
+                               OfStatus{"latency_max_us", &status_t::latency_max_us}};
 constexpr std::string_view kChannelValue = "channel_value";
 
 // The table's row of that name, or null.

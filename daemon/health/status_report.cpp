@@ -93,7 +93,7 @@ const char* state_name(std::int32_t state) {
 }
 
 StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels,
-                           std::vector<std::string> axes)
+                           const std::vector<std::string>& axes)
     : before_(), now_() {
   now_.sensor = std::move(sensor);
   now_.version = IFOG_VERSION;

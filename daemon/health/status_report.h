@@ -12,7 +12,7 @@ namespace ifog {
 
 class StatusReport {
  public:
-  StatusReport(std::string sensor, std::vector<std::string> channels, std::vector<std::string> axes);
+  StatusReport(std::string sensor, std::vector<std::string> channels, const std::vector<std::string>& axes);
 
   // From the counters now and the last snapshot of the filter; interval_s since the call before.
   const ifog::status_t& update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);

@@ -58,9 +58,9 @@ void for_each_rate(const std::string& path, const std::string& channel,
     const std::int64_t now_ns = message.sensor_time_ns >= 0 ? message.sensor_time_ns : message.utime * 1000;
     if (last_s < 0.0) {
       start_ns = now_ns;
-      axes = static_cast<std::size_t>(message.axes);
+      axes = message.raw.size();
     }
-    if (static_cast<std::size_t>(message.axes) != axes) refuse("has another number of axes");
+    if (message.raw.size() != axes) refuse("has another number of axes");
     const double time_s = static_cast<double>(now_ns - start_ns) / 1e9;
     if (time_s <= last_s) refuse("is not later than the one before");
     last_s = time_s;
@@ -80,7 +80,7 @@ Capture read_lcm_log(const std::string& path, const std::string& channel) {
   Capture capture;
   for_each_rate(path, channel, [&capture](const rate_t& message, double time_s) {
     if (capture.time_s.empty()) {
-      capture.axes = axis_names(static_cast<std::size_t>(message.axes));
+      capture.axes = axis_names(message.raw.size());
       capture.rate_radps.resize(capture.axes.size());
       capture.reference_rate_radps.resize(capture.axes.size());
     }
@@ -97,7 +97,7 @@ Table read_published(const std::string& path, const std::string& channel) {
     // The sum of the steps: the sensor's own time also when a recording was played faster.
     if (!table.time_s.empty()) time_s += message.dt;
     if (table.time_s.empty()) {
-      for (const std::string& axis : axis_names(static_cast<std::size_t>(message.axes)))
+      for (const std::string& axis : axis_names(message.raw.size()))
         for (const std::string what : {"raw", "compensated", "denoised", "variance"})
           table.columns.push_back(
               {what + (axis.empty() ? "" : "_" + axis) + (what == "variance" ? "_rad2ps2" : "_radps"), {}});
