@@ -100,6 +100,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) {
   if (filter_.process_noise <= 0.0) filter_.process_noise = noise.process_noise;
   if (filter_.measurement_noise <= 0.0) filter_.measurement_noise = noise.measurement_noise;
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+  estimator_->owe(owed_);
 }
 
 void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
@@ -132,6 +133,8 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
 
 std::unique_ptr<ChainParts> SignalChain::swap(std::unique_ptr<ChainParts> parts) noexcept {
   if (parts->compensator_ && parts_->compensator_) parts->compensator_->take_over(*parts_->compensator_);
+  parts->owed_ = parts_->estimator_ ? parts_->estimator_->owed() : parts_->owed_;
+  if (parts->estimator_) parts->estimator_->owe(parts->owed_);
   std::swap(parts_, parts);
   return parts;
 }

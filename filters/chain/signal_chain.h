@@ -93,6 +93,7 @@ class ChainParts {
   std::size_t start_up_size_ = 0;  // samples of an axis wanted
   std::size_t collected_ = 0;
   std::unique_ptr<Estimator> estimator_;
+  std::array<double, kMaxAxes> owed_{};  // by the estimator before, until this one is there
   bool first_ = true;
 };
 

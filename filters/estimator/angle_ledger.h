@@ -88,6 +88,8 @@ class AngleLedger {
   void admit(std::size_t axis, double angle_rad) noexcept { owed_[axis] += angle_rad; }
 
   [[nodiscard]] double owed(std::size_t axis) const noexcept { return owed_[axis]; }
+  // Takes over another ledger's debt; end_manoeuvre() at the first rate says where the lag is counted from.
+  void owe(std::size_t axis, double angle_rad) noexcept { owed_[axis] = angle_rad; }
 
  private:
   static constexpr double kSlowLags = 20.0;

@@ -74,6 +74,22 @@ void Engine::restart() noexcept {
   until_lag_ = 0;
 }
 
+std::array<double, kMaxAxes> Engine::owed() const noexcept {
+  Axes angle{};
+  if (!conserve_angle_) return angle;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(booked_, a)) angle[a] = ledger_.owed(a);
+  return angle;
+}
+
+void Engine::owe(const std::array<double, kMaxAxes>& angle_rad) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!std::isfinite(angle_rad[a]) || angle_rad[a] == 0.0) continue;
+    ledger_.owe(a, angle_rad[a]);
+    booked_ |= 1U << a;
+  }
+}
+
 // Which axes have a measurement that can be used.
 std::uint32_t Engine::screen(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   std::uint32_t valid = 0;

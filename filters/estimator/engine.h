@@ -20,6 +20,8 @@ class Engine {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
+  [[nodiscard]] std::array<double, kMaxAxes> owed() const noexcept;
+  void owe(const std::array<double, kMaxAxes>& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
 
  private:

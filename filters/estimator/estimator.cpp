@@ -55,6 +55,8 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
 void Estimator::restart() noexcept { impl_->engine.restart(); }
+std::array<double, kMaxAxes> Estimator::owed() const noexcept { return impl_->engine.owed(); }
+void Estimator::owe(const std::array<double, kMaxAxes>& angle_rad) noexcept { impl_->engine.owe(angle_rad); }
 const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine.health(); }
 
 }  // namespace ifog

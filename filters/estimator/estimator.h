@@ -62,6 +62,11 @@ class Estimator {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;  // forget the state, keep the counters
+  // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
+  // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
+  // step, so that a reload in a turn loses none.
+  [[nodiscard]] std::array<double, kMaxAxes> owed() const noexcept;
+  void owe(const std::array<double, kMaxAxes>& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept;
 
  private:

@@ -81,6 +81,7 @@ void FadingTrackers::begin(std::span<const Axes> last) noexcept {
 
 void FadingTrackers::predict(double steps) noexcept {
   if (steps > kMostSteps) age_ = 0;
+  steps_ = steps;
   for (std::size_t j = 0; j < kTrackers; ++j) {
     for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
       if (age_ == 0) slope_[j][axis] = curvature_[j][axis] = 0.0;
@@ -111,8 +112,8 @@ void FadingTrackers::correct(const Axes& rate, std::uint32_t valid_axes) noexcep
       const double innovation = (valid_axes >> axis & 1U) != 0 ? rate[axis] - rate_[j][axis] : 0.0;
       innovation_[j][axis] = innovation;
       rate_[j][axis] += g.rate * innovation;
-      slope_[j][axis] += g.slope * innovation;
-      curvature_[j][axis] += g.curvature * innovation;
+      slope_[j][axis] += g.slope / steps_ * innovation;
+      curvature_[j][axis] += g.curvature / (steps_ * steps_) * innovation;
     }
   }
   ++age_;

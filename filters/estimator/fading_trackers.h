@@ -67,6 +67,10 @@ class FadingTrackers {
   std::array<Axes, kTrackers> rate_{}, slope_{}, curvature_{}, innovation_{};
   std::array<double, kTrackers + 1> log_weight_{}, weight_{};
   int age_ = 0;  // measurements taken in since begin()
+  // Of the last prediction, nominal samples. The gains are those of one step, whatever its length: in units
+  // of nominal samples those of slope and curvature fall with it. Left as they are, steps of two and more
+  // would put the poles outside the unit circle.
+  double steps_ = 1.0;
 };
 
 }  // namespace ifog

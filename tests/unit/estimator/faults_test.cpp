@@ -51,6 +51,39 @@ TEST(Faults, AGapWidensTheVarianceByTheWalkOverTheWholeOfIt) {
   EXPECT_NEAR(out.gain[0], prior / (prior + 0.5), 1e-12);
 }
 
+// A filter that cannot keep up gets several samples merged in one, step after step, and all through a turn.
+TEST(Faults, MergedSamplesInATurnAreFollowed) {
+  for (const int merged : {2, 3, 5, 9}) {
+    const Record r =
+        record(8, 40'000, 1e-3, [](int i) { return i < 8000 ? 0.0 : 300.0 * std::sin((i - 8000) * 1e-3); });
+    ifog::Estimator estimator(told(1e-3), 1, kPeriod);
+    ifog::EstimatorInput in;
+    ifog::EstimatorOutput out;
+    in.valid_axes = 1;
+    double worst = 0.0;
+    bool manoeuvre = false;
+    for (int i = 0; i < 40'000;) {
+      // By the plain mean of the samples, as the queue merges increments.
+      const int n = i < 9000 ? 1 : std::min(merged, 40'000 - i);
+      double measured = 0.0, truth = 0.0;
+      for (int k = 0; k < n; ++k, ++i) {
+        measured += r.measured[static_cast<std::size_t>(i)] / n;
+        truth += r.truth[static_cast<std::size_t>(i)] / n;
+      }
+      in.sequence += static_cast<std::uint64_t>(n);
+      in.dt_s = n * kPeriod;
+      in.rate_radps[0] = measured;
+      estimator.step(in, out);
+      ASSERT_TRUE(std::isfinite(out.denoised_radps[0])) << merged << " merged, sample " << i;
+      manoeuvre = manoeuvre || (out.flags & ifog::kManoeuvre) != 0;
+      if (i > 10'000) worst = std::max(worst, std::abs(out.denoised_radps[0] - truth));
+    }
+    EXPECT_TRUE(manoeuvre);
+    // In sigmas of one sample, of which the turn's is 300.
+    EXPECT_LT(worst, 6.0) << merged << " merged";
+  }
+}
+
 TEST(Faults, StuckAndSaturatedSensorsAreFlagged) {
   Record r = record(6, 6000, 1e-3);
   for (std::size_t i = 3000; i < 4000; ++i) r.measured[i] = r.measured[2999];
