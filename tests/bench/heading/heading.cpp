@@ -120,7 +120,7 @@ class SummingPublisher final : public Publisher {
     return true;
   }
   rate_t last{};
-  std::int64_t messages = 0, samples = 0, gaps = 0, resets = 0;
+  std::int64_t messages = 0, samples = 0, gaps = 0, resets = 0, not_finite = 0;
   std::array<ExactSum, 3> sum;
   std::array<double, 3> residual_rad{};
 };
@@ -214,10 +214,10 @@ int main(int argc, char** argv) {
                 static_cast<unsigned long long>(queue.merged()),
                 static_cast<unsigned long long>(queue.overflows()), static_cast<long long>(got.resets),
                 static_cast<long long>(got.gaps), angle, sum, residual);
-    good = good && got.samples == static_cast<std::int64_t>(frames) && got.gaps == 0 &&
+    good = good && got.samples == static_cast<std::int64_t>(frames) && got.gaps == 0 && got.not_finite == 0 &&
            angle <= kAllowed_rad && sum <= kAllowed_rad;
   }
-  std::printf("target: every sample published, angle within %g rad: %s\n", kAllowed_rad,
+  std::printf("target: every sample published, denoised a number, angle within %g rad: %s\n", kAllowed_rad,
               good ? "met" : "MISSED");
   return good ? 0 : 1;
 }
