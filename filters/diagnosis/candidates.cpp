@@ -192,6 +192,10 @@ double complexity(const Candidate& candidate) {
     case Form::kSecondRate:
       return 20.0;  // with its bandwidth free it stands in for most things that change; rarely is it the
                     // thing
+    case Form::kQuintic:
+      return 5.0;
+    case Form::kSeptic:
+      return 6.0;
     case Form::kWarmUp:
       return 8.0;
     case Form::kProduct:  // a scale factor that depends on a channel, or its nonlinearity that does

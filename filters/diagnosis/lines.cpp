@@ -147,7 +147,9 @@ SpectralLine refine(std::span<const double> error, double mean, double start_s, 
   SpectralLine line;
   line.frequency_hz = (f0 + offset / n) / period_s;
   line.ratio = std::norm(total) / (floor * n / static_cast<double>(length));
-  line.p_value = std::min(1.0, tries * std::exp(-line.ratio));
+  // Between the bins there are more tries than bins: Rice's count of the maxima of a spectrum.
+  const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
+  line.p_value = std::min(1.0, between * tries * std::exp(-line.ratio));
   double separate = 0.0;
   Complex together(0.0, 0.0);
   for (std::size_t q = 0; q < 4; ++q) {
@@ -197,7 +199,7 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
     taken.push_back(k);
     SpectralLine line = refine(error, mean, start_s, period_s, static_cast<double>(k), length,
                                std::max(floor[k], noise_beside(power, k)), tries);
-    if (line.ratio < least) continue;
+    if (line.p_value > significance) continue;
     std::size_t first = k;
     std::size_t last = k;
     while (first > 1 && k - first < close && power[first - 1] > 0.1 * power[k]) --first;

@@ -109,16 +109,27 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseSha
 
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
   if (grid.dwells) return fit_noise(grid, columns, {});
-  NoiseFit best;
-  best.log_likelihood = -1e300;
+  // Walk and flicker stand in for each other along a ridge with more than one top: one climb from the best of
+  // each kind of start.
+  struct Start {
+    NoiseShape shape;
+    double value = -1e300;
+  };
+  std::array<Start, 3> starts;  // mostly walk, mostly flicker, both
   for (const double walk : {0.0, 1e-6, 1e-4, 1e-2, 1.0}) {
     for (const double flicker : {0.0, 1e-3, 1e-1, 1e1}) {
       const NoiseShape shape{walk, flicker, 0.0, 0.0};
       const double value = evaluate(grid, columns, shape);
-      if (value > best.log_likelihood) best = {shape, value, 0.0};
+      Start& start = starts[flicker == 0.0 ? 0 : walk == 0.0 ? 1 : 2];
+      if (value > start.value) start = {shape, value};
     }
   }
-  best = fit_noise(grid, columns, best.shape);
+  NoiseFit best;
+  best.log_likelihood = -1e300;
+  for (const Start& start : starts) {
+    const NoiseFit fit = fit_noise(grid, columns, start.shape);
+    if (fit.log_likelihood > best.log_likelihood) best = fit;
+  }
 
   NoiseFit richer = best;
   for (const double blocks : {1.0, 8.0, 64.0}) {

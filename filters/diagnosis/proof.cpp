@@ -1,5 +1,6 @@
 #include "filters/diagnosis/proof.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -10,6 +11,7 @@ namespace ifog {
 namespace {
 
 constexpr double kWorse = 1.25;    // chance makes slow noise and an effect run together or against each other
+constexpr double kGradual = 4.0;   // twice the log-likelihood
 constexpr double kDisagree = 3.0;  // standard deviations
 
 // Sum of squares of the block means less the effects, about each record's mean.
@@ -35,6 +37,26 @@ double left_over(const BlockData& data, const Claimed& claimed) {
     sum += square;
   }
   return sum;
+}
+
+// Whether a change spread over some time around the step explains more than the step itself.
+bool gradual(const BlockData& data, const Claimed& claimed) {
+  const BlockGrid& grid = data.grid;
+  const Candidate& step = claimed.model.back();
+  Columns columns = design(data, claimed.model);
+  const double sudden = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
+  const std::size_t from = grid.starts[step.record];
+  const std::size_t to = grid.starts[step.record + 1];
+  for (const double share : {0.005, 0.02, 0.06}) {
+    const double width_s = std::max(4.0, share * static_cast<double>(to - from)) * grid.block_s;
+    for (std::size_t b = from; b < to; ++b) {
+      columns(static_cast<Eigen::Index>(b), columns.cols() - 1) =
+          std::clamp(0.5 + (grid.time_s[b] - step.time_s) / width_s, 0.0, 1.0);
+    }
+    const double spread = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
+    if (2.0 * (spread - sudden) > kGradual) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -71,6 +93,7 @@ bool predicts(const BlockData& data, const Claimed& claimed) {
 }
 
 bool stays(const BlockData& data, const Claimed& claimed) {
+  if (gradual(data, claimed)) return false;
   const BlockGrid& grid = data.grid;
   const Candidate& step = claimed.model.back();
   const Columns columns = design(data, claimed.model);

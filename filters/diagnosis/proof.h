@@ -17,7 +17,7 @@ struct Claimed {
 bool predicts(const BlockData& data, const Claimed& claimed);
 
 // A knock makes innovations like a step's. A step is still there later: the means before and after differ by
-// it.
+// it. And it is sudden: a change spread over a part of the record must not explain more.
 bool stays(const BlockData& data, const Claimed& claimed);
 
 // A correction must not make the error larger than slow noise makes it by chance: where it does grow against
