@@ -73,6 +73,21 @@ NoiseTruth fitted_noise(const Series& rate) {
   return best;
 }
 
+struct Count {
+  int trials = 0, found = 0, named = 0, wrong = 0;
+  void add(const Count& other) {
+    trials += other.trials;
+    found += other.found;
+    named += other.named;
+    wrong += other.wrong;
+  }
+};
+
+void print(const std::string& name, const Count& count) {
+  std::printf("| %s | %d | %d | %d | %d |\n", name.c_str(), count.trials, count.found, count.named,
+              count.wrong);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,7 +117,7 @@ int main(int argc, char** argv) {
   Series wander = resampled(bridge, bridge.rate_radps[0]);
   columns.emplace_back("other_gyro", low_passed(wander, 60.0, kStep_s));
 
-  int alarms = 0, with_alarm = 0, right = 0, exact = 0, wrong = 0;
+  std::map<std::string, Count> controls, by_form, by_size, by_source;
   for (int trial = 0; trial < 2 * trials; ++trial) {
     const bool implant = trial >= trials;
     Draw draw(static_cast<std::uint64_t>(trial), 77);
@@ -122,6 +137,7 @@ int main(int argc, char** argv) {
     const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
     const char* forms[] = {"linear", "rate", "lagged"};
     const std::string form = forms[draw.below(3)];
+    double sigma = 0.0;
     if (implant) {
       const Series& x = c.channels[target].values;
       Series effect(x);
@@ -133,7 +149,8 @@ int main(int argc, char** argv) {
       }
       const NoiseTruth noise = fitted_noise(c.rate_radps[0]);
       const Visibility oracle(std::make_shared<const NoiseModel>(noise, samples, kStep_s), 1);
-      const double size = draw.log_uniform(12.0, 80.0) / oracle.of({effect}, {});
+      sigma = draw.log_uniform(12.0, 80.0);
+      const double size = sigma / oracle.of({effect}, {});
       for (std::size_t k = 0; k < samples; ++k) c.rate_radps[0][k] += size * effect[k];
     }
     const Finding finding = project_diagnosis()({c});
@@ -149,23 +166,39 @@ int main(int argc, char** argv) {
       named = named || (here && claim.effect.form == form);
       others += here ? 0 : 1;
     }
+    const auto add = [&](Count& count) {
+      ++count.trials;
+      count.found += hit ? 1 : 0;
+      count.named += named ? 1 : 0;
+      count.wrong += others > 0 ? 1 : 0;
+    };
+    const char* size = sigma < 20.0 ? "12 to 20 sigma" : sigma < 40.0 ? "20 to 40 sigma" : "40 to 80 sigma";
     if (implant) {
-      right += hit ? 1 : 0;
-      exact += named ? 1 : 0;
-      wrong += others > 0 ? 1 : 0;
+      add(by_form[form]);
+      add(by_size[size]);
+      add(by_source[source.name]);
     } else {
-      alarms += others;
-      with_alarm += others > 0 ? 1 : 0;
+      add(controls[source.name]);
     }
     if (others > 0 || (implant && !hit))
-      std::printf("trial %d %s %s: found%s\n", trial, source.name.c_str(),
-                  implant ? (form + " " + c.channels[target].name).c_str() : "nothing implanted",
-                  names.empty() ? " nothing" : names.c_str());
-    std::fflush(stdout);
+      std::fprintf(stderr, "trial %d %s %s %.0f sigma: found%s\n", trial, source.name.c_str(),
+                   implant ? (form + " " + c.channels[target].name).c_str() : "nothing implanted", sigma,
+                   names.empty() ? " nothing" : names.c_str());
   }
-  std::printf("negative controls: %d of %d explained by a borrowed channel (%d effects; target <= 1 %%)\n",
-              with_alarm, trials, alarms);
-  std::printf("implanted: channel found %d of %d, form too %d; with another channel besides %d\n", right,
-              trials, exact, wrong);
+  std::printf("| real noise, foreign channels | trials | explained by a channel |\n|---|---|---|\n");
+  Count all;
+  for (const auto& [name, count] : controls) {
+    std::printf("| %s | %d | %d |\n", name.c_str(), count.trials, count.wrong);
+    all.add(count);
+  }
+  std::printf("| all | %d | %d |\n\n", all.trials, all.wrong);
+  std::printf(
+      "| implanted | trials | channel found | form too | another channel besides |\n|---|---|---|---|---|\n");
+  Count implanted;
+  for (const auto* part : {&by_form, &by_size, &by_source}) {
+    for (const auto& [name, count] : *part) print(name, count);
+  }
+  for (const auto& [name, count] : by_form) implanted.add(count);
+  print("all", implanted);
   return 0;
 }
