@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "filters/allan/deviation.h"
@@ -12,10 +13,11 @@ namespace ifog {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kStepPlaces = 9;     // odd, so that the median is one of them
-constexpr std::size_t kStepRunUp = 2000;   // samples for the rule to settle before the step
-constexpr std::size_t kStepWindow = 4000;  // samples looked at after it
-constexpr int kLongestLag = 2000;          // samples
+constexpr std::size_t kStepPlaces = 9;       // odd, so that the median is one of them
+constexpr std::size_t kStepRunUp = 2000;     // samples for the rule to settle before the step
+constexpr std::size_t kStepWindow = 4000;    // samples looked at after it
+constexpr double kMedianSquare = 0.4549364;  // of a standard normal
+constexpr int kLongestLag = 2000;            // samples
 
 struct Series {
   std::vector<std::vector<double>> denoised, innovation, nis;
@@ -154,11 +156,14 @@ Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& opt
       const Whiteness white = whiteness(series.innovation[a]);
       row.whiteness_lag1 = white.lag1;
       row.whiteness_excess = white.excess;
-      double nis = 0.0;
-      std::size_t count = 0;
-      for (const double v : series.nis[a])
-        if (std::isfinite(v)) nis += (v - nis) / static_cast<double>(++count);
-      row.nis_mean = nis;
+      std::vector<double>& nis = series.nis[a];
+      std::erase_if(nis, [](double v) { return !std::isfinite(v); });
+      if (!nis.empty()) {
+        row.nis_mean = std::accumulate(nis.begin(), nis.end(), 0.0) / static_cast<double>(nis.size());
+        const auto middle = nis.begin() + static_cast<std::ptrdiff_t>(nis.size() / 2);
+        std::nth_element(nis.begin(), middle, nis.end());
+        row.nis_typical = *middle / kMedianSquare;
+      }
       row.step = {step_response(in, dt, settings, a, 20.0), step_response(in, dt, settings, a, 5.0)};
       result.rows.push_back(std::move(row));
     }

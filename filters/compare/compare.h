@@ -45,7 +45,9 @@ struct ComparisonRow {
   double whiteness_lag1 = 0.0;   // lag-1 autocorrelation of the innovations, 0 when white
   double whiteness_excess =
       0.0;  // Σ n ρ_k² / 20 over lags 1 … 20: 1 when white, larger when not (Box and Pierce)
-  double nis_mean = 0.0;  // innovation² over its own variance, 1 when the rule knows its noise
+  // Innovation² over its own variance, 1 when the rule knows its noise: the mean, which a few blows can carry
+  // away, and the median over the median of a normal law's.
+  double nis_mean = 0.0, nis_typical = 0.0;
   std::array<StepResponse, 2> step{};
 };
 

@@ -12,8 +12,10 @@ constexpr int kQuiet = 64;
 // In coloured noise a tracker may for ever predict better than the filter at rest. A manoeuvre is also over
 // when for this many samples the filter at rest has explained the measurements as well as it does at rest.
 constexpr int kCalmSamples = 256;
-// P raised by a manoeuvre counts as settled when it is back to this multiple of what it was at rest.
-constexpr double kSettledExcess = 1.5;
+// P raised by a manoeuvre counts as settled when a measurement lowers it by less than this: it has then come
+// to its end, or is a hundredth of R. What it was before the manoeuvre is no measure: the rule may have taken
+// the beginning of the manoeuvre for noise, and must learn again to know better.
+constexpr double kSettled = 0.99;
 // Averages of the filter at rest, in samples.
 constexpr double kRestMemory = 64.0;
 constexpr double kHealthMemory = 512.0;
@@ -153,15 +155,17 @@ void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
 }
 
 void Engine::follow_rest(const Measurement& m) noexcept {
-  if (settling_ && rest_->variance() < kSettledExcess * rest_variance_) settling_ = false;
   update_rest(m, !settling_);
-  if (settling_) return;
+  if (settling_) {
+    settling_ = m.valid == 0 || rest_->variance() < kSettled * settling_variance_;
+    settling_variance_ = rest_->variance();
+    return;
+  }
   const double share = monitor_.armed() ? 1.0 / kRestMemory : 1.0;
-  rest_variance_ += share * (rest_->variance() - rest_variance_);
   rest_gain_ += share * (rest_->gain() - rest_gain_);
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
-    monitor_.learn_start(a, m.in.rate_radps[a]);
+    monitor_.learn_still(a, m.in.rate_radps[a]);
     // Learned while the sensor moved, the rule's window holds motion, not noise.
     if (steps_ > 0 && monitor_.learn(a, m.innovation[a], m.noise_scale)) rest_->rule().restart();
   }
@@ -221,6 +225,7 @@ void Engine::jump(int since) noexcept {
   rest_->raise_to(rest_->rule().measurement_noise() / count);
   rest_->skip();
   settling_ = true;
+  settling_variance_ = rest_->variance();
   monitor_.rearm();
 }
 
@@ -248,7 +253,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const InnovationMonitor::Ver
       return;
     }
     admit_held();
-    trackers_.begin(recent(2));
+    trackers_.begin_again(recent(2));
     jump(1);
     quiet_ = calm_ = 0;
     return;
@@ -265,7 +270,6 @@ void Engine::follow_manoeuvre(const Measurement& m, const InnovationMonitor::Ver
   }
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
-    grade(a, trackers_.best_innovation(a), trackers_.best_factor() * noises[a]);
     monitor_.learn(a, trackers_.best_innovation(a), trackers_.best_factor() * (1.0 - rest_gain_));
   }
   if (quiet_ >= kQuiet || calm_ >= kCalmSamples) end_manoeuvre();
@@ -346,10 +350,10 @@ void Engine::grade(std::size_t axis, double innovation, double variance) noexcep
   grade.square += (normalised * normalised - grade.square) / grade.count;
   grade.product += (normalised * grade.last - grade.product) / grade.count;
   grade.last = normalised;
-  // From zero, so that it takes most of the memory to be lost: not the start-up of an adaptive rule.
-  grade.beyond += ((normalised * normalised > kBeyond * kBeyond ? 1.0 : 0.0) - grade.beyond) / kHealthMemory;
   health_.nis_mean[axis] = grade.square;
   health_.whiteness[axis] = grade.square > 0.0 ? grade.product / grade.square : 0.0;
+  // From zero, so that it takes most of the memory to be lost: not the start-up of an adaptive rule.
+  grade.beyond += ((normalised * normalised > kBeyond * kBeyond ? 1.0 : 0.0) - grade.beyond) / kHealthMemory;
 }
 
 void Engine::refresh_lag() noexcept {

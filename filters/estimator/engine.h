@@ -78,7 +78,8 @@ class Engine {
   bool first_ = true, in_manoeuvre_ = false, held_ = false, settling_ = false, lost_ = false;
   int quiet_ = 0, calm_ = 0, until_lag_ = 0;
   std::int64_t steps_ = 0;
-  double rest_variance_ = 0.0, rest_gain_ = 0.0;  // of the rate at rest, averaged
+  double rest_gain_ = 0.0;          // at rest, averaged
+  double settling_variance_ = 0.0;  // of the rate after the last measurement while P settles
   double lag_s_ = 0.0;
   Axes held_angle_{}, last_output_{};
   std::array<Axes, kHistory> history_{}, recent_{};

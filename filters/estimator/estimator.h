@@ -40,7 +40,8 @@ struct EstimatorOutput {
   std::uint32_t flags = 0;
 };
 
-// Figures for the status message; counters only grow.
+// Figures for the status message; counters only grow. NIS and whiteness are of the filter at rest, and stand
+// still in a manoeuvre.
 struct EstimatorHealth {
   std::array<double, kMaxAxes>
       nis_mean{};  // exponentially averaged, 1 when the filter believes itself rightly

@@ -10,11 +10,14 @@ namespace {
 
 // Of the log-likelihood of a past sample, what still counts at the next: twenty samples of memory.
 constexpr double kForget = 0.95;
-// A normalised square beyond this says no more: one bad sample must not rule a tracker out for long.
+// A normalised square this much above that of the best predictor says no more: one bad sample must not rule a
+// tracker out for long. Above the best one's: in a blow that surprises all of them, the least surprised
+// counts.
 constexpr double kMostSquare = 25.0;
 // Least log-weight below the likeliest: how quickly a tracker that was wrong for long can come back.
 constexpr double kLeastLogWeight = -8.0;
-// Innovations all beyond this many of their own sigmas are held back for one sample.
+// Innovations all beyond this many of their own sigmas, or of what they have lately been, are held back for
+// one sample.
 constexpr double kImprobable = 5.5;
 // After more missed samples than this a polynomial's prediction is worth nothing.
 constexpr double kMostSteps = 16.0;
@@ -71,6 +74,7 @@ std::size_t FadingTrackers::best() const noexcept {
 void FadingTrackers::begin(std::span<const Axes> last) noexcept {
   age_ = 0;
   rate_ = slope_ = curvature_ = innovation_ = {};
+  surprise_ = {};
   log_weight_ = {};
   weight_.fill(1.0 / static_cast<double>(kTrackers + 1));
   for (const Axes& rate : last) {
@@ -91,18 +95,28 @@ void FadingTrackers::predict(double steps) noexcept {
   }
 }
 
-bool FadingTrackers::improbable(const Axes& rate, const Axes& noise,
-                                std::uint32_t valid_axes) const noexcept {
+bool FadingTrackers::improbable(const Axes& rate, const Axes& noise, std::uint32_t valid_axes) noexcept {
+  bool any = false;
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
-    if ((valid_axes >> axis & 1U) == 0) continue;
-    bool far = true;
+    last_surprise_[axis] = 0.0;
+    if ((valid_axes >> axis & 1U) == 0 || !(noise[axis] > 0.0)) continue;
+    double least = 1e300;
     for (std::size_t j = 0; j < kTrackers; ++j) {
       const double innovation = rate[axis] - rate_[j][axis];
-      far = far && innovation * innovation > kImprobable * kImprobable * factor(j) * noise[axis];
+      least = std::min(least, innovation * innovation / (factor(j) * noise[axis]));
     }
-    if (far) return true;
+    last_surprise_[axis] = least;
+    any = any || least > kImprobable * kImprobable * std::max(1.0, surprise_[axis]);
   }
-  return false;
+  return any;
+}
+
+void FadingTrackers::begin_again(std::span<const Axes> last) noexcept {
+  Axes surprise{};
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
+    surprise[axis] = std::max(surprise_[axis], last_surprise_[axis]);
+  begin(last);
+  surprise_ = surprise;
 }
 
 void FadingTrackers::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
@@ -121,22 +135,26 @@ void FadingTrackers::correct(const Axes& rate, std::uint32_t valid_axes) noexcep
 
 void FadingTrackers::update(const Axes& rate, const Axes& noise, std::uint32_t valid_axes,
                             const Axes& level_innovation, double level_factor) noexcept {
-  std::array<double, kTrackers + 1> factors{};
+  std::array<double, kTrackers + 1> factors{}, log_factors{};
   for (std::size_t j = 0; j < kTrackers; ++j) factors[j] = factor(j);
   factors[kTrackers] = level_factor;
+  for (std::size_t j = 0; j <= kTrackers; ++j) log_factors[j] = logarithm(factors[j]);
   correct(rate, valid_axes);
-  double greatest = -1e300;
-  for (std::size_t j = 0; j <= kTrackers; ++j) {
-    log_weight_[j] *= kForget;
-    const Axes& innovation = j < kTrackers ? innovation_[j] : level_innovation;
-    const double log_factor = logarithm(factors[j]);
-    for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
-      if ((valid_axes >> axis & 1U) == 0 || !(noise[axis] > 0.0)) continue;
-      const double square = innovation[axis] * innovation[axis] / (factors[j] * noise[axis]);
-      log_weight_[j] -= 0.5 * (std::min(square, kMostSquare) + log_factor);
+  for (std::size_t j = 0; j <= kTrackers; ++j) log_weight_[j] *= kForget;
+  std::array<double, kTrackers + 1> squares{};
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+    if ((valid_axes >> axis & 1U) == 0 || !(noise[axis] > 0.0)) continue;
+    double least = 1e300;
+    for (std::size_t j = 0; j <= kTrackers; ++j) {
+      const double innovation = j < kTrackers ? innovation_[j][axis] : level_innovation[axis];
+      squares[j] = innovation * innovation / (factors[j] * noise[axis]);
+      least = std::min(least, squares[j]);
     }
-    greatest = std::max(greatest, log_weight_[j]);
+    surprise_[axis] += (1.0 - kForget) * (last_surprise_[axis] - surprise_[axis]);
+    for (std::size_t j = 0; j <= kTrackers; ++j)
+      log_weight_[j] -= 0.5 * (std::min(squares[j] - least, kMostSquare) + log_factors[j]);
   }
+  const double greatest = *std::max_element(log_weight_.begin(), log_weight_.end());
   double sum = 0.0;
   for (std::size_t j = 0; j <= kTrackers; ++j) {
     log_weight_[j] = std::max(log_weight_[j] - greatest, kLeastLogWeight);

@@ -27,8 +27,12 @@ class FadingTrackers {
   void begin(std::span<const Axes> last) noexcept;
   // Rate one sample ahead of each tracker; `steps` in nominal samples, one unless samples were missed.
   void predict(double steps) noexcept;
-  // Whether every tracker finds this measurement improbable. noise: measurement variance by axis.
-  [[nodiscard]] bool improbable(const Axes& rate, const Axes& noise, std::uint32_t valid_axes) const noexcept;
+  // Whether every tracker finds this measurement improbable, by what has lately surprised the best of them.
+  // noise: measurement variance by axis.
+  [[nodiscard]] bool improbable(const Axes& rate, const Axes& noise, std::uint32_t valid_axes) noexcept;
+  // Starts afresh from the last measurements after one that was improbable and turned out to be motion: a
+  // blow goes on as it began, and its next sample is no outlier for being as far off.
+  void begin_again(std::span<const Axes> last) noexcept;
   // Takes the measurement in. level_*: prediction of the filter at rest, innovation variance over R; it
   // competes with the trackers for the weight.
   void update(const Axes& rate, const Axes& noise, std::uint32_t valid_axes, const Axes& level_innovation,
@@ -66,6 +70,8 @@ class FadingTrackers {
   // Slope per sample, half the curvature per sample squared.
   std::array<Axes, kTrackers> rate_{}, slope_{}, curvature_{}, innovation_{};
   std::array<double, kTrackers + 1> log_weight_{}, weight_{};
+  // Normalised square of the innovation of the best predictor: running mean, and of the last measurement.
+  Axes surprise_{}, last_surprise_{};
   int age_ = 0;  // measurements taken in since begin()
   // Of the last prediction, nominal samples. The gains are those of one step, whatever its length: in units
   // of nominal samples those of slope and curvature fall with it. Left as they are, steps of two and more

@@ -10,6 +10,8 @@ namespace {
 constexpr double kScaleMargin = 1.5;
 // Innovations this much larger than third differences allow mean motion, not noise.
 constexpr double kMovedRatio = 2.0;
+// The same while running. Noise correlated by 0.6 from sample to sample reaches it.
+constexpr double kMostOverStill = 4.0;
 
 // What a single sum may say about the colour, in squared sigmas: a manoeuvre about to be found is none.
 constexpr double kColourClip = 16.0;
@@ -33,14 +35,18 @@ InnovationMonitor::Verdict InnovationMonitor::test(std::span<const double> innov
   double greatest = threshold_ * threshold_;
   const bool learns = armed_ && at_rest && --until_colour_ <= 0;
   if (learns) until_colour_ = kColourEvery;
-  const double clip = tails_ > kTails ? kTailClip : kClip;
+  const bool tailed = tails_ > kTails;
+  const double clip = tailed ? kTailClip : kClip;
+  const double outlier = tailed ? kTailOutlier : kClip;
+  bool beyond = false;
   for (std::size_t axis = 0; axis < innovations.size(); ++axis) {
     std::array<double, kRing>& sums = sums_[axis];
     const bool valid = (valid_axes >> axis & 1U) != 0 && variance_[axis] > 0.0;
     const double normalised = valid ? innovations[axis] / std::sqrt(variance_[axis]) : 0.0;
     sums[at_] = sums[before] + std::clamp(normalised, -clip, clip);
     if (!armed_) continue;
-    verdict.suspect = verdict.suspect || std::abs(normalised) > kClip;
+    beyond = beyond || std::abs(normalised) > kClip;
+    verdict.suspect = verdict.suspect || std::abs(normalised) > outlier;
     for (std::size_t rung = 0; rung < kLadder.size() && kLadder[rung] <= length_; ++rung) {
       const auto m = static_cast<std::size_t>(kLadder[rung]);
       const double sum = sums[at_] - sums[(at_ + kRing - m) % kRing];
@@ -55,7 +61,7 @@ InnovationMonitor::Verdict InnovationMonitor::test(std::span<const double> innov
     }
     if (learns && valid) learn_colour(axis);
   }
-  if (armed_ && at_rest) tails_ += ((verdict.suspect ? 1.0 : 0.0) - tails_) / kTailMemory;
+  if (armed_ && at_rest) tails_ += ((beyond ? 1.0 : 0.0) - tails_) / kTailMemory;
   if (verdict.changed_since > 0) verdict.suspect = false;
   return verdict;
 }
@@ -85,29 +91,36 @@ bool InnovationMonitor::learn(std::size_t axis, double innovation, double factor
     threshold_ = kThreshold * (1.0 + kScaleMargin / std::sqrt(learned_[axis]));
   }
   variance_[axis] += (square - variance_[axis]) / learned_[axis];
-  if (armed_ || learned_[axis] < kLearning) return false;
+  if (armed_) {
+    if (still_[axis].count >= kMemory)
+      variance_[axis] = std::min(variance_[axis], kMostOverStill * still_[axis].variance);
+    return false;
+  }
+  if (learned_[axis] < kLearning) return false;
   armed_ = true;
   bool moved = false;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
-    const Start& start = start_[a];
-    if (start.count < kLearning / 2) continue;
-    const double still = start.squares / (20.0 * (start.count - 3));
-    if (variance_[a] <= kMovedRatio * still) continue;
-    variance_[a] = still;
+    const Still& still = still_[a];
+    if (still.count < kLearning / 2.0 || variance_[a] <= kMovedRatio * still.variance) continue;
+    variance_[a] = still.variance;
     moved = true;
   }
   return moved;
 }
 
-void InnovationMonitor::learn_start(std::size_t axis, double rate) noexcept {
-  if (armed_) return;
-  Start& start = start_[axis];
-  if (start.count >= 3) {
-    const double third = rate - 3.0 * start.last[2] + 3.0 * start.last[1] - start.last[0];
-    start.squares += third * third;
+void InnovationMonitor::learn_still(std::size_t axis, double rate) noexcept {
+  Still& still = still_[axis];
+  if (still.count >= 3.0) {
+    const double third = rate - 3.0 * still.last[2] + 3.0 * still.last[1] - still.last[0];
+    double variance = third * third / 20.0;
+    // Like the scale itself. Beside the scale, so that a coarse sensor's runs of equal values do not end in a
+    // variance of zero that nothing could raise again.
+    if (armed_)
+      variance = std::min(variance, kClip * kClip * std::max(still.variance, 0.5 * variance_[axis]));
+    still.variance += (variance - still.variance) / (still.count - 2.0);
   }
-  ++start.count;
-  start.last = {start.last[1], start.last[2], rate};
+  still.count = std::min(still.count + 1.0, kMemory + 3.0);
+  still.last = {still.last[1], still.last[2], rate};
 }
 
 }  // namespace ifog

@@ -26,8 +26,10 @@ class InnovationMonitor {
   static constexpr double kThreshold = 6.5;
   static constexpr double kClip = 5.0;
   // Where more than one sample in a thousand is beyond that, two in a row are no evidence: with this clip it
-  // takes three.
+  // takes three. Nor is one an outlier, but the sensor's own, and carries angle: only what is much further
+  // out is held back.
   static constexpr double kTailClip = 4.3;
+  static constexpr double kTailOutlier = 20.0;
   static constexpr double kTails = 1e-3;
   // Innovations before the scale is trusted.
   static constexpr int kLearning = 64;
@@ -35,7 +37,7 @@ class InnovationMonitor {
   struct Verdict {
     int changed_since =
         0;  // > 0: the mean changed and this many samples, the current one included, belong after it
-    bool suspect = false;  // beyond the clip, not confirmed by the sample before
+    bool suspect = false;  // an outlier, not confirmed by the sample before
     bool calm = true;      // every sum as it is at rest, within kCalm sigma
   };
   static constexpr double kCalm = 4.0;
@@ -48,9 +50,10 @@ class InnovationMonitor {
   // rest. Returns true when this was the sample that armed the monitor and the sensor had moved meanwhile:
   // innovations up to here are then no evidence of noise.
   bool learn(std::size_t axis, double innovation, double factor) noexcept;
-  // While the scale is being learned: a measurement of the axis. Third differences (variance 20 R) hardly see
-  // motion, so a sensor that starts up on a moving vehicle does not take its motion for noise.
-  void learn_start(std::size_t axis, double rate) noexcept;
+  // A measurement of the axis at rest. Third differences (variance 20 R) hardly see motion, so they bound the
+  // scale: neither a sensor that starts up on a moving vehicle nor a swing that grows out of the noise is
+  // taken for noise.
+  void learn_still(std::size_t axis, double rate) noexcept;
 
   // Forgets the sums, keeps the scale: the change was dealt with.
   void rearm() noexcept { length_ = 0; }
@@ -92,12 +95,12 @@ class InnovationMonitor {
   std::array<Colour, kMaxAxes> colour_{};
   double tails_ = 0.0;  // share of samples at rest beyond the clip
   int until_colour_ = kColourEvery;
-  struct Start {
+  struct Still {
     std::array<double, 3> last{};
-    double squares = 0.0;
-    int count = 0;
+    double variance = 0.0;  // of a measurement, by its third differences
+    double count = 0.0;     // measurements, up to kMemory
   };
-  std::array<Start, kMaxAxes> start_{};
+  std::array<Still, kMaxAxes> still_{};
   std::size_t at_ = 0;
   int length_ = 0;
   bool armed_ = false;

@@ -2,8 +2,6 @@
 #include "filters/compare/compare.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -18,8 +16,8 @@
 #include "filters/rules/rule.h"
 #include "tools/ifog/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/compare_picture.h"
 #include "tools/ifog/filter_options.h"
-#include "tools/ifog/plot.h"
 #include "tools/ifog/progress.h"
 
 namespace ifog::tools {
@@ -90,6 +88,7 @@ json row_json(const ComparisonRow& row, const std::string& axis, const FilterSet
   out["heading_max_rad"] = row.heading_max_rad;
   out["whiteness"] = {{"lag1", row.whiteness_lag1}, {"excess", row.whiteness_excess}};
   out["nis_mean"] = row.nis_mean;
+  out["nis_typical"] = row.nis_typical;
   json steps = json::array();
   for (const StepResponse& step : row.step)
     steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", number(step.samples)}});
@@ -108,7 +107,7 @@ void print_axis(const Comparison& result, int axis, bool reference) {
   std::printf("%-10s %10s", "rule", "std");
   for (const double tau : kComparedTaus) std::printf(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
   if (reference) std::printf(" %10s %10s %8s", "RMSE", "bias", "lag s");
-  std::printf(" %11s %7s %7s %6s %7s %7s\n", "heading deg", "max", "lag-1", "NIS", "20s 90%", "5s 90%");
+  std::printf(" %11s %8s %7s %6s %7s %7s\n", "heading deg", "max", "lag-1", "NIS", "20s 90%", "5s 90%");
   for (const ComparisonRow& row : result.rows) {
     if (row.axis != axis) continue;
     std::printf("%-10s %10s", row.rule.c_str(), cell(row.std_radps, kDegPerHour, "%.4g").c_str());
@@ -120,65 +119,10 @@ void print_axis(const Comparison& result, int axis, bool reference) {
       std::printf("\n");
       continue;
     }
-    std::printf(" %11.2e %7.0e %7.3f %6.2f %7s %7s\n", row.heading_end_rad * kDeg, row.heading_max_rad * kDeg,
-                row.whiteness_lag1, row.nis_mean, cell(row.step[0].samples, 1.0, "%.0f").c_str(),
+    std::printf(" %11.2e %8.1e %7.3f %6.2f %7s %7s\n", row.heading_end_rad * kDeg, row.heading_max_rad * kDeg,
+                row.whiteness_lag1, row.nis_typical, cell(row.step[0].samples, 1.0, "%.0f").c_str(),
                 cell(row.step[1].samples, 1.0, "%.0f").c_str());
   }
-}
-
-// The smallest and the largest value of each of a few hundred stretches: a picture has no more pixels, and
-// taking every nth sample would fold a line of the record down to a slow wave that is not there.
-Curve thinned(const std::string& title, const std::vector<double>& time, std::span<const double> rate) {
-  Curve curve;
-  curve.title = title;
-  constexpr std::size_t kStretches = 1500;
-  const std::size_t length = std::max<std::size_t>(1, rate.size() / kStretches);
-  for (std::size_t begin = 0; begin < rate.size(); begin += length) {
-    const auto part = rate.subspan(begin, std::min(length, rate.size() - begin));
-    const auto [low, high] = std::minmax_element(part.begin(), part.end());
-    for (const auto at : low < high ? std::array{low, high} : std::array{high, low}) {
-      curve.x.push_back(time[begin + static_cast<std::size_t>(at - part.begin())]);
-      curve.y.push_back(*at * kDegPerHour);
-    }
-  }
-  return curve;
-}
-
-void draw(const std::string& path, const Capture& capture, const Comparison& result,
-          const std::vector<std::string>& rules) {
-  std::vector<Panel> panels;
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    Panel panel;
-    panel.title = "axis " + (capture.axes[a].empty() ? std::string("of the sensor") : capture.axes[a]) +
-                  ": raw and denoised";
-    panel.x_label = "time, s";
-    panel.y_label = "rate, °/h";
-    panel.curves.push_back(thinned("raw", capture.time_s, capture.rate_radps[a]));
-    panel.curves.back().color = "#cccccc";
-    for (std::size_t r = 0; r < rules.size(); ++r)
-      panel.curves.push_back(thinned(rules[r], capture.time_s, result.denoised[r][a]));
-    panels.push_back(std::move(panel));
-  }
-  Panel noise;
-  noise.title = "Allan deviation of the output, by rule";
-  noise.x_label = "averaging time, s";
-  noise.y_label = "°/h";
-  noise.log_x = noise.log_y = true;
-  for (const ComparisonRow& row : result.rows) {
-    if (row.axis != 0) continue;
-    Curve curve;
-    curve.title = row.rule;
-    curve.style = "linespoints";
-    if (row.rule == "raw") curve.color = "#888888";
-    for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
-      if (row.adev_radps[i]) {
-        curve.x.push_back(kComparedTaus[i]);
-        curve.y.push_back(*row.adev_radps[i] * kDegPerHour);
-      }
-    if (!curve.x.empty()) noise.curves.push_back(std::move(curve));
-  }
-  if (!noise.curves.empty()) panels.push_back(std::move(noise));
-  plot(path, panels, 1200, 420);
 }
 
 void run(const Options& options) {
@@ -210,8 +154,9 @@ void run(const Options& options) {
               options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
               s.measurement_noise, s.window);
   std::printf(
-      "rates in deg/h; steps of 20 and 5 sigma in samples to 90 %%; heading: integral of denoised - "
-      "compensated\n");
+      "rates in deg/h; heading: integral of denoised - compensated; lag-1: correlation of the innovations;\n"
+      "NIS: their squares over their variance, median over that of a normal law; steps of 20 and 5 sigma in\n"
+      "samples to 90 %%\n");
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     if (!capture.axes[a].empty()) std::printf("\naxis %s\n", capture.axes[a].c_str());
     print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());
@@ -231,7 +176,7 @@ void run(const Options& options) {
                                            "\n");
   }
   if (!options.plot_file.empty()) {
-    draw(options.plot_file, capture, result, compare.rules);
+    draw_comparison(options.plot_file, capture, result, compare.rules);
     std::printf("picture: %s\n", options.plot_file.c_str());
   }
 }

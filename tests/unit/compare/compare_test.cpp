@@ -95,6 +95,11 @@ TEST(Compare, TheConventionalFilterTakesAsLongAsItsClosedFormGainSays) {
   EXPECT_EQ(*row.step[1].samples, expected);
   // Output of white noise through a first-order filter: variance K/(2 − K) R.
   EXPECT_NEAR(row.std_radps, std::sqrt(gain / (2.0 - gain) * kR), 0.05 * row.std_radps);
+  // The filter is told a random walk that is not there: its innovations are a little smaller than it expects,
+  // R (1 + K / (2 - K)) against R / (1 - K).
+  const double nis = (1.0 + gain / (2.0 - gain)) * (1.0 - gain);
+  EXPECT_NEAR(row.nis_mean, nis, 0.03);
+  EXPECT_NEAR(row.nis_typical, nis, 0.06);
   EXPECT_EQ(result.rows[0].rule, "raw");
 }
 

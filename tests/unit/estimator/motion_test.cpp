@@ -75,6 +75,40 @@ TEST(Sine, IsFollowedBetterThanByTheBestFixedGain) {
   }
 }
 
+// A hammer blow on the structure: it rings, and every sample is thousands of sigmas from the one before. None
+// of them is an outlier, and what is published must not overshoot them.
+TEST(Blow, IsFollowed) {
+  constexpr int kAt = 3000;
+  const auto rings = [](int i) {
+    return i < kAt ? 0.0 : 3000.0 * std::exp((kAt - i) / 60.0) * std::sin(0.7 * (i - kAt));
+  };
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Record r = record(seed, kAt + 400, 1e-3, rings);
+    const Filtered got = run(told(1e-3), r.measured);
+    const double error = mean_square_error(got.denoised, r.truth, kAt);
+    const double blow = mean_square_error(std::vector<double>(r.truth.size(), 0.0), r.truth, kAt);
+    EXPECT_LT(std::sqrt(error / blow), 0.35) << seed;
+  }
+}
+
+// A motion that grows out of the noise is noise to the rule at first. After it the rule must learn again.
+TEST(AfterAManoeuvre, TheRuleUnlearnsWhatItTookForNoise) {
+  const auto swings = [](int i) {
+    return i < 2000 || i > 8000 ? 0.0 : 0.5 * std::exp((i - 2000) / 900.0) * std::sin(0.1 * i);
+  };
+  for (const char* rule : {"irwe-akfg", "iae", "rae", "sage-husa", "vb"}) {
+    for (const double ratio : {1e-3, 1.0}) {
+      ifog::FilterSettings settings = told(ratio);
+      settings.rule = rule;
+      const Record r = record(1, 14'000, ratio, swings);
+      const Filtered got = run(settings, r.measured);
+      EXPECT_GT(got.health.manoeuvres, 0U) << rule << ", Q/R " << ratio;
+      EXPECT_LT(got.health.measurement_noise[0], 3.0) << rule << ", Q/R " << ratio;
+      EXPECT_NEAR(got.health.nis_mean[0], 1.0, 0.4) << rule << ", Q/R " << ratio;
+    }
+  }
+}
+
 TEST(StartInMotion, DoesNotTakeTheMotionForNoise) {
   const auto ramps = [](int i) {
     return i < 50 ? 6.0 * i : (i < 3000 ? 300.0 : (i < 3050 ? 300.0 - 6.0 * (i - 3000) : 0.0));
