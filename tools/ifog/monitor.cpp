@@ -53,6 +53,14 @@ struct Sensor {
   status_t status{};
 };
 
+// Beyond a tenth no crystal is off: a recording is played faster or slower than it was made.
+std::string clock_text(double offset_ppm) {
+  if (std::abs(offset_ppm) > 1e5) return "not in real time";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%+.0f ppm", offset_ppm);
+  return text.data();
+}
+
 // A rate in the unit a person reads: °/h below 0.1 °/s.
 std::string rate_text(double radps) {
   std::array<char, 48> text{};
@@ -231,12 +239,12 @@ void Monitor::show(double interval_s) {
       std::snprintf(
           row.data(), row.size(),
           "  latency p50 %.0f p99 %.0f max %.0f us  crc %lld  skipped %lld bytes  missing %lld  merged %lld  "
-          "kernel drops %lld  stale %lld  clock %+.0f ppm",
+          "kernel drops %lld  stale %lld  clock %s",
           status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
           static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
           static_cast<long long>(status.sequence_missing), static_cast<long long>(status.samples_merged),
           static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
-          status.clock_offset_ppm);
+          clock_text(status.clock_offset_ppm).c_str());
       line(row.data());
       if (!status.fault.empty()) line("  " + status.fault);
     }

@@ -1,13 +1,12 @@
 // Overlapping Allan deviation of a file of doubles (rad/s, native byte order) at the averaging times of a
 // second file (whole numbers as text). Prints seconds of the analysis alone, bytes of the samples, peak bytes
 // of the process before and after, then one deviation a line.
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,10 +14,13 @@
 
 namespace {
 
+// Of this program's own memory: what getrusage reports survives exec, and a large caller would be counted in.
 long peak_kib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stol(line.substr(6));
+  }
+  return 0;
 }
 
 }  // namespace
