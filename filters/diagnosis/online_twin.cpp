@@ -7,6 +7,7 @@ namespace {
 
 // Share of the effect's RMS that readings may add before anything is changed for their sake.
 constexpr double kMatters = 0.1;
+constexpr double kLongest_s = 3600.0;
 constexpr double kLeastGain = 0.8;  // and what the change must leave of it
 
 Eigen::VectorXd centred(const BlockGrid& grid, Eigen::VectorXd values) {
@@ -55,8 +56,9 @@ void fit_to_readings(const BlockData& recorded, const BlockData& clean, SearchRe
       best = trial;
       return true;
     };
-    for (double factor = 2.0; factor > 1.05; factor = std::sqrt(factor)) {
-      while (attempt(factor)) {
+    // Wider only: readings make a correction worse, not slower.
+    for (const double factor : {2.0, 1.414, 1.189, 1.091}) {
+      while (best.time_constant_s < kLongest_s && attempt(factor)) {
       }
     }
     if (closest.left > kLeastGain * as_found.left) continue;

@@ -152,14 +152,14 @@ struct Drive {
 Drive best_drive(std::span<const Reading> readings, Motion motion) {
   double best = 0.0;
   double most = -std::numeric_limits<double>::infinity();
-  for (double power = -16.0; power <= 4.0; power += 1.0) {
-    const double value = likelihood(readings, motion, std::pow(10.0, power));
+  for (int decade = -16; decade <= 4; ++decade) {
+    const double value = likelihood(readings, motion, std::pow(10.0, decade));
     if (value > most) {
       most = value;
-      best = power;
+      best = decade;
     }
   }
-  for (double step = 0.5; step > 0.1; step *= 0.5) {
+  for (const double step : {0.5, 0.25, 0.125}) {
     for (const double power : {best - step, best + step}) {
       const double value = likelihood(readings, motion, std::pow(10.0, power));
       if (value > most) {

@@ -39,8 +39,9 @@ double cycles_of(std::span<const double> values) {
   };
   double best = 0.0;
   double most = kPeriodic;
-  const double last = std::min(256.0, n / 4.0);
-  for (double cycles = 1.25; cycles < last; cycles += 0.25) {
+  const auto last = static_cast<int>(std::min(1024.0, n));  // quarters of a cycle
+  for (int quarters = 5; quarters < last; ++quarters) {
+    const double cycles = 0.25 * quarters;
     const double value = share(cycles);
     if (value > most) {
       most = value;

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "filters/diagnosis/consistent.h"
+#include "filters/diagnosis/online_twin.h"
 #include "filters/diagnosis/reconstruct.h"
 #include "filters/diagnosis/record_lines.h"
 #include "filters/diagnosis/search.h"
@@ -104,6 +105,43 @@ TEST(Reconstruct, ReadingNoiseAloneIsStandingStill) {
     moving += stands_still(read) ? 0 : 1;
   }
   EXPECT_EQ(moving, 0);
+}
+
+// A derivative found on a clean temperature, for a daemon whose thermometer reads whole degrees.
+TEST(OnlineTwin, WidensTheBandwidthUntilStepsOfTheReadingDoNotShow) {
+  BlockData clean;
+  clean.grid = even_grid(4000);
+  FineChannel channel;
+  channel.name = "temperature_degC";
+  for (int i = 0; i < 4000; ++i) channel.values.push_back(25.3 + 8.0 * std::sin(2.0 * M_PI * i / 2000.0));
+  channel.varies = true;
+  clean.channels = {channel};
+  BlockData recorded = clean;
+  for (double& value : recorded.channels[0].values) value = std::round(value);
+
+  SearchResult found;
+  Candidate rate;
+  rate.form = Form::kRate;
+  rate.channel = 0;
+  rate.time_constant_s = 10.0;
+  found.chosen.push_back({rate, 100.0, 1e-6});
+  found.coefficients = Eigen::Vector2d(3.0, 2.0);
+  found.covariance = Eigen::Matrix2d::Identity();
+
+  SearchResult same = found;
+  fit_to_readings(clean, clean, same);
+  EXPECT_EQ(same.chosen[0].candidate.time_constant_s, 10.0);
+  EXPECT_EQ(same.coefficients[1], 2.0);
+
+  SearchResult twin = found;
+  fit_to_readings(recorded, clean, twin);
+  const Eigen::VectorXd wanted = 2.0 * regressors(clean, rate).col(0);
+  const double as_found = (2.0 * regressors(recorded, rate).col(0) - wanted).norm();
+  const double adapted =
+      (twin.coefficients[1] * regressors(recorded, twin.chosen[0].candidate).col(0) - wanted).norm();
+  EXPECT_GT(as_found, 0.7 * wanted.norm());
+  EXPECT_LT(adapted, 0.5 * wanted.norm());
+  EXPECT_EQ(twin.coefficients[0], 3.0);
 }
 
 // Orthogonal columns are as many tries as columns, copies of one are a single try.
