@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/plugins/capture/rows.h"
+#include "ifog/byte_driver.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"
 
@@ -75,6 +76,7 @@ SetUp read_set_up(const plugin::Options& options) {
 
 class Driver {
  public:
+  explicit Driver(const plugin::Options& options) : Driver(read_set_up(options)) {}
   explicit Driver(SetUp set_up) : set_up_(std::move(set_up)), rows_(set_up_.columns()) { forget(); }
 
   void describe(ifog_description& out) const {
@@ -131,33 +133,8 @@ class Driver {
   ifog_sample sample_{};
 };
 
-Driver& self(void* instance) { return *static_cast<Driver*>(instance); }
-const Driver& self(const void* instance) { return *static_cast<const Driver*>(instance); }
-
-constexpr ifog_driver kTable{
-    .abi = IFOG_DRIVER_ABI,
-    .transports = IFOG_TRANSPORT_BYTES,
-    .name = "capture",
-    .version = "1",
-    .summary = "a CSV capture as a sensor, row by row",
-    .options = kOptions.data(),
-    .create = [](const ifog_setting* settings, size_t count, char* error, size_t error_size) -> void* {
-      return plugin::create_or_explain(
-          settings, count, error, error_size,
-          [](const plugin::Options& options) { return new Driver(read_set_up(options)); });
-    },
-    .destroy = [](void* instance) { delete static_cast<Driver*>(instance); },
-    .describe = [](const void* instance, ifog_description* out) { self(instance).describe(*out); },
-    .decode_bytes =
-        [](void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns, ifog_emit_sample emit,
-           void* sink) {
-          self(instance).decode({bytes, length}, arrival_ns, emit, sink);
-        },
-    .decode_can = nullptr,
-    .reset = [](void* instance) { self(instance).reset(); },
-    .counters = [](const void* instance, ifog_driver_counters* out) { self(instance).counters(*out); },
-    .encode_bytes = nullptr,
-    .encode_can = nullptr};
+constexpr ifog_driver kTable =
+    plugin::byte_driver<Driver>("capture", "1", "a CSV capture as a sensor, row by row", kOptions.data());
 
 }  // namespace
 }  // namespace ifog::capture_rows

@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <exception>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -16,6 +14,7 @@
 
 #include "drivers/plugins/dsp3000/line.h"
 #include "drivers/plugins/dsp3000/line_finder.h"
+#include "ifog/byte_driver.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"
 
@@ -111,41 +110,8 @@ class Driver {
   bool started_ = false;
 };
 
-Driver& self(void* instance) { return *static_cast<Driver*>(instance); }
-const Driver& self(const void* instance) { return *static_cast<const Driver*>(instance); }
-
-constexpr ifog_driver kTable{
-    .abi = IFOG_DRIVER_ABI,
-    .transports = IFOG_TRANSPORT_BYTES,
-    .name = "dsp3000",
-    .version = "1",
-    .summary = "KVH DSP-3000, digital 100 Hz interface (ASCII lines)",
-    .options = kOptions.data(),
-    .create = [](const ifog_setting* settings, size_t count, char* error, size_t error_size) -> void* {
-      return plugin::create_or_explain(settings, count, error, error_size,
-                                       [](const plugin::Options& options) { return new Driver(options); });
-    },
-    .destroy = [](void* instance) { delete static_cast<Driver*>(instance); },
-    .describe = [](const void* instance, ifog_description* out) { self(instance).describe(*out); },
-    .decode_bytes =
-        [](void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns, ifog_emit_sample emit,
-           void* sink) {
-          self(instance).decode({bytes, length}, arrival_ns, emit, sink);
-        },
-    .decode_can = nullptr,
-    .reset = [](void* instance) { self(instance).reset(); },
-    .counters = [](const void* instance, ifog_driver_counters* out) { self(instance).counters(*out); },
-    .encode_bytes = [](void* instance, const ifog_sample* sample, ifog_emit_bytes emit, void* sink,
-                       char* error, size_t error_size) -> int {
-      try {
-        self(instance).encode(*sample, emit, sink);
-        return 0;
-      } catch (const std::exception& problem) {
-        std::snprintf(error, error_size, "%s", problem.what());
-        return -1;
-      }
-    },
-    .encode_can = nullptr};
+constexpr ifog_driver kTable = plugin::byte_driver<Driver>(
+    "dsp3000", "1", "KVH DSP-3000, digital 100 Hz interface (ASCII lines)", kOptions.data());
 
 }  // namespace
 }  // namespace ifog::dsp3000

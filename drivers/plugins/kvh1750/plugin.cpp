@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <optional>
 
 #include "drivers/plugins/kvh1750/frame.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
+#include "ifog/byte_driver.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"
 
@@ -131,6 +131,7 @@ class Unwrapped {
 
 class Driver {
  public:
+  explicit Driver(const plugin::Options& options) : Driver(read_set_up(options)) {}
   explicit Driver(const SetUp& set_up) : set_up_(set_up) { environment_.fill(kMissing); }
 
   void describe(ifog_description& out) const {
@@ -281,42 +282,8 @@ class Driver {
   std::uint32_t sent_ = 0;
 };
 
-Driver& self(void* instance) { return *static_cast<Driver*>(instance); }
-const Driver& self(const void* instance) { return *static_cast<const Driver*>(instance); }
-
-constexpr ifog_driver kTable{
-    .abi = IFOG_DRIVER_ABI,
-    .transports = IFOG_TRANSPORT_BYTES,
-    .name = "kvh1750",
-    .version = "1",
-    .summary = "KVH 1725, 1750, 1775 IMU and DSP-1760, message formats A, B and C",
-    .options = kOptions.data(),
-    .create = [](const ifog_setting* settings, size_t count, char* error, size_t error_size) -> void* {
-      return plugin::create_or_explain(
-          settings, count, error, error_size,
-          [](const plugin::Options& options) { return new Driver(read_set_up(options)); });
-    },
-    .destroy = [](void* instance) { delete static_cast<Driver*>(instance); },
-    .describe = [](const void* instance, ifog_description* out) { self(instance).describe(*out); },
-    .decode_bytes =
-        [](void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns, ifog_emit_sample emit,
-           void* sink) {
-          self(instance).decode({bytes, length}, arrival_ns, emit, sink);
-        },
-    .decode_can = nullptr,
-    .reset = [](void* instance) { self(instance).reset(); },
-    .counters = [](const void* instance, ifog_driver_counters* out) { self(instance).counters(*out); },
-    .encode_bytes = [](void* instance, const ifog_sample* sample, ifog_emit_bytes emit, void* sink,
-                       char* error, size_t error_size) -> int {
-      try {
-        self(instance).encode(*sample, emit, sink);
-        return 0;
-      } catch (const std::exception& problem) {
-        std::snprintf(error, error_size, "%s", problem.what());
-        return -1;
-      }
-    },
-    .encode_can = nullptr};
+constexpr ifog_driver kTable = plugin::byte_driver<Driver>(
+    "kvh1750", "1", "KVH 1725, 1750, 1775 IMU and DSP-1760, message formats A, B and C", kOptions.data());
 
 }  // namespace
 }  // namespace ifog::kvh

@@ -15,8 +15,8 @@
 //
 // A driver is a pure function from bytes to samples. It opens no device, reads no clock and waits for
 // nothing: the daemon does that. After `create` it must not allocate, lock, log or throw: decoding is in the
-// daemon's real-time path. ifog/driver.h says what each function must do; ifog/options.h helps to read the
-// options.
+// daemon's real-time path. ifog/driver.h says what each function must do; ifog/byte_driver.h makes its table
+// of functions from a class; ifog/options.h helps to read the options.
 //
 // The device here is invented. It sends 8 bytes a sample, 200 times a second at 115200 baud:
 //   0xA5, counter (0 … 255), rate (int32 big-endian, µdeg/s), temperature (int8, °C), sum of the seven bytes
@@ -24,11 +24,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <exception>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <stdexcept>
+#include <string>
 
+#include "ifog/byte_driver.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"
 
@@ -69,10 +71,10 @@ class Driver {
   // be passed over. Two rules keep every intact frame: wait in a buffer of fixed size until a frame is
   // complete, and when its check fails give up one byte, not the whole frame, because the next frame may
   // begin inside.
-  void decode(const std::uint8_t* bytes, std::size_t length, std::int64_t arrival_ns, ifog_emit_sample emit,
+  void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
               void* sink) noexcept {
-    for (std::size_t i = 0; i < length; ++i) {
-      buffer_[filled_++] = bytes[i];
+    for (const std::uint8_t byte : bytes) {
+      buffer_[filled_++] = byte;
       while (filled_ != 0 && buffer_[0] != kStart) drop_one();
       if (filled_ < kFrame) continue;
       std::uint8_t sum = 0;
@@ -96,7 +98,7 @@ class Driver {
     filled_ = 0;
   }
 
-  [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
+  void counters(ifog_driver_counters& out) const { out = counters_; }
 
   // STEP 5, optional: the inverse. With it `ifog convert` and `ifog replay` can play a capture as your device
   // would. Throws when the sample does not fit into the format.
@@ -154,42 +156,10 @@ class Driver {
   ifog_driver_counters counters_{};
 };
 
-// From here on it is the same for every driver of a serial device.
-Driver& self(void* instance) { return *static_cast<Driver*>(instance); }
-const Driver& self(const void* instance) { return *static_cast<const Driver*>(instance); }
-
-constexpr ifog_driver kTable{
-    .abi = IFOG_DRIVER_ABI,
-    .transports = IFOG_TRANSPORT_BYTES,
-    // STEP 6: the name must be the file's: template.so.
-    .name = "template",
-    .version = "1",
-    .summary = "invented gyro of the driver to copy",
-    .options = kOptions.data(),
-    .create = [](const ifog_setting* settings, size_t count, char* error, size_t error_size) -> void* {
-      return ifog::plugin::create_or_explain(
-          settings, count, error, error_size,
-          [](const ifog::plugin::Options& options) { return new Driver(options); });
-    },
-    .destroy = [](void* instance) { delete static_cast<Driver*>(instance); },
-    .describe = [](const void* instance, ifog_description* out) { self(instance).describe(*out); },
-    .decode_bytes = [](void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns,
-                       ifog_emit_sample emit,
-                       void* sink) { self(instance).decode(bytes, length, arrival_ns, emit, sink); },
-    .decode_can = nullptr,
-    .reset = [](void* instance) { self(instance).reset(); },
-    .counters = [](const void* instance, ifog_driver_counters* out) { *out = self(instance).counters(); },
-    .encode_bytes = [](void* instance, const ifog_sample* sample, ifog_emit_bytes emit, void* sink,
-                       char* error, size_t error_size) -> int {
-      try {
-        self(instance).encode(*sample, emit, sink);
-        return 0;
-      } catch (const std::exception& problem) {
-        std::snprintf(error, error_size, "%s", problem.what());
-        return -1;
-      }
-    },
-    .encode_can = nullptr};
+// STEP 6: the name must be the file's: template.so. A CAN sensor fills in the table of ifog/driver.h itself,
+// with decode_can.
+constexpr ifog_driver kTable = ifog::plugin::byte_driver<Driver>(
+    "template", "1", "invented gyro of the driver to copy", kOptions.data());
 
 }  // namespace
 
