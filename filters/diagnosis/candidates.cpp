@@ -38,7 +38,12 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   // slow noise will follow somewhere.
   if (!source.still) {
     for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
+    // Gravity's share of a horizontal acceleration changes with the tilt, so its derivative is the rotation
+    // itself (times g). Without a reference nothing tells the two apart, and a correction must be transparent
+    // to rotation.
+    const bool is_rotation = data.reference < 0 && kind_of(source.name) == ChannelKind::kAcceleration;
     for (const Form form : {Form::kRate, Form::kSecondRate, Form::kLagged}) {
+      if (is_rotation && form != Form::kLagged) continue;
       for (const double tau : time_constants(data.grid, form)) add(form, tau);
     }
   }

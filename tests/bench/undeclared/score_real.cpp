@@ -136,7 +136,10 @@ int main(int argc, char** argv) {
         c.channels.push_back({name, borrowed(values, samples, draw)});
     const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
     const char* forms[] = {"linear", "rate", "lagged"};
-    const std::string form = forms[draw.below(3)];
+    // The derivative of an acceleration is rotation, not an error: see candidates.cpp.
+    const bool acceleration = c.channels[target].name.starts_with("accel_");
+    std::string form = forms[draw.below(3)];
+    if (acceleration && form == "rate") form = "linear";
     double sigma = 0.0;
     if (implant) {
       const Series& x = c.channels[target].values;
