@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/drop.h"
 #include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
 #include "filters/diagnosis/findings.h"
@@ -16,6 +17,7 @@
 #include "filters/diagnosis/ramp.h"
 #include "filters/diagnosis/reconstruct.h"
 #include "filters/diagnosis/record_lines.h"
+#include "filters/diagnosis/resonances.h"
 #include "filters/diagnosis/search.h"
 #include "filters/diagnosis/unexplained.h"
 
@@ -26,6 +28,7 @@ const double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFolds = 4;
 constexpr int kDwellFolds = 10;
 constexpr double kWorse = 1.05;
+constexpr double kWorseSlowly = 1.2;
 constexpr std::size_t kSeriesPoints = 4000;
 
 class Account {
@@ -76,7 +79,8 @@ class Account {
       }
     }
     take_effects();
-    drop_what_does_not_hold(search);
+    clean_data_ = with_reconstructed_channels(data_);
+    drop_what_does_not_hold();
     fit_jointly();
     write_effects();
     write_figures();
@@ -87,31 +91,46 @@ class Account {
  private:
   [[nodiscard]] Eigen::Index constant_columns() const { return static_cast<Eigen::Index>(records_.size()); }
 
-  // The last word is the error on held-out data: effects that make it larger are no model, whatever their
-  // p-values.
-  void drop_what_does_not_hold(SearchOptions& search) {
-    const auto corrects = [](const Chosen& chosen) { return carries_over(chosen.candidate.form); };
-    if (std::none_of(found_.chosen.begin(), found_.chosen.end(), corrects)) return;
-    double before = 0.0;
-    double after = 0.0;
-    for (const EvenError& error : errors_) {
-      const std::size_t count = std::max<std::size_t>(1, error.before.size() / 2000);
-      before += variance_of(means_over(error.before, count));
-      after += variance_of(means_over(error.held_out, count));
+  // Whether the effects make the error on held-out data smaller: what is quick, and what a heading is made
+  // of, where chance has fewer pieces to average over.
+  [[nodiscard]] bool holds() const {
+    for (const auto& [pieces, most] : {std::pair{2000.0, kWorse}, std::pair{20.0, kWorseSlowly}}) {
+      double before = 0.0;
+      double after = 0.0;
+      for (const EvenError& error : errors_) {
+        const auto count = std::max<std::size_t>(
+            1, static_cast<std::size_t>(static_cast<double>(error.before.size()) / pieces));
+        before += variance_of(means_over(error.before, count));
+        after += variance_of(means_over(error.held_out, count));
+      }
+      if (after > most * before) return false;
     }
-    if (after <= kWorse * before) return;
+    return true;
+  }
+
+  // The last word is the error on held-out data: effects that make it larger are no model, whatever their
+  // p-values. The least certain goes first.
+  void drop_what_does_not_hold() {
     std::string names;
-    for (const Chosen& chosen : found_.chosen) {
-      const Effect effect = effect_of(data_, chosen.candidate);
+    while (!holds()) {
+      std::size_t least = found_.chosen.size();
+      for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
+        if (!carries_over(found_.chosen[i].candidate.form)) continue;
+        if (least == found_.chosen.size() ||
+            found_.chosen[i].likelihood_ratio < found_.chosen[least].likelihood_ratio)
+          least = i;
+      }
+      if (least == found_.chosen.size()) break;
+      const Effect effect = effect_of(data_, found_.chosen[least].candidate);
       names +=
           (names.empty() ? "" : ", ") + effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+      found_ = without_effect(data_, clean_data_, std::move(found_), least);
+      take_effects();
     }
+    if (names.empty()) return;
     result_.remarks.push_back(
         "the innovations suggest " + names +
         ", but on held-out data the error would grow: left out, the noise is not stationary");
-    search.most_effects = 0;
-    found_ = search_effects(data_, search);
-    take_effects();
   }
 
   void take_effects() {
@@ -266,7 +285,6 @@ class Account {
 
   // Coefficients averaged over the noise the record allows, and their honest errors.
   void fit_jointly() {
-    clean_data_ = with_reconstructed_channels(data_);
     joint_ = settle(data_, clean_data_, found_);
     take_effects();
   }
@@ -311,6 +329,16 @@ class Account {
     result_.unexplained = describe_unexplained(longest->before, longest->after, longest->start_s,
                                                data_.grid.sample_s, found_.noise, data_.grid, peaks);
     if (moving_) describe_moving(*moving_, result_.unexplained);
+    if (!moving_ && !data_.grid.dwells) {
+      const std::string words = resonances_in_words(find_resonances(longest->after, data_.grid.sample_s));
+      if (!words.empty()) result_.remarks.push_back(words);
+    }
+    if (data_.grid.dwells && !result_.effects.empty()) {
+      result_.remarks.push_back(
+          "coefficients were fitted without the part they are judged on; which effects to take was decided "
+          "on "
+          "all of the data");
+    }
     predict();
   }
 

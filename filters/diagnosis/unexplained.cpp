@@ -72,6 +72,32 @@ double burst_level(std::size_t piece, std::size_t pieces) {
   return std::max(6.0, level / std::pow(1.0 - width, 3));
 }
 
+// By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
+std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
+  const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
+  const std::size_t parts = std::max<std::size_t>(1, energy.size() / minute);
+  std::vector<double> over;
+  for (std::size_t p = 0; p < parts; ++p) {
+    const std::size_t from = p * minute;
+    const std::size_t to = p + 1 == parts ? energy.size() : from + minute;
+    const double usual = median({energy.begin() + static_cast<std::ptrdiff_t>(from),
+                                 energy.begin() + static_cast<std::ptrdiff_t>(to)});
+    for (std::size_t i = from; i < to; ++i) over.push_back(usual > 0.0 ? energy[i] / usual : 0.0);
+  }
+  return over;
+}
+
+// Where more than a tenth of the pieces is above the level of white noise, the strongest hundredth counts, if
+// it is far above the rest.
+double heavy_level(std::vector<double> over, double level) {
+  const auto count = static_cast<std::size_t>(
+      std::count_if(over.begin(), over.end(), [&](double value) { return value >= level; }));
+  if (count * 10 < over.size()) return level;
+  const auto at = over.begin() + static_cast<std::ptrdiff_t>(over.size() - over.size() / 100 - 1);
+  std::nth_element(over.begin(), at, over.end());
+  return *at > 5.0 * level ? *at : level;
+}
+
 struct SlowRest {
   double over_s = 0.0;  // length of the means that show it best; 0: nothing slow
   double share = 0.0;   // of their variance that neighbours do not see
@@ -129,21 +155,25 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
   const std::size_t piece = std::max<std::size_t>(8, second / 4);
   const std::vector<double> energy = energies(left, piece);
   if (energy.size() >= 16) {
-    const double usual = median(energy);
-    const double level = burst_level(piece, energy.size());
+    const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
+    const double level = heavy_level(over, burst_level(piece, energy.size()));
     std::size_t bursts = 0;
-    for (std::size_t i = 0; i < energy.size(); ++i) {
-      if (energy[i] < level * usual + 1e-300) continue;
+    std::size_t strongest = 0;
+    const auto time_of = [&](std::size_t i) { return start_s + static_cast<double>(i * piece) * period_s; };
+    for (std::size_t i = 0; i < over.size(); ++i) {
+      if (over[i] < level) continue;
       ++bursts;
-      const double t = start_s + static_cast<double>(i * piece) * period_s;
-      if (found.times_s.empty() || t - found.times_s.back() > 2.0) found.times_s.push_back(t);
+      if (over[i] > over[strongest]) strongest = i;
+      if (found.times_s.empty() || time_of(i) - found.times_s.back() > 2.0)
+        found.times_s.push_back(time_of(i));
     }
-    if (bursts > 0 && bursts * 10 < energy.size() && piece >= 8) {
+    if (bursts > 0 && bursts * 10 < over.size()) {
       found.kind = "bursts";
       found.hint = text(
-          "%zu bursts, the first at %.4g s: knocks, radio keying or supply dips. Log an accelerometer and "
-          "the supply at the sensor's own rate.",
-          found.times_s.size(), found.times_s.front());
+          "%zu bursts, the first at %.4g s, the strongest at %.5g s: knocks, radio keying or supply dips. "
+          "Log "
+          "an accelerometer and the supply at the sensor's own rate.",
+          found.times_s.size(), found.times_s.front(), time_of(strongest));
       if (found.times_s.size() > 50) found.times_s.resize(50);
       return found;
     }
