@@ -63,7 +63,7 @@ class Account {
     found_ = search_effects(data_, search);
     take_effects();
     // Lines are looked for in what the effects leave; a slow one then competes with them in a second search.
-    lines_ = coherent_lines(errors_, data_.grid, options_.significance / 20.0);
+    lines_ = coherent_lines(errors_, data_.grid, options_.significance / 200.0);
     if (data_.grid.dwells) lines_ = {};
     leave_out_periodic(data_, lines_);
     blame_rotation();
