@@ -19,17 +19,16 @@
 #include "filters/diagnosis/record_lines.h"
 #include "filters/diagnosis/resonances.h"
 #include "filters/diagnosis/search.h"
+#include "filters/diagnosis/series.h"
 #include "filters/diagnosis/unexplained.h"
 
 namespace ifog {
 namespace {
 
-const double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFolds = 4;
 constexpr int kDwellFolds = 10;
 constexpr double kWorse = 1.05;
 constexpr double kWorseSlowly = 1.2;
-constexpr std::size_t kSeriesPoints = 4000;
 
 class Account {
  public:
@@ -84,7 +83,7 @@ class Account {
     fit_jointly();
     write_effects();
     write_figures();
-    write_series();
+    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_);
     return std::move(result_);
   }
 
@@ -248,7 +247,6 @@ class Account {
         held[b] = centred.row(b).dot(folds[static_cast<std::size_t>(fold[static_cast<std::size_t>(b)])]);
       }
     }
-    contribution_ = all;
     for (std::size_t r = 0; r < errors_.size(); ++r) {
       EvenError& error = errors_[r];
       error.after = clean_[r];
@@ -297,11 +295,11 @@ class Account {
     result_.belief = joint_.noise;
     parts_ = std::move(findings.parts);
     const std::size_t jointly = result_.effects.size();
+    write_ramps();
     for (const FastLine& fast : lines_.fast) {
       result_.effects.push_back(line_effect(fast.line, variance_of(errors_[fast.record].before)));
       result_.effects.back().effect.axis = options_.axis;
     }
-    write_ramps();
     result_.covariance = covariance_of(result_.effects, joint_, constant_columns(), jointly);
     result_.ranges = ranges_of(data_, result_.effects);
   }
@@ -352,49 +350,6 @@ class Account {
     result_.heading = predict_heading(result_, *longest, aligned, {60.0, 300.0, 600.0, 1800.0, 3600.0});
   }
 
-  void write_series() {
-    DiagnosisSeries& series = result_.series;
-    const BlockGrid& grid = data_.grid;
-    const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
-    series.contribution_radps.resize(parts_.size());
-    series.channel.resize(parts_.size());
-    double offset = 0.0;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Effect& effect = result_.effects[i].effect;
-      series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));
-    }
-    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-      for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; b += stride) {
-        const auto row = static_cast<Eigen::Index>(b);
-        series.time_s.push_back(offset + grid.time_s[b]);
-        const double value = grid.valid[b] ? grid.error[row] : kMissing;
-        series.before_radps.push_back(value);
-        series.after_radps.push_back(value - contribution_[row]);
-        for (std::size_t i = 0; i < parts_.size(); ++i) {
-          series.contribution_radps[i].push_back(parts_[i][row]);
-          const std::size_t channel = found_.chosen[i].candidate.channel;
-          if (channel != Candidate::kNone)
-            series.channel[i].push_back(data_.channels[channel].values[b * grid.fine]);
-        }
-      }
-      offset = series.time_s.back();
-    }
-    const EvenError& first = errors_.front();
-    const Spectrum before = averaged_spectrum(first.before, grid.sample_s);
-    const Spectrum after = averaged_spectrum(first.after, grid.sample_s);
-    series.frequency_hz = before.frequency_hz;
-    for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
-    for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));
-    for (double m = 1.0; m * 4.0 < static_cast<double>(first.before.size()); m *= 1.5) {
-      const auto count = static_cast<std::size_t>(m);
-      const double tau = static_cast<double>(count) * grid.sample_s;
-      if (!series.tau_s.empty() && tau <= series.tau_s.back()) continue;
-      series.tau_s.push_back(tau);
-      series.before_adev_radps.push_back(allan_deviation(first.before, count));
-      series.after_adev_radps.push_back(allan_deviation(first.held_out, count));
-    }
-  }
-
   const std::vector<Record>& records_;
   const DiagnoseOptions& options_;
   const std::vector<RampFit>& ramps_;
@@ -407,7 +362,6 @@ class Account {
   SearchResult found_;
   JointFit joint_;
   Columns columns_;
-  Eigen::VectorXd contribution_;
   std::vector<Eigen::VectorXd> parts_;
   Diagnosis result_;
 };

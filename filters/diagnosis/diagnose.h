@@ -92,7 +92,7 @@ struct Diagnosis {
   std::size_t samples = 0;
   double sample_rate_hz = 0.0;
   NoiseTerms noise;                             // after the effects
-  std::vector<FoundEffect> effects;             // strongest first
+  std::vector<FoundEffect> effects;             // traced to channels, then ramps, then lines of the samples
   std::vector<double> covariance;               // of all parameters of all effects in order, row-major
   std::vector<ChannelRange> ranges;             // of the channels the effects use
   std::map<std::string, double> before, after;  // held-out figures, units in their names

@@ -124,7 +124,8 @@ std::string account_of_rest(const Diagnosis& d) {
   std::string kind = u.kind;
   std::replace(kind.begin(), kind.end(), '_', ' ');
   return "Something remains unexplained: <strong>" + escaped(kind) + "</strong>, " +
-         number(100.0 * u.fraction, 2) + " % of the variance that is neither white noise nor explained." +
+         (u.fraction < 1e-3 ? "under 0.1" : number(100.0 * u.fraction, 2)) +
+         " % of the variance that is neither white noise nor explained." +
          (u.hint.empty() ? "" : " " + escaped(sentence(u.hint)));
 }
 

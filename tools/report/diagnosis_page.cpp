@@ -59,7 +59,13 @@ std::string time_picture(const Diagnosis& d) {
   const Series t = scaled(s.time_s, 1.0 / unit.seconds);
   chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
-  for (const double burst : d.unexplained.times_s) chart.mark_x(burst / unit.seconds, "burst");
+  // Bursts come in clusters: a word where there is room for one.
+  double named = -1e300;
+  for (const double burst : d.unexplained.times_s) {
+    const bool room = burst - named > 0.1 * (s.time_s.back() - s.time_s.front());
+    chart.mark_x(burst / unit.seconds, room ? "burst" : "");
+    if (room) named = burst;
+  }
   return figure_html(chart.svg(), "The error, " + block_words(s) + ", about its mean.");
 }
 
@@ -134,6 +140,9 @@ std::string parameter_rows(const Effect& e) {
   for (const ModelParameter& p : e.parameters) {
     const FieldUnit unit = field_unit(p.unit);
     std::string name = p.name;
+    for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has a column of its own
+      if (name.ends_with(suffix)) name.resize(name.size() - suffix.size());
+    }
     std::replace(name.begin(), name.end(), '_', ' ');
     out += "<tr><th scope=\"row\">" + escaped(name) + "</th><td class=\"n\">" +
            with_error(p.value * unit.scale, p.std_error * unit.scale) + "</td><td>" + escaped(unit.unit) +
@@ -199,6 +208,7 @@ std::string tiles(const Diagnosis& d) {
 }
 
 std::string confusable_list(const Diagnosis& d) {
+  if (d.effects.empty()) return "<p>Nothing was found, so there is nothing to tell apart.</p>\n";
   if (d.indistinguishable.empty())
     return "<p>Every effect named here differs from its rivals by more than this capture's noise.</p>\n";
   std::string out = "<ul>\n";
