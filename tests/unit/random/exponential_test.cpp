@@ -132,4 +132,22 @@ TEST(Deviates, DependOnSeedStreamRowAndIndexOnly) {
   for (std::size_t i = 0; i < shorter.size(); ++i) EXPECT_EQ(shorter[i], row[i]);
 }
 
+// A replay promises the same bits from every build on every machine, so they are written down. The decimals
+// beside them are -ln((bits + 1/2) 2^-32) by a second implementation, in integers and forty decimal digits.
+TEST(Deviates, AreTheSameBitsEverywhere) {
+  DeviateStream stream(42, 7, DeviateStream::Law::kExponential);
+  std::array<double, 6> row{};
+  stream.fill(123456789012345, 2, row);
+  constexpr std::array kBits{0x1.29e2a97f8300dp+1, 0x1.009098d157966p+1, 0x1.0eae3b2fa8fc5p-6,
+                             0x1.27fe20e67edcap-2, 0x1.06d1f47df43fbp-2, 0x1.58c452e0e5d64p+0};
+  constexpr std::array kExact{2.32722967840346, 2.00441274854626, 0.01652103214168,
+                              0.28905536085923, 0.25666028994360, 1.34674566260026};
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    EXPECT_EQ(row[i], kBits[i]) << i;
+    EXPECT_NEAR(row[i], kExact[i], 1e-11) << i;
+  }
+  EXPECT_EQ(stream.at(1000001, 2), 0x1.5cee5c248deaap-7);
+  EXPECT_NEAR(stream.at(1000001, 2), 0.01064853190574, 1e-11);
+}
+
 }  // namespace
