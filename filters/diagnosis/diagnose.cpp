@@ -13,6 +13,7 @@
 #include "filters/diagnosis/judge.h"
 #include "filters/diagnosis/lines.h"
 #include "filters/diagnosis/moving_line.h"
+#include "filters/diagnosis/outliers.h"
 #include "filters/diagnosis/prediction.h"
 #include "filters/diagnosis/ramp.h"
 #include "filters/diagnosis/reconstruct.h"
@@ -20,6 +21,7 @@
 #include "filters/diagnosis/resonances.h"
 #include "filters/diagnosis/search.h"
 #include "filters/diagnosis/series.h"
+#include "filters/diagnosis/tries.h"
 #include "filters/diagnosis/unexplained.h"
 
 namespace ifog {
@@ -111,6 +113,24 @@ class Account {
   // p-values. The least certain goes first.
   void drop_what_does_not_hold() {
     std::string names;
+    const auto drop = [&](std::size_t i) {
+      const Effect effect = effect_of(data_, found_.chosen[i].candidate);
+      names +=
+          (names.empty() ? "" : ", ") + effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+      found_ = without_effect(data_, clean_data_, std::move(found_), i);
+      take_effects();
+    };
+    for (std::size_t i = 0; i < found_.clean.size();) {
+      const NoiseShape& shape = found_.noise.shape;
+      const double ratio = std::min(ratio_without_outliers(clean_data_, found_.clean, i, shape),
+                                    ratio_in_changing_noise(clean_data_, found_.clean, i, shape));
+      const bool stands = found_.clean[i].channel == Candidate::kNone ||
+                          tail(ratio, 1) * found_.tries < options_.significance;
+      if (stands)
+        ++i;
+      else
+        drop(i);
+    }
     while (!holds()) {
       std::size_t least = found_.chosen.size();
       for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
@@ -120,16 +140,12 @@ class Account {
           least = i;
       }
       if (least == found_.chosen.size()) break;
-      const Effect effect = effect_of(data_, found_.chosen[least].candidate);
-      names +=
-          (names.empty() ? "" : ", ") + effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
-      found_ = without_effect(data_, clean_data_, std::move(found_), least);
-      take_effects();
+      drop(least);
     }
     if (names.empty()) return;
-    result_.remarks.push_back(
-        "the innovations suggest " + names +
-        ", but on held-out data the error would grow: left out, the noise is not stationary");
+    result_.remarks.push_back("the innovations suggest " + names +
+                              ", but a few knocks or a change of the noise make it seem so, or the error on "
+                              "held-out data would grow: left out");
   }
 
   void take_effects() {

@@ -73,6 +73,12 @@ NoiseTruth fitted_noise(const Series& rate) {
   return best;
 }
 
+// Of another capture than the noise: its own channels may well know what happened to it.
+bool foreign(const std::string& channel, const std::string& source) {
+  if (source.starts_with("blueseis")) return channel != "other_gyro";
+  return !source.starts_with("rlg") || !channel.starts_with("accel_");
+}
+
 struct Count {
   int trials = 0, found = 0, named = 0, wrong = 0;
   void add(const Count& other) {
@@ -93,16 +99,19 @@ void print(const std::string& name, const Count& count) {
 int main(int argc, char** argv) {
   std::string folder;
   int trials = 100;
+  std::vector<int> only;
   CLI::App app{"score the diagnosis on real noise"};
   app.add_option("folder", folder, "of the measured captures")->required()->check(CLI::ExistingDirectory);
   app.add_option("--trials", trials, "of each of: negative controls, implanted effects");
+  app.add_option("--only", only, "only the trials of these numbers, as the list of failures gives them");
   CLI11_PARSE(app, argc, argv);
 
   const auto read = [&](const char* name) { return ifog::read_capture(folder + "/" + name + ".csv.gz"); };
   std::vector<Source> sources;
   std::vector<std::pair<std::string, Series>> columns;  // to borrow from
   const ifog::Capture bridge = read("blueseis_bridge_rbam2"), vehicle = read("rlg_vehicle"),
-                      mems = read("adis16405_imu1"), table = read("fog_rate_table");
+                      mems = read("adis16405_imu1"), table = read("fog_rate_table"),
+                      turned = read("kvh1750_direct_imu_rate");
   sources.push_back({"blueseis_bridge_rbam2", resampled(bridge, bridge.rate_radps[0])});
   sources.push_back({"adis16405_imu1", resampled(mems, mems.rate_radps[0])});
   for (std::size_t a = 0; a < 3; ++a) {
@@ -110,6 +119,8 @@ int main(int argc, char** argv) {
     sources.push_back(
         {"rlg_vehicle " + vehicle.axes[a], Series(all.begin() + 1100, all.end())});  // undisturbed
   }
+  for (std::size_t a = 0; a < 3; ++a)
+    columns.emplace_back("turning_" + turned.axes[a] + "_radps", resampled(turned, turned.rate_radps[a]));
   for (const ifog::CaptureColumn& c : vehicle.channels)
     columns.emplace_back(c.name, resampled(vehicle, c.values));
   columns.emplace_back("temperature_degC", table.channels[0].values);
@@ -119,6 +130,7 @@ int main(int argc, char** argv) {
 
   std::map<std::string, Count> controls, by_form, by_size, by_source;
   for (int trial = 0; trial < 2 * trials; ++trial) {
+    if (!only.empty() && std::find(only.begin(), only.end(), trial) == only.end()) continue;
     const bool implant = trial >= trials;
     Draw draw(static_cast<std::uint64_t>(trial), 77);
     const Source& source = sources[static_cast<std::size_t>(trial) % sources.size()];
@@ -132,8 +144,7 @@ int main(int argc, char** argv) {
                            source.rate.begin() + static_cast<std::ptrdiff_t>(from + samples))};
     c.reference_rate_radps = {{}};
     for (const auto& [name, values] : columns)
-      if (name != "other_gyro" || !source.name.starts_with("blueseis"))
-        c.channels.push_back({name, borrowed(values, samples, draw)});
+      if (foreign(name, source.name)) c.channels.push_back({name, borrowed(values, samples, draw)});
     const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
     const char* forms[] = {"linear", "rate", "lagged"};
     // The derivative of an acceleration is rotation, not an error: see candidates.cpp.
