@@ -71,6 +71,24 @@ std::string rate_text(double radps) {
   return text.data();
 }
 
+// Environment channels by name; the age of one that is not fresh.
+std::string channels_text(const status_t& status) {
+  constexpr double kFresh_s = 2.0;
+  std::string out;
+  for (std::size_t i = 0; i < status.channel_name.size(); ++i) {
+    std::array<char, 96> text{};
+    if (!std::isfinite(status.channel_age_s[i]))
+      std::snprintf(text.data(), text.size(), " not heard of");
+    else if (status.channel_age_s[i] > kFresh_s)
+      std::snprintf(text.data(), text.size(), " %.6g (%.0f s old)", status.channel_value[i],
+                    status.channel_age_s[i]);
+    else
+      std::snprintf(text.data(), text.size(), " %.6g", status.channel_value[i]);
+    out += (i == 0 ? "" : "  ") + status.channel_name[i] + text.data();
+  }
+  return out;
+}
+
 class Recorder {
  public:
   explicit Recorder(const std::string& path) : path_(path) {
@@ -246,6 +264,7 @@ void Monitor::show(double interval_s) {
           static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
           clock_text(status.clock_offset_ppm).c_str());
       line(row.data());
+      if (const std::string channels = channels_text(status); !channels.empty()) line("  " + channels);
       if (!status.fault.empty()) line("  " + status.fault);
     }
     sensor.shown = sensor.messages;

@@ -104,6 +104,29 @@ class Bus:
     def check_every_sample_with_ifog_replay(self):
         return self.every_sample("replay", self.ifog, "replay", "LOG", "--to", "can:vcan0")
 
+    def check_a_channel_from_another_can_frame(self):
+        """A temperature that another unit on the bus sends, as the sensor's status tells it."""
+        folder = self.folder("channel", 1e-9, 2, 100)
+        with open(os.path.join(folder, "coil.dbc"), "w") as file:
+            file.write('VERSION ""\nBS_:\nBU_: UNIT\nBO_ 801 Coil: 2 UNIT\n SG_ Temperature : 7|16@0- (0.01,0) [-100|100] "degC" UNIT\n')
+        with open(os.path.join(folder, "ifogd.toml"), "a") as file:
+            file.write('[[sensor.channel]]\nname = "coil_degC"\nsource = "can"\ninterface = "vcan0"\ndbc = "coil.dbc"\n'
+                       'signal = "Coil.Temperature"\n')
+        lines = []
+        for number, line in enumerate(frames.candump(800, 100, "vcan0").splitlines()):
+            lines.append(line)
+            if number % 50 == 0:  # -12.34 °C, big-endian hundredths
+                lines.append(f"{line.split()[0]} vcan0 321#{(-1234 & 0xFFFF):04X}")
+        log, seen = os.path.join(folder, "can.log"), os.path.join(folder, "monitor.txt")
+        with open(log, "w") as file:
+            file.write("\n".join(lines) + "\n")
+        self.stream(folder, 8, "count", "bash", "-c", f"'{self.ifog}' monitor --seconds 7 >'{seen}' & canplayer -I '{log}'; wait")
+        with open(seen) as file:
+            said = file.read()
+        if "coil_degC -12.34" not in said:
+            raise Failure(f"expected coil_degC -12.34 in what the monitor shows: {said[-600:]}")
+        return "coil_degC -12.34 in the sensor's status"
+
     def check_published_equals_offline_bit_for_bit(self):
         """capture → frames → vcan → daemon → LCM → lcm-logger, against `ifog denoise` of the same frames."""
         folder = self.folder("bits", RESOLUTION, 0.02, 200)
