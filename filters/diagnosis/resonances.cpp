@@ -80,6 +80,7 @@ std::vector<Resonance> find_resonances(std::span<const double> error, double per
 std::string resonances_in_words(const std::vector<Resonance>& found) {
   if (found.empty()) return "";
   std::vector<double> frequencies;
+  frequencies.reserve(found.size());
   for (const Resonance& each : found) frequencies.push_back(each.frequency_hz);
   std::sort(frequencies.begin(), frequencies.end());
   std::string list;

@@ -62,6 +62,7 @@ Solved solve_at(const BlockGrid& grid, const Columns& columns, const Eigen::Vect
 
 std::vector<double> logarithmic(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   const double step = count > 1 ? std::log(high / low) / (count - 1) : 0.0;
   for (int i = 0; i < count; ++i) values.push_back(low * std::exp(step * i));
   return values;
