@@ -1,7 +1,10 @@
 #include "filters/diagnosis/figures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "filters/diagnosis/even_error.h"
 
 namespace ifog {
 namespace {
@@ -9,20 +12,8 @@ namespace {
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 double rms_about_mean(std::span<const double> values) {
-  double sum = 0.0;
-  double square = 0.0;
-  double n = 0.0;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    n += 1.0;
-  }
-  if (n < 2.0) return kMissing;
-  const double mean = sum / n;
-  for (const double v : values) {
-    if (std::isfinite(v)) square += (v - mean) * (v - mean);
-  }
-  return std::sqrt(square / n);
+  const auto finite = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  return finite < 2 ? kMissing : std::sqrt(variance_of(values));
 }
 
 double lag_one(std::span<const double> values) {

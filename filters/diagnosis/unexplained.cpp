@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
 
 namespace ifog {
@@ -15,22 +16,6 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-double variance(std::span<const double> values) {
-  double sum = 0.0;
-  double square = 0.0;
-  double n = 0.0;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    n += 1.0;
-  }
-  if (n < 2.0) return 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
-  }
-  return square / n;
 }
 
 template <class... Values>
@@ -119,7 +104,7 @@ SlowRest slow_rest(std::span<const double> left, double period_s) {
       square += d * d;
       n += 1.0;
     }
-    const double all = variance(means);
+    const double all = variance_of(means);
     if (n < 16.0 || !(square > 0.0)) continue;
     const double neighbours = 0.5 * square / n;
     const double sigma = (all / neighbours - 1.0) * std::sqrt(n);
@@ -137,8 +122,8 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
                                  const std::vector<SpectralLine>& peaks) {
   Unexplained found;
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
-  const double before = variance(means_over(error, second));
-  const double after = variance(means_over(left, second));
+  const double before = variance_of(means_over(error, second));
+  const double after = variance_of(means_over(left, second));
   const double white = noise.white_variance * grid.block_s / (static_cast<double>(second) * period_s);
   found.fraction = before > 0.0 ? std::clamp((after - white) / before, 0.0, 1.0) : 0.0;
 

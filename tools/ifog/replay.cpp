@@ -203,15 +203,17 @@ void add_replay(CLI::App& app) {
   command->add_option("--baud", settings->line.baud, "serial: speed, else the driver's");
   command->add_option("--baud-base", settings->line.baud_base,
                       "serial: the UART's clock / 16, where the driver has it wrong");
-  command->add_option("--data-bits", settings->line.data_bits, "serial")
+  command->add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character")
       ->check(CLI::Range(5, 8))
       ->capture_default_str();
-  command->add_option("--parity", settings->line.parity, "serial: none, even or odd; none unless given")
+  command->add_option("--parity", settings->line.parity, "serial: none unless given")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SerialSettings::Parity>{{"none", SerialSettings::Parity::none},
-                                                        {"even", SerialSettings::Parity::even},
-                                                        {"odd", SerialSettings::Parity::odd}}));
-  command->add_option("--stop-bits", settings->line.stop_bits, "serial")
+                      std::map<std::string, SerialSettings::Parity>{{"none", SerialSettings::Parity::none},
+                                                                    {"even", SerialSettings::Parity::even},
+                                                                    {"odd", SerialSettings::Parity::odd}})
+                      .description(""))
+      ->type_name("none|even|odd");
+  command->add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   command->add_option("--json", settings->json, "write the report to this file");
