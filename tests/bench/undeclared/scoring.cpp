@@ -83,6 +83,17 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
         add_parameter(s, name, found, "coefficient", truth.size, std::abs(truth.size) / truth.sigma);
       if (const char* shape = shape_name(truth)) add_parameter(s, name, found, shape, truth.shape);
     }
+  // Every capture has a line with its phase and a step of its own: each may be named.
+  for (const TrueEffect& truth : sensor.effects) {
+    if (truth.form != "line" && truth.form != "step") continue;
+    std::size_t again = records.size();
+    for (std::size_t f = 0; f < used.size(); ++f) {
+      const Effect& found = finding.effects[f].effect;
+      if (again == 0 || !same_names(truth, found) || !same_place(truth, found, record_s)) continue;
+      used[f] = true;
+      --again;
+    }
+  }
 
   const auto left = static_cast<int>(std::count(used.begin(), used.end(), false));
   const int unmatched = s.hidden - s.exact;
