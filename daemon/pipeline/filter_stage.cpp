@@ -153,7 +153,8 @@ bool FilterStage::ask() noexcept {
 bool FilterStage::take_snapshot(FilterSnapshot& out) noexcept {
   if (ask_.load(std::memory_order_acquire) != Ask::answered) return false;
   out = snapshot_;
-  ask_.store(Ask::none, std::memory_order_relaxed);
+  // Release: the filter's last word may be written as soon as this is seen, and not before `out` has it all.
+  ask_.store(Ask::none, std::memory_order_release);
   return true;
 }
 
