@@ -311,10 +311,6 @@ void Engine::guard(const Measurement& m, EstimatorOutput& out) noexcept {
 }
 
 void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
-  if (--until_lag_ <= 0) {
-    until_lag_ = kLagEvery;
-    refresh_lag();
-  }
   for (std::size_t a = 0; a < axes_; ++a) {
     const double rest = rest_->rate(a);
     double rate = rest;
@@ -339,6 +335,11 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     health_.measurement_noise[a] = rest_->rule().measurement_noise();
   }
   health_.floor_hits = rest_->rule().floor_hits();
+  // Last, so that a payment never divides what was owed at one lag by another.
+  if (--until_lag_ <= 0) {
+    until_lag_ = kLagEvery;
+    refresh_lag();
+  }
 }
 
 // Normalised innovation squared and lag-1 autocorrelation, over the last kHealthMemory samples or so.

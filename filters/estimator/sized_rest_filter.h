@@ -2,6 +2,7 @@
 // about the noise, one core each and their weighted mean.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -35,6 +36,8 @@ class SizedRestFilter final : public RestFilter {
       core.p = start_;
     }
     rule_->restart();
+    weighed_ = 0.0;
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) mean_weight_[j] = rule_->weight(j);
     refresh();
   }
 
@@ -77,6 +80,7 @@ class SizedRestFilter final : public RestFilter {
       mixture += weight * c;
     }
     covariance_ = mixture;
+    if (learn && hypotheses_.size() > 1) average_weights();
     refresh();
   }
 
@@ -104,9 +108,19 @@ class SizedRestFilter final : public RestFilter {
     refresh();
   }
 
+  // Of a bank: the mean of its cores' under their long-run weights. Every G(1) is one where the model holds
+  // a constant rate, and the delay of a sum of filters is then the sum of their delays. Not the likeliest
+  // core's: the weights forget in a window, so at rest the likeliest changes all the time, between lags that
+  // are a thousand times apart, and no rotation comes with it.
   Settled settled() const noexcept override {
-    const Core& core = cores_[rule_->likeliest()];
-    return ifog::settled<n>(transition_, core.h, core.gain, core.p);
+    if (hypotheses_.size() == 1) return settled(cores_[0]);
+    Settled mean;
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      const Settled one = settled(cores_[j]);
+      mean.lag += mean_weight_[j] * one.lag;
+      mean.correlation += mean_weight_[j] * one.correlation;
+    }
+    return mean;
   }
 
   bool sound() const noexcept override {
@@ -119,6 +133,19 @@ class SizedRestFilter final : public RestFilter {
 
  private:
   using Core = KalmanCore<n>;
+  // Samples over which the weights of a bank are averaged for its lag: many windows, in each of which they
+  // are new.
+  static constexpr double kWeightMemory = 4096.0;
+
+  Settled settled(const Core& core) const noexcept {
+    return ifog::settled<n>(transition_, core.h, core.gain, core.p);
+  }
+
+  void average_weights() noexcept {
+    weighed_ = std::min(weighed_ + 1.0, kWeightMemory);
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
+      mean_weight_[j] += (rule_->weight(j) - mean_weight_[j]) / weighed_;
+  }
 
   void refresh() noexcept {
     if (hypotheses_.size() == 1) {
@@ -161,6 +188,8 @@ class SizedRestFilter final : public RestFilter {
   typename Core::Matrix start_, transition_, driving_;
   double discretised_dt_s_ = -1.0;
   std::uint32_t valid_ = 0;  // axes of the last measurement
+  std::array<double, Rule::kMaxHypotheses> mean_weight_{};
+  double weighed_ = 0.0;  // measurements in that mean, up to kWeightMemory
 };
 
 template <int n>
