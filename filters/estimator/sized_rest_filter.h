@@ -110,8 +110,8 @@ class SizedRestFilter final : public RestFilter {
 
   // Of a bank: the mean of its cores' under their long-run weights. Every G(1) is one where the model holds
   // a constant rate, and the delay of a sum of filters is then the sum of their delays. Not the likeliest
-  // core's: the weights forget in a window, so at rest the likeliest changes all the time, between lags that
-  // are a thousand times apart, and no rotation comes with it.
+  // core's: in noise the likeliest changes now and then, between lags that are up to five powers of ten
+  // apart, and no rotation comes with it.
   Settled settled() const noexcept override {
     if (hypotheses_.size() == 1) return settled(cores_[0]);
     Settled mean;
@@ -133,8 +133,7 @@ class SizedRestFilter final : public RestFilter {
 
  private:
   using Core = KalmanCore<n>;
-  // Samples over which the weights of a bank are averaged for its lag: many windows, in each of which they
-  // are new.
+  // Samples over which the weights of a bank are averaged for its lag.
   static constexpr double kWeightMemory = 4096.0;
 
   Settled settled(const Core& core) const noexcept {

@@ -1,6 +1,12 @@
 // Multiple-model adaptive estimation: a bank of filters over factors on Q and R, their outputs averaged under
-// their posterior probabilities. Magill, IEEE Trans. AC 10(4), 1965. The probabilities fade, so that a model
-// that has been wrong for long can become right (Maybeck's lower bound serves the same end).
+// their posterior probabilities. Magill, IEEE Trans. AC 10(4), 1965. The probabilities have a lower bound, so
+// that a model that has been wrong for long can become right (Maybeck, Stochastic Models, Estimation and
+// Control 2, 1982, section 10.8).
+//
+// They do not fade besides. At rest a neighbour in the bank loses about a quarter of its gain a sample in
+// log-likelihood, and a memory that is short beside its lag cannot tell it from the right one: forgetting in
+// 50 samples took noise for motion at Q/R = 3e-7, with 2.6 times the RMSE of the right filter against 1.01
+// without. After a change the bound limits what there is to catch up, as in Page's test.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,10 +31,7 @@ constexpr std::array<double, kModels> kFactorOfModel = process_factors();
 
 class Mmae final : public Rule {
  public:
-  explicit Mmae(const FilterSettings& settings)
-      : noise_(settings.measurement_noise), fading_(1.0 - 1.0 / settings.window) {
-    restart();
-  }
+  explicit Mmae(const FilterSettings& settings) : noise_(settings.measurement_noise) { restart(); }
 
   std::span<const double> hypotheses() const noexcept override { return kFactorOfModel; }
   double weight(std::size_t hypothesis) const noexcept override { return weight_[hypothesis]; }
@@ -39,8 +42,7 @@ class Mmae final : public Rule {
     const double c = in.projected + noise_ * kNoiseFactors[j / kProcessFactors.size()] * in.noise_scale;
     double squares = 0.0;
     for (const double v : in.innovations) squares += v * v;
-    log_[j] = fading_ * log_[j] -
-              0.5 * (squares / c + static_cast<double>(in.innovations.size()) * logarithm(c / noise_));
+    log_[j] -= 0.5 * (squares / c + static_cast<double>(in.innovations.size()) * logarithm(c / noise_));
     if (j + 1 == kModels) weigh();
     return c;
   }
@@ -69,7 +71,7 @@ class Mmae final : public Rule {
     for (double& weight : weight_) weight /= sum;
   }
 
-  double noise_, fading_;
+  double noise_;
   std::array<double, kModels> log_{}, weight_{};
   std::size_t likeliest_ = 0;
 };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tests/unit/estimator/drive.h"
 
@@ -43,6 +44,19 @@ TEST(BankAtRest, PaysNoAngleForAChangeOfWeights) {
     for (std::size_t i = 0; i < kept.denoised.size(); ++i)
       most = std::max(most, std::abs(kept.denoised[i] - plain.denoised[i]));
     EXPECT_LT(most, 0.2) << "sigma of one sample, correlation " << correlation;
+  }
+}
+
+// Neighbours in the bank hardly differ in the likelihood of a sample, so evidence has to be kept for long.
+TEST(BankAtRest, IsAsQuietAsTheRightFilterInTheEnd) {
+  constexpr std::size_t kLearned = 20'000;
+  const std::array<std::array<double, 2>, 2> kinds{{{0.0, 1.05}, {0.17, 1.25}}};
+  for (const auto& [correlation, most] : kinds) {
+    const Record record = correlated(2, 200'000, correlation);
+    const Filtered got = run(bank(false), record.measured);
+    const double right = mean_square_error(told_the_truth(record.measured, kWalk), record.truth, kLearned);
+    EXPECT_LT(mean_square_error(got.denoised, record.truth, kLearned), most * most * right)
+        << "correlation " << correlation;
   }
 }
 

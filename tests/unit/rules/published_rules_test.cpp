@@ -132,7 +132,6 @@ TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
   constexpr int kModels = 15;
   std::vector<Scalar> bank;
   std::vector<double> log_weight(kModels, 0.0);
-  const double fade = 1.0 - 1.0 / kWindow;
   expect_equal("mmae", [&](Scalar& s, double z, int k) {
     if (k == 1) {
       for (int j = 0; j < kModels; ++j) {
@@ -147,7 +146,7 @@ TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
       const double prior = f.p + kQ * std::pow(100.0, j % 5 - 2);
       const double c = prior + kR * std::pow(100.0, j / 5 - 1);
       const double innovation = z - f.x;
-      log_weight[at] = fade * log_weight[at] - 0.5 * (innovation * innovation / c + std::log(c));
+      log_weight[at] -= 0.5 * (innovation * innovation / c + std::log(c));
       greatest = std::max(greatest, log_weight[at]);
       f.x += prior / c * innovation;
       f.p = prior * (c - prior) / c;
