@@ -18,9 +18,12 @@ constexpr std::size_t kStepRunUp = 2000;     // samples for the rule to settle b
 constexpr std::size_t kStepWindow = 4000;    // samples looked at after it
 constexpr double kMedianSquare = 0.4549364;  // of a standard normal
 constexpr int kLongestLag = 2000;            // samples
+constexpr std::size_t kLeastAtRest = 40;     // what whiteness() asks for
 
 struct Series {
-  std::vector<std::vector<double>> denoised, innovation, nis;
+  std::vector<std::vector<double>> denoised;
+  std::vector<std::vector<double>> innovation, nis;  // missing in manoeuvres
+  std::size_t at_rest = 0;                           // samples
 };
 
 // Steps between samples; the first is the nominal period.
@@ -54,8 +57,10 @@ Series run(const ComparisonInput& in, std::span<const double> dt, const FilterSe
   for (std::size_t k = 0; k < n; ++k) {
     const EstimatorInput sample = input_at(in, dt, k, 0.0);
     estimator.step(sample, step);
+    const bool at_rest = (step.flags & kManoeuvre) == 0;
+    if (at_rest) ++out.at_rest;
     for (std::size_t a = 0; a < axes; ++a) {
-      const bool there = (sample.valid_axes & (1U << a)) != 0;
+      const bool there = at_rest && (sample.valid_axes & (1U << a)) != 0;
       out.denoised[a][k] = step.denoised_radps[a];
       out.innovation[a][k] = there ? step.innovation_radps[a] : kMissing;
       out.nis[a][k] = there && step.innovation_variance[a] > 0.0
@@ -123,6 +128,18 @@ void add_series_figures(ComparisonRow& row, const ComparisonInput& in, std::span
   }
 }
 
+void add_innovation_figures(ComparisonRow& row, std::span<const double> innovation, std::vector<double> nis) {
+  std::erase_if(nis, [](double v) { return !std::isfinite(v); });
+  if (nis.size() < kLeastAtRest) return;
+  const Whiteness white = whiteness(innovation);
+  row.whiteness_lag1 = white.lag1;
+  row.whiteness_excess = white.excess;
+  row.nis_mean = std::accumulate(nis.begin(), nis.end(), 0.0) / static_cast<double>(nis.size());
+  const auto middle = nis.begin() + static_cast<std::ptrdiff_t>(nis.size() / 2);
+  std::nth_element(nis.begin(), middle, nis.end());
+  row.nis_typical = *middle / kMedianSquare;
+}
+
 }  // namespace
 
 Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& options) {
@@ -153,17 +170,8 @@ Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& opt
       const HeadingClosure closure = heading_closure(series.denoised[a], in.rate[a], dt);
       row.heading_end_rad = closure.end_rad;
       row.heading_max_rad = closure.max_rad;
-      const Whiteness white = whiteness(series.innovation[a]);
-      row.whiteness_lag1 = white.lag1;
-      row.whiteness_excess = white.excess;
-      std::vector<double>& nis = series.nis[a];
-      std::erase_if(nis, [](double v) { return !std::isfinite(v); });
-      if (!nis.empty()) {
-        row.nis_mean = std::accumulate(nis.begin(), nis.end(), 0.0) / static_cast<double>(nis.size());
-        const auto middle = nis.begin() + static_cast<std::ptrdiff_t>(nis.size() / 2);
-        std::nth_element(nis.begin(), middle, nis.end());
-        row.nis_typical = *middle / kMedianSquare;
-      }
+      row.share_at_rest = static_cast<double>(series.at_rest) / static_cast<double>(n);
+      add_innovation_figures(row, series.innovation[a], std::move(series.nis[a]));
       row.step = {step_response(in, dt, settings, a, 20.0), step_response(in, dt, settings, a, 5.0)};
       result.rows.push_back(std::move(row));
     }

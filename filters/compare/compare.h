@@ -42,12 +42,15 @@ struct ComparisonRow {
       adev_radps;                // nothing: the record is too short or too coarse
   double heading_end_rad = 0.0;  // ∫(denoised − compensated)dt over the record
   double heading_max_rad = 0.0;  // its largest excursion
-  double whiteness_lag1 = 0.0;   // lag-1 autocorrelation of the innovations, 0 when white
-  double whiteness_excess =
-      0.0;  // Σ n ρ_k² / 20 over lags 1 … 20: 1 when white, larger when not (Box and Pierce)
+  // Of the filter at rest's innovations, outside manoeuvres: within one its rule learns nothing and the
+  // output is not its own. Nothing when fewer than forty samples are at rest.
+  std::optional<double> whiteness_lag1;  // lag-1 autocorrelation, 0 when white
+  // Σ n ρ_k² / 20 over lags 1 … 20: 1 when white, larger when not (Box and Pierce)
+  std::optional<double> whiteness_excess;
   // Innovation² over its own variance, 1 when the rule knows its noise: the mean, which a few blows can carry
   // away, and the median over the median of a normal law's.
-  double nis_mean = 0.0, nis_typical = 0.0;
+  std::optional<double> nis_mean, nis_typical;
+  double share_at_rest = 1.0;  // of the samples, outside manoeuvres
   std::array<StepResponse, 2> step{};
 };
 

@@ -86,9 +86,10 @@ json row_json(const ComparisonRow& row, const std::string& axis, const FilterSet
   }
   out["heading_end_rad"] = row.heading_end_rad;
   out["heading_max_rad"] = row.heading_max_rad;
-  out["whiteness"] = {{"lag1", row.whiteness_lag1}, {"excess", row.whiteness_excess}};
-  out["nis_mean"] = row.nis_mean;
-  out["nis_typical"] = row.nis_typical;
+  out["whiteness"] = {{"lag1", number(row.whiteness_lag1)}, {"excess", number(row.whiteness_excess)}};
+  out["nis_mean"] = number(row.nis_mean);
+  out["nis_typical"] = number(row.nis_typical);
+  out["share_at_rest"] = row.share_at_rest;
   json steps = json::array();
   for (const StepResponse& step : row.step)
     steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", number(step.samples)}});
@@ -107,7 +108,8 @@ void print_axis(const Comparison& result, int axis, bool reference) {
   std::printf("%-10s %10s", "rule", "std");
   for (const double tau : kComparedTaus) std::printf(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
   if (reference) std::printf(" %10s %10s %8s", "RMSE", "bias", "lag s");
-  std::printf(" %11s %8s %7s %6s %7s %7s\n", "heading deg", "max", "lag-1", "NIS", "20s 90%", "5s 90%");
+  std::printf(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
+              "5s 90%");
   for (const ComparisonRow& row : result.rows) {
     if (row.axis != axis) continue;
     std::printf("%-10s %10s", row.rule.c_str(), cell(row.std_radps, kDegPerHour, "%.4g").c_str());
@@ -119,8 +121,9 @@ void print_axis(const Comparison& result, int axis, bool reference) {
       std::printf("\n");
       continue;
     }
-    std::printf(" %11.2e %8.1e %7.3f %6.2f %7s %7s\n", row.heading_end_rad * kDeg, row.heading_max_rad * kDeg,
-                row.whiteness_lag1, row.nis_typical, cell(row.step[0].samples, 1.0, "%.0f").c_str(),
+    std::printf(" %11.2e %8.1e %7.3f %7s %6s %7s %7s\n", row.heading_end_rad * kDeg,
+                row.heading_max_rad * kDeg, row.share_at_rest, cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
+                cell(row.nis_typical, 1.0, "%.2f").c_str(), cell(row.step[0].samples, 1.0, "%.0f").c_str(),
                 cell(row.step[1].samples, 1.0, "%.0f").c_str());
   }
 }
@@ -154,9 +157,10 @@ void run(const Options& options) {
               options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
               s.measurement_noise, s.window);
   std::printf(
-      "rates in deg/h; heading: integral of denoised - compensated; lag-1: correlation of the innovations;\n"
-      "NIS: their squares over their variance, median over that of a normal law; steps of 20 and 5 sigma in\n"
-      "samples to 90 %%\n");
+      "rates in deg/h; heading: integral of denoised - compensated; at rest: share of samples outside\n"
+      "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
+      "over\n"
+      "that of a normal law; steps of 20 and 5 sigma in samples to 90 %%\n");
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     if (!capture.axes[a].empty()) std::printf("\naxis %s\n", capture.axes[a].c_str());
     print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());

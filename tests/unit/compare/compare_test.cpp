@@ -98,9 +98,41 @@ TEST(Compare, TheConventionalFilterTakesAsLongAsItsClosedFormGainSays) {
   // The filter is told a random walk that is not there: its innovations are a little smaller than it expects,
   // R (1 + K / (2 - K)) against R / (1 - K).
   const double nis = (1.0 + gain / (2.0 - gain)) * (1.0 - gain);
-  EXPECT_NEAR(row.nis_mean, nis, 0.03);
-  EXPECT_NEAR(row.nis_typical, nis, 0.06);
+  ASSERT_TRUE(row.nis_mean && row.nis_typical);
+  EXPECT_NEAR(*row.nis_mean, nis, 0.03);
+  EXPECT_NEAR(*row.nis_typical, nis, 0.06);
+  EXPECT_EQ(row.share_at_rest, 1.0);
   EXPECT_EQ(result.rows[0].rule, "raw");
+}
+
+// Two thirds of the record are turns of a thousand sigma; what the innovations say of the noise is said at
+// rest.
+TEST(Compare, InnovationsAreJudgedOutsideManoeuvres) {
+  constexpr double kPeriod = 0.01, kRatio = 1e-3;
+  const std::size_t n = 60000;
+  auto rate = noise(5, n);
+  std::vector<double> time(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    time[k] = static_cast<double>(k) * kPeriod;
+    if (k % 3000 >= 1000) rate[k] += 1000.0 * std::sin(2 * std::numbers::pi * static_cast<double>(k) / 500.0);
+  }
+  ifog::ComparisonInput in;
+  in.time_s = time;
+  in.rate = {rate};
+  in.period_s = kPeriod;
+  ifog::ComparisonOptions options;
+  options.rules = {"ckf", "mmae"};
+  options.settings.process_noise = kRatio / kPeriod;
+  options.settings.measurement_noise = 1.0;
+  const auto result = ifog::compare_rules(in, options);
+  for (const auto& row : result.rows) {
+    if (row.rule == "raw") continue;
+    EXPECT_LT(row.share_at_rest, 0.4) << row.rule;
+    EXPECT_GT(row.share_at_rest, 0.2) << row.rule;
+    ASSERT_TRUE(row.nis_typical && row.whiteness_lag1) << row.rule;
+    EXPECT_NEAR(*row.nis_typical, 1.0, 0.15) << row.rule;
+    EXPECT_NEAR(*row.whiteness_lag1, 0.0, 0.25) << row.rule;
+  }
 }
 
 }  // namespace
