@@ -117,6 +117,7 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
   take(in.integers("reader_cpus", 0, 1023), out.reader_cpus);
   take(in.integers("filter_cpus", 0, 1023), out.filter_cpus);
   take(in.boolean("spin"), out.spin);
+  take(in.boolean("direct"), out.direct);
   take(in.integer("ring_slots", 2, 1'000'000), out.ring_slots);
   in.refuse_the_rest();
   return out;

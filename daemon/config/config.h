@@ -47,7 +47,8 @@ struct ChannelConfig {
 struct RealtimeConfig {
   int reader_priority = 0, filter_priority = 0;  // SCHED_FIFO; 0: ordinary
   std::vector<int> reader_cpus, filter_cpus;
-  bool spin = false;  // the filter thread never sleeps
+  bool spin = false;   // the filter thread never sleeps
+  bool direct = true;  // the reader thread does an idle filter's step
   int ring_slots = 1024;
 };
 

@@ -150,6 +150,9 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   plan.reader = {sensor.name + ":read", sensor.realtime.reader_priority, sensor.realtime.reader_cpus};
   plan.filter = {sensor.name + ":filt", sensor.realtime.filter_priority, sensor.realtime.filter_cpus};
   plan.spin = sensor.realtime.spin;
+  // Whoever gave the filter processors of its own wants its steps done there.
+  plan.direct = sensor.realtime.direct && (sensor.realtime.filter_cpus.empty() ||
+                                           sensor.realtime.filter_cpus == sensor.realtime.reader_cpus);
   out.pipeline = std::make_unique<Pipeline>(std::move(plan), std::move(transport), std::move(driver),
                                             out.outside, std::move(parts), std::move(publisher));
   return out;

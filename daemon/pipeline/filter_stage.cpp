@@ -36,16 +36,20 @@ FilterStage::~FilterStage() {
   delete retired_.load();
 }
 
+bool FilterStage::step() noexcept {
+  const Increment* const in = queue_.front();
+  if (in == nullptr) return false;
+  if (offered_.load(std::memory_order_relaxed) != nullptr) adopt(in->sequence);
+  process(*in);
+  queue_.pop();
+  return true;
+}
+
 void FilterStage::run(bool spin) noexcept {
   for (;;) {
-    const Increment* const in = queue_.front();
-    if (in != nullptr) {
-      if (offered_.load(std::memory_order_relaxed) != nullptr) adopt(in->sequence);
-      process(*in);
-      queue_.pop();
-    }
+    const bool stepped = step();
     if (ask_.load(std::memory_order_acquire) == Ask::asked) answer();
-    if (in != nullptr) continue;
+    if (stepped) continue;
     if (queue_.finished()) {
       // The last word, for whoever asks after the end. While answered, the snapshot is housekeeping's.
       if (ask_.load(std::memory_order_acquire) != Ask::answered) answer();

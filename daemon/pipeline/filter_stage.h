@@ -1,4 +1,6 @@
-// The filter thread's work: queue → signal chain → encoder → publisher. Stage 2 of a pipeline.
+// The filter's work: queue → signal chain → encoder → publisher. Stage 2 of a pipeline, done by whichever
+// thread is the queue's consumer at the time: the filter thread, or the reader thread in its place
+// (HandOver).
 #pragma once
 
 #include <array>
@@ -47,6 +49,8 @@ class FilterStage {
 
   // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
   void run(bool spin) noexcept;
+  // The queue's consumer: the oldest increment, to its end. False: the queue is empty.
+  bool step() noexcept;
 
   // Any one other thread.
   // New parts, in use from the next sample on; parts offered before and not yet taken are replaced.

@@ -51,6 +51,13 @@ void IncrementQueue::flush() noexcept {
   wakeup_.notify();
 }
 
+bool IncrementQueue::flush_or_borrow(std::size_t most) noexcept {
+  if (has_waiting_) place_waiting();
+  if (ring_.size() <= most && wakeup_.borrow()) return true;
+  wakeup_.notify();
+  return false;
+}
+
 void IncrementQueue::close() noexcept {
   while (has_waiting_ && !place_waiting()) {
     wakeup_.notify();
@@ -62,7 +69,7 @@ void IncrementQueue::close() noexcept {
 
 void IncrementQueue::wait() noexcept {
   wakeup_.wait([this] {
-    return ring_.front() != nullptr || closed_.load(std::memory_order_acquire) ||
+    return ring_.size() > 0 || closed_.load(std::memory_order_acquire) ||
            nudged_.exchange(false, std::memory_order_acq_rel);
   });
   nudged_.exchange(false, std::memory_order_acq_rel);

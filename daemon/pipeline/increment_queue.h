@@ -28,6 +28,11 @@ class IncrementQueue {
   // After a delivery: wakes the consumer once for all of it, and moves a merged increment into room that has
   // come.
   void flush() noexcept;
+  // In place of flush(), for a producer that can do the consumer's work. True: the consumer sleeps, is left
+  // asleep, and the caller is the consumer until give_back(). False, the consumer has been woken: it was
+  // awake, or more than `most` increments wait.
+  [[nodiscard]] bool flush_or_borrow(std::size_t most) noexcept;
+  void give_back() noexcept { wakeup_.give_back(ring_.size() > 0); }
   // No more will come. Waits until the last increment is in the ring.
   void close() noexcept;
 

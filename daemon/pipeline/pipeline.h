@@ -19,6 +19,7 @@ struct PipelinePlan {
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;
   bool spin = false;
+  bool direct = true;  // an idle filter's step is done by the reader thread, see HandOver
 };
 
 class Pipeline {
@@ -42,6 +43,7 @@ class Pipeline {
   [[nodiscard]] const Reader& reader() const noexcept { return reader_; }
   [[nodiscard]] FilterStage& filter() noexcept { return filter_; }
   [[nodiscard]] const IncrementQueue& queue() const noexcept { return queue_; }
+  [[nodiscard]] const HandOver& hand_over() const noexcept { return hand_over_; }
   // What the transport could not get and does without, once; "" for nothing new.
   std::string take_transport_warning() { return reader_.transport().take_warning(); }
   // Next event of either thread.
@@ -54,8 +56,9 @@ class Pipeline {
   PipelinePlan plan_;
   EventQueue reader_events_, filter_events_;
   IncrementQueue queue_;
-  Reader reader_;
   FilterStage filter_;
+  HandOver hand_over_;
+  Reader reader_;
   std::atomic<bool> ended_{false};
   std::thread reader_thread_, filter_thread_;
 };

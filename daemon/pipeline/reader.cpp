@@ -10,13 +10,15 @@ constexpr auto kTurn = std::chrono::milliseconds(250);
 }  // namespace
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, EventQueue& events)
+               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
+               EventQueue& events)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
       outside_(std::move(outside)),
       incrementer_(facts),
       queue_(queue),
+      hand_over_(hand_over),
       events_(events) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
@@ -80,8 +82,8 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   const auto sink = [this](const ifog_sample& sample) { take(sample); };
   if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);
   for (const ifog_can_frame& frame : delivery.frames) driver_.decode_can(frame, sink);
-  queue_.flush();
   publish_counters();
+  hand_over_.delivered();
   counters_.turns.add(1);
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
 }

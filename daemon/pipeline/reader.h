@@ -10,6 +10,7 @@
 #include "daemon/channels/channel_table.h"
 #include "daemon/health/counter.h"
 #include "daemon/health/event.h"
+#include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/sensor_facts.h"
 #include "drivers/host/driver_instance.h"
@@ -30,7 +31,8 @@ struct ReaderCounters {
 class Reader {
  public:
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, EventQueue& events);
+         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
+         EventQueue& events);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
   void run() noexcept;
@@ -53,6 +55,7 @@ class Reader {
   std::shared_ptr<const ChannelTable> outside_;
   Incrementer incrementer_;
   IncrementQueue& queue_;
+  HandOver& hand_over_;
   EventQueue& events_;
   Reading reading_;
   std::uint64_t overflows_seen_ = 0;

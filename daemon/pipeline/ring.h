@@ -47,6 +47,11 @@ class Ring {
   }
   void pop() noexcept { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
+  // Any thread: slots that are committed and not popped, as of some moment during the call.
+  [[nodiscard]] std::size_t size() const noexcept {
+    const std::size_t tail = tail_.load(std::memory_order_acquire);
+    return head_.load(std::memory_order_acquire) - tail;
+  }
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
 
  private:

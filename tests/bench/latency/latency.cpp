@@ -59,8 +59,17 @@ class StampingPublisher final : public Publisher {
 struct Plan {
   double rate_hz = 1000.0, seconds = 3.0;
   int sensors = 1, rounds = 5;
-  bool spin = false;
+  bool spin = false, two_threads = false;
+  std::string place = "any";
   std::string rule = "irwe-akfg";
+
+  // Where the source and who reads it run; empty: wherever the scheduler likes.
+  [[nodiscard]] std::vector<int> source_cpus() const {
+    return place == "any" ? std::vector<int>{} : std::vector<int>{0};
+  }
+  [[nodiscard]] std::vector<int> reader_cpus() const {
+    return place == "any" ? std::vector<int>{} : std::vector<int>{place == "same" ? 0 : 1};
+  }
 };
 
 std::vector<std::uint8_t> frames(std::size_t count) {
@@ -79,13 +88,15 @@ std::vector<std::uint8_t> frames(std::size_t count) {
 }
 
 // Writes one frame a period at absolute deadlines, to the FIFO of every sensor in turn.
-void write_frames(const std::vector<int>& fifos, const std::vector<std::uint8_t>& bytes, double rate_hz,
+void write_frames(const Plan& plan, const std::vector<int>& fifos, const std::vector<std::uint8_t>& bytes,
                   std::vector<std::unique_ptr<Stamps>>& stamps, std::int64_t& used_ns) {
+  apply_to_this_thread({"source", 0, plan.source_cpus()});
   const std::int64_t from_ns = cpu_ns(CLOCK_THREAD_CPUTIME_ID);
   const std::int64_t start_ns = monotonic_ns() + 20'000'000;
   const std::size_t count = bytes.size() / kFrame;
   for (std::size_t n = 0; n < count; ++n) {
-    const std::int64_t due_ns = start_ns + static_cast<std::int64_t>(static_cast<double>(n) / rate_hz * 1e9);
+    const std::int64_t due_ns =
+        start_ns + static_cast<std::int64_t>(static_cast<double>(n) / plan.rate_hz * 1e9);
     const timespec due{due_ns / 1'000'000'000, due_ns % 1'000'000'000};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
     for (std::size_t s = 0; s < fifos.size(); ++s) {
@@ -108,7 +119,8 @@ std::size_t message_size() {
   return encoder.encode(Increment{}, ChainOutput{}, parts).size();
 }
 
-void bare_loop(const std::string& fifo, Stamps& stamps, std::size_t size) {
+void bare_loop(const Plan& plan, const std::string& fifo, Stamps& stamps, std::size_t size) {
+  apply_to_this_thread({"bare", 0, plan.reader_cpus()});
   lcm_t* const lcm = lcm_create(kUrl);
   const int fd = open(fifo.c_str(), O_RDONLY);
   std::vector<std::uint8_t> message(size);
@@ -136,9 +148,10 @@ std::unique_ptr<Pipeline> make_pipeline(const std::string& fifo, const Plan& pla
   PipelinePlan pipeline;
   pipeline.lcm_channel = "IFOG_BENCH";
   pipeline.facts = sensor_facts(driver.description(), plan.rate_hz, 0);
-  pipeline.reader.name = "read";
-  pipeline.filter.name = "filter";
+  pipeline.reader = {"read", 0, plan.reader_cpus()};
+  pipeline.filter = {"filter", 0, plan.reader_cpus()};
   pipeline.spin = plan.spin;
+  pipeline.direct = !plan.two_threads;
   ChainSettings chain;
   chain.facts = pipeline.facts;
   chain.axes = {"x", "y", "z"};
@@ -168,14 +181,14 @@ void run_round(bool daemon, const Plan& plan, const std::vector<std::string>& pa
       pipelines.back()->open();
       pipelines.back()->start();
     } else {
-      loops.emplace_back(bare_loop, path, std::ref(*stamps.back()), size);
+      loops.emplace_back(bare_loop, std::cref(plan), path, std::ref(*stamps.back()), size);
     }
     fifos.push_back(open(path.c_str(), O_WRONLY));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const std::int64_t from_ns = cpu_ns(CLOCK_PROCESS_CPUTIME_ID);
   std::int64_t writer_ns = 0;
-  std::thread writer(write_frames, std::cref(fifos), std::cref(bytes), plan.rate_hz, std::ref(stamps),
+  std::thread writer(write_frames, std::cref(plan), std::cref(fifos), std::cref(bytes), std::ref(stamps),
                      std::ref(writer_ns));
   writer.join();
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -215,7 +228,13 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", plan.seconds, "a round");
   app.add_option("--rounds", plan.rounds);
   app.add_option("--filter", plan.rule);
-  app.add_flag("--spin", plan.spin, "filter threads never sleep");
+  app.add_option(
+         "--place", plan.place,
+         "processors of the source and of its reader: any, the same one, or two (an interrupt on one, "
+         "the reader on another)")
+      ->check(CLI::IsMember({"any", "same", "other"}));
+  auto* const spin = app.add_flag("--spin", plan.spin, "filter threads never sleep");
+  app.add_flag("--two-threads", plan.two_threads, "every step by the filter thread")->excludes(spin);
   CLI11_PARSE(app, argc, argv);
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("ifog-bench-" + std::to_string(getpid()));
@@ -234,9 +253,14 @@ int main(int argc, char** argv) {
   }
   std::sort(bare.latency_us.begin(), bare.latency_us.end());
   std::sort(daemon.latency_us.begin(), daemon.latency_us.end());
-  std::printf("%d sensor(s) at %g Hz, %d interleaved rounds of %g s, filter %s%s, messages of %zu bytes\n",
-              plan.sensors, plan.rate_hz, plan.rounds, plan.seconds, plan.rule.c_str(),
-              plan.spin ? ", spinning" : "", size);
+  std::printf(
+      "%d sensor(s) at %g Hz, %d interleaved rounds of %g s, processors %s, filter %s%s, messages of %zu "
+      "bytes\n",
+      plan.sensors, plan.rate_hz, plan.rounds, plan.seconds, plan.place.c_str(), plan.rule.c_str(),
+      plan.spin          ? ", spinning"
+      : plan.two_threads ? ", two threads"
+                         : "",
+      size);
   std::printf("%-10s %8s %8s %8s %9s %12s %6s\n", "us", "p50", "p99", "p99.9", "max", "CPU/sample", "lost");
   print("bare loop", bare.latency_us, bare.cpu_us, bare.lost);
   print("daemon", daemon.latency_us, daemon.cpu_us, daemon.lost);

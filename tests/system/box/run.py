@@ -41,7 +41,7 @@ def configuration(hertz):
     def sensor(name, transport, options):
         return f'[[sensor]]\nname = "{name}"\ndriver = "{"dbc" if name == "can" else "kvh1750"}"\n' \
                f'[sensor.transport]\n{transport}\n[sensor.options]\n{options}\n' \
-               f'[sensor.realtime]\nreader_priority = 50\nfilter_priority = 49\nring_slots = 16384\nfilter_cpus = [0]\n' \
+               f'[sensor.realtime]\nreader_priority = 50\nfilter_priority = 49\nring_slots = 16384\nreader_cpus = [0]\nfilter_cpus = [0]\n' \
                f'[sensor.filter]\nprocess_noise = 1e-6\nmeasurement_noise = 1e-9\n'
     return "\n".join([
         sensor("serial", 'type = "serial"\ndevice = "/dev/ttyS1"\nbaud = 115200', f'rate_hz = {min(hertz, SERIAL_LIMIT)}'),

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
 
 namespace ifog {
@@ -96,6 +97,95 @@ TEST(IncrementQueue, ASourceThatKeepsItsBytesWaitsInsteadOfMerging) {
   producer.join();
   EXPECT_EQ(expected, kCount + 1);
   EXPECT_EQ(queue.merged(), 0U);
+}
+
+// The consumer's work is done by two threads in turn, and a third calls the consumer at any moment. What they
+// share is plain: ThreadSanitizer sees whether the place is handed over properly.
+TEST(IncrementQueue, AProducerThatBorrowsTheConsumersPlaceKeepsTheOrder) {
+  IncrementQueue queue(16, IncrementQueue::WhenFull::wait);
+  constexpr std::uint64_t kCount = 50'000;
+  std::uint64_t taken = 0, borrowed = 0, woken = 0;
+  const auto take = [&] {
+    const Increment* const in = queue.front();
+    if (in == nullptr) return false;
+    EXPECT_EQ(in->sequence, ++taken);
+    queue.pop();
+    return true;
+  };
+  std::atomic<bool> over{false};
+  std::thread caller([&] {
+    while (!over.load()) {
+      queue.notify();
+      std::this_thread::yield();
+    }
+  });
+  std::thread producer([&] {
+    for (std::uint64_t n = 1; n <= kCount; ++n) {
+      push(queue, n);
+      if (n % 3 == 0 || !queue.flush_or_borrow(4)) continue;
+      ++borrowed;
+      // Now and then something is left over, which wakes the consumer.
+      for (std::uint64_t most = n % 5; most > 0 && take();) --most;
+      queue.give_back();
+    }
+    queue.close();
+  });
+  while (!queue.finished()) {
+    if (take())
+      ++woken;
+    else
+      queue.wait();
+  }
+  producer.join();
+  over.store(true);
+  caller.join();
+  EXPECT_EQ(taken, kCount);
+  EXPECT_GT(borrowed, 0U);
+  EXPECT_GT(woken, 0U);
+}
+
+TEST(IncrementQueue, WhatABorrowerLeavesWakesTheConsumer) {
+  IncrementQueue queue(16, IncrementQueue::WhenFull::merge);
+  std::atomic<std::uint64_t> taken{0};
+  std::thread consumer([&] {
+    while (!queue.finished()) {
+      if (queue.front() == nullptr) {
+        queue.wait();
+        continue;
+      }
+      queue.pop();
+      taken.fetch_add(1);
+    }
+  });
+  for (std::uint64_t n = 1; n <= 200; ++n) {
+    push(queue, n);
+    if (queue.flush_or_borrow(16)) queue.give_back();  // nothing is taken
+    while (taken.load() < n) std::this_thread::yield();
+  }
+  queue.close();
+  consumer.join();
+  EXPECT_EQ(taken.load(), 200U);
+}
+
+TEST(IncrementQueue, MoreThanTheBorrowerWantsGoesToTheConsumer) {
+  IncrementQueue queue(16, IncrementQueue::WhenFull::merge);
+  for (std::uint64_t n = 1; n <= 3; ++n) push(queue, n);
+  std::atomic<int> taken{0};
+  std::atomic<bool> waiting{false};
+  std::thread consumer([&] {
+    for (; queue.front() != nullptr; queue.pop()) taken.fetch_add(1);
+    waiting.store(true);
+    while (!queue.finished()) {
+      queue.wait();
+      for (; queue.front() != nullptr; queue.pop()) taken.fetch_add(1);
+    }
+  });
+  while (!waiting.load()) std::this_thread::yield();
+  for (std::uint64_t n = 4; n <= 6; ++n) push(queue, n);
+  EXPECT_FALSE(queue.flush_or_borrow(2));
+  while (taken.load() < 6) std::this_thread::yield();
+  queue.close();
+  consumer.join();
 }
 
 }  // namespace

@@ -30,11 +30,10 @@ class MemoryTransport final : public Transport {
   void connect(std::string&) override {}
   Delivery receive(std::int64_t) noexcept override {
     Delivery out;
-    if (at_ >= bytes_to_give_.size()) {
-      if (stays_open_.load())
-        std::this_thread::sleep_for(1ms);
-      else
-        end(0);
+    const bool all_given = at_ >= bytes_to_give_.size();
+    if (all_given && !stays_open_.load()) end(0);
+    if (all_given || at_ >= allowed_.load()) {
+      if (state() != TransportState::ended) std::this_thread::sleep_for(1ms);
       return out;
     }
     const std::size_t n = std::min(portion_, bytes_to_give_.size() - at_);
@@ -53,6 +52,7 @@ class MemoryTransport final : public Transport {
 
  public:
   std::atomic<std::size_t> given_{0};
+  std::atomic<std::size_t> allowed_{~std::size_t{0}};  // no more than this is given yet
   std::atomic<bool> stays_open_{false};
 };
 
@@ -98,13 +98,14 @@ std::vector<std::uint8_t> frames(int count) {
 
 struct Rig {
   Rig(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back, std::size_t slots = 1024,
-      std::chrono::microseconds pause = 0us) {
+      std::chrono::microseconds pause = 0us, bool direct = true) {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
     plan.name = "test";
     plan.lcm_channel = "IFOG_TEST";
     plan.facts = sensor_facts(driver.description(), 1000.0, 0);
     plan.ring_slots = slots;
+    plan.direct = direct;
     plan.reader.name = "read";
     plan.filter.name = "filter";
     chain.facts = plan.facts;
@@ -125,6 +126,20 @@ struct Rig {
   }
   void run_to_the_end() {
     pipeline->start();
+    wait_for_the_end();
+  }
+  // One frame at a time until the reader has found the filter thread asleep, then the rest.
+  void run_from_rest_to_the_end() {
+    transport->allowed_ = 0;
+    pipeline->start();
+    while (pipeline->hand_over().done_here() == 0) {
+      transport->allowed_ += kFrame;
+      std::this_thread::sleep_for(5ms);
+    }
+    transport->allowed_ = ~std::size_t{0};
+    wait_for_the_end();
+  }
+  void wait_for_the_end() {
     while (!pipeline->ended()) std::this_thread::sleep_for(1ms);
     pipeline->stop();
   }
@@ -160,9 +175,12 @@ TEST(Pipeline, EverySampleIsPublishedInOrder) {
 
 TEST(Pipeline, TwoRunsGiveTheSameBits) {
   const std::vector<std::uint8_t> bytes = frames(2000);
-  Rig one(bytes, 36, true), other(bytes, 1001, true);
-  one.run_to_the_end();
+  // One frame a delivery and by whichever thread is awake; many, and all steps by the filter thread.
+  Rig one(bytes, 36, true), other(bytes, 1001, true, 1024, 0us, false);
+  one.run_from_rest_to_the_end();
   other.run_to_the_end();
+  EXPECT_GT(one.pipeline->hand_over().done_here(), 0U);
+  EXPECT_EQ(other.pipeline->hand_over().done_here(), 0U);
   const std::vector<rate_t> a = one.publisher->messages(), b = other.publisher->messages();
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -174,7 +192,7 @@ TEST(Pipeline, TwoRunsGiveTheSameBits) {
 
 TEST(Pipeline, AFilterThatCannotKeepUpLosesNoAngle) {
   constexpr int kCount = 3000;
-  Rig rig(frames(kCount), kFrame, false, 8, 300us);
+  Rig rig(frames(kCount), kFrame, false, 8, 300us, false);
   rig.run_to_the_end();
   const std::vector<rate_t> messages = rig.publisher->messages();
   EXPECT_LT(messages.size(), static_cast<std::size_t>(kCount));
@@ -191,6 +209,20 @@ TEST(Pipeline, AFilterThatCannotKeepUpLosesNoAngle) {
   EXPECT_EQ(samples, kCount);
   EXPECT_TRUE(flagged);
   EXPECT_NEAR(angle, sent_angle(kCount), 1e-13);
+  EXPECT_NEAR(messages.back().angle[0], sent_angle(kCount), 1e-13);
+}
+
+// Each step takes longer than a sample: whenever the reader has done two itself it leaves the work to the
+// filter thread for 16 deliveries, 32, 64 …, so that in 3000 it is held up a dozen times and no more.
+TEST(Pipeline, AFilterThatIsSlowIsLeftToItsThread) {
+  constexpr int kCount = 3000;
+  Rig rig(frames(kCount), kFrame, false, 8, 1500us);
+  const HandOver& hand_over = rig.pipeline->hand_over();
+  rig.run_from_rest_to_the_end();
+  EXPECT_EQ(hand_over.too_long(), hand_over.done_here());
+  EXPECT_LE(hand_over.done_here(), 12U);
+  EXPECT_GT(rig.pipeline->queue().merged(), 0U);
+  const std::vector<rate_t> messages = rig.publisher->messages();
   EXPECT_NEAR(messages.back().angle[0], sent_angle(kCount), 1e-13);
 }
 
@@ -213,7 +245,7 @@ TEST(Pipeline, OverflowAndReloadsTogetherLoseNoAngle) {
     sample.environment_fresh = ~0U;
     driver.encode_bytes(sample, bytes);
   }
-  Rig rig(std::move(bytes), kFrame, false, 16, 20us);
+  Rig rig(std::move(bytes), kFrame, false, 16, 20us, false);
   rig.pipeline->start();
   int reloads = 0;
   while (!rig.pipeline->ended()) {
