@@ -81,10 +81,16 @@ Curve allan(const std::string& title, const Capture& capture, std::span<const do
 
 void draw_comparison(const std::string& path, const Capture& capture, const Comparison& result,
                      const std::vector<std::string>& rules) {
-  const std::string outside = "set key outside right top";
+  // The same margins for every panel, so that their times stand below each other.
+  const std::string outside = "set key outside right top; set lmargin 12; set rmargin 20";
   const std::string times = range("x", capture.time_s.front(), capture.time_s.back());
   const auto found = std::find(rules.begin(), rules.end(), FilterSettings{}.rule);
   const auto shown = static_cast<std::size_t>(found == rules.end() ? 0 : found - rules.begin());
+  // The daemon's default last: where rules agree the last curve hides the others.
+  std::vector<std::size_t> order;
+  for (std::size_t r = 0; r < rules.size(); ++r)
+    if (r != shown) order.push_back(r);
+  order.push_back(shown);
   std::vector<Panel> panels;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     const std::string axis = capture.axes[a].empty() ? "" : "Axis " + capture.axes[a] + ": ";
@@ -101,26 +107,32 @@ void draw_comparison(const std::string& path, const Capture& capture, const Comp
     record.curves.back().color = color(shown);
     panels.push_back(std::move(record));
 
-    Panel all{axis + "denoised by each rule, in the range they keep to",
+    Panel all{axis + "denoised by each rule, " + rules[shown] + " on top, in the range they keep to",
               "time, s",
               "rate, °/h",
               false,
               false,
               {},
               {outside, times}};
-    for (std::size_t r = 0; r < rules.size(); ++r) {
+    for (const std::size_t r : order) {
       all.curves.push_back(thinned(rules[r], capture.time_s, result.denoised[r][a]));
       all.curves.back().color = color(r);
     }
     all.extra.push_back(kept_range(all.curves));
     panels.push_back(std::move(all));
   }
-  Panel noise{"Allan deviation of each output", "averaging time, s", "°/h", true, true, {}, {outside}};
+  Panel noise{"Allan deviation of each output",
+              "averaging time, s",
+              "Allan deviation, °/h",
+              true,
+              true,
+              {},
+              {outside}};
   if (capture.axes.size() > 1) noise.title += ", axis " + capture.axes[0];
   const SampleClock clock = sample_clock(capture.time_s);
   noise.curves.push_back(allan("raw", capture, capture.rate_radps[0], clock));
   noise.curves.back().color = kRawColor;
-  for (std::size_t r = 0; r < rules.size(); ++r) {
+  for (const std::size_t r : order) {
     noise.curves.push_back(allan(rules[r], capture, result.denoised[r][0], clock));
     noise.curves.back().color = color(r);
   }
