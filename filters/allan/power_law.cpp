@@ -52,7 +52,7 @@ class Pair {
       last_ = std::max(last_, static_cast<long long>(places1) - 1);
     }
     // Beyond a few spans only flicker is left, falling with the fourth power of the lag or faster.
-    const auto reach = static_cast<long long>(8 * order * m2);
+    const auto reach = 8 * static_cast<long long>(order * m2);
     first_ = std::max(first_, -reach - static_cast<long long>(order * m1));
     last_ = std::min(last_, reach);
   }

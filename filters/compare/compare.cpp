@@ -102,7 +102,7 @@ StepResponse step_response(const ComparisonInput& in, std::span<const double> dt
     reached.push_back(
         step_samples(in, dt, settings, place, axis, sigmas * std::sqrt(settings.measurement_noise)));
   }
-  response.samples = median_reached(std::move(reached));
+  response.samples = median_reached(reached);
   return response;
 }
 

@@ -57,9 +57,10 @@ AgainstReference against_reference(std::span<const double> output, std::span<con
 
   const int longest = std::min(longest_samples, static_cast<int>(output.size() / 4));
   if (longest < 1) return result;
-  std::vector<double> at(static_cast<std::size_t>(2 * longest + 1));
+  std::vector<double> at;
+  at.reserve(2 * static_cast<std::size_t>(longest) + 1);
   for (int shift = -longest; shift <= longest; ++shift)
-    at[static_cast<std::size_t>(shift + longest)] = misfit(output, reference, shift, longest);
+    at.push_back(misfit(output, reference, shift, longest));
   const auto best = std::min_element(at.begin(), at.end());
   const auto worst = std::max_element(at.begin(), at.end());
   // A reference at rest fits at any shift. Asking for 5 % keeps the figure to records that show the lag.
@@ -110,9 +111,10 @@ Whiteness whiteness(std::span<const double> innovations) {
   return result;
 }
 
-std::optional<double> median_reached(std::vector<std::optional<double>> values) {
+std::optional<double> median_reached(const std::vector<std::optional<double>>& values) {
   if (values.empty()) return std::nullopt;
   std::vector<double> order;
+  order.reserve(values.size());
   for (const auto& v : values) order.push_back(v ? *v : std::numeric_limits<double>::infinity());
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
   std::nth_element(order.begin(), middle, order.end());

@@ -37,6 +37,6 @@ struct Whiteness {
 [[nodiscard]] Whiteness whiteness(std::span<const double> innovations);
 
 // Middle value; nothing when more than half are missing, for then the median is not known either.
-[[nodiscard]] std::optional<double> median_reached(std::vector<std::optional<double>> values);
+[[nodiscard]] std::optional<double> median_reached(const std::vector<std::optional<double>>& values);
 
 }  // namespace ifog

@@ -1,7 +1,10 @@
 #include "filters/tune/candidate.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <stdexcept>
 
 namespace ifog {
@@ -95,17 +98,17 @@ class LevelAndArma : public Level {
     Level::start(theta);
     theta[0] = -20.0;
     theta[2] = -4.0;
-    for (int i = 0; i < p_ + q_; ++i) theta[static_cast<std::size_t>(3 + i)] = i == 0 ? 1.5 : 0.0;
-    if (q_ > 0) theta[static_cast<std::size_t>(3 + p_)] = 0.2;
+    const std::span<double> partial = theta.subspan(kFirst, count(p_ + q_));
+    std::fill(partial.begin(), partial.end(), 0.0);
+    partial.front() = 1.5;
+    if (q_ > 0) partial[count(p_)] = 0.2;
   }
   void bounds(std::span<double> low, std::span<double> high) const override {
     Level::bounds(low, high);
     low[2] = -24.0;
     high[2] = 8.0;
-    for (int i = 0; i < p_ + q_; ++i) {
-      low[static_cast<std::size_t>(3 + i)] = -6.0;
-      high[static_cast<std::size_t>(3 + i)] = 6.0;
-    }
+    std::fill_n(low.begin() + kFirst, p_ + q_, -6.0);
+    std::fill_n(high.begin() + kFirst, p_ + q_, 6.0);
   }
   [[nodiscard]] FilterSettings settings(std::span<const double> theta, double scale) const override {
     FilterSettings s = Level::settings(theta, scale);
@@ -127,17 +130,21 @@ class LevelAndArma : public Level {
 
  private:
   [[nodiscard]] std::vector<double> coefficients(std::span<const double> theta) const {
-    const auto part = [&](int first, int count) {
-      std::vector<double> partial;
-      for (int i = 0; i < count; ++i)
-        partial.push_back(std::tanh(theta[static_cast<std::size_t>(3 + first + i)]));
+    const auto part = [&](std::size_t first, int size) {
+      std::vector<double> partial(count(size));
+      const auto from = theta.subspan(kFirst + first, partial.size());
+      std::transform(from.begin(), from.end(), partial.begin(),
+                     [](double value) { return std::tanh(value); });
       return ar_from_partial(partial);
     };
     std::vector<double> c = part(0, p_);
     // 1 + θ(B) is invertible when −θ are the coefficients of a stationary AR.
-    for (const double value : part(p_, q_)) c.push_back(-value);
+    const std::vector<double> moving = part(count(p_), q_);
+    std::transform(moving.begin(), moving.end(), std::back_inserter(c), std::negate<>());
     return c;
   }
+  static constexpr std::size_t kFirst = 3;  // in theta, of the partial correlations
+  static std::size_t count(int n) { return static_cast<std::size_t>(n); }
   int p_, q_;
 };
 

@@ -64,10 +64,10 @@ std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOpt
   for (const double tau : options.tau_s) {
     const double exact = tau / period;
     const auto whole = static_cast<std::size_t>(std::max(1.0, std::round(exact)));
-    if (exact < 0.5 || 2 * whole > samples)
+    const std::size_t most = samples / 2;
+    if (exact < 0.5 || whole > most)
       throw std::runtime_error(name + ": --tau " + number(tau) + " s is outside the record, expected " +
-                               number(period) + " to " + number(static_cast<double>(samples / 2) * period) +
-                               " s");
+                               number(period) + " to " + number(static_cast<double>(most) * period) + " s");
     m.push_back(whole);
   }
   return m;
@@ -81,6 +81,7 @@ std::vector<AllanInterval> intervals_in_order(const AngleSum& sum, const std::ve
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return points[a].m < points[b].m; });
   std::vector<DeviationPoint> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(points[i]);
   const auto found = allan_intervals(sum, sorted, confidence);
   std::vector<AllanInterval> out(points.size());
