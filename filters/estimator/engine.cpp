@@ -152,6 +152,29 @@ void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
     held_ = false;
     follow_rest(m);
   }
+  judge_noise(m);
+}
+
+// A manoeuvre throughout which every axis had nothing but noise was none, and is over.
+void Engine::judge_noise(const Measurement& m) noexcept {
+  bool all_noise = m.valid != 0;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(m.valid, a)) continue;
+    noise_or_motion_.take(a, m.in.rate_radps[a],
+                          in_manoeuvre_ ? trackers_.best_innovation(a) : m.innovation[a]);
+    if (noise_or_motion_.noise(a)) {
+      monitor_.allow(a, noise_or_motion_.variance(a), noise_or_motion_.widening(a));
+    } else {
+      all_noise = false;
+    }
+  }
+  manoeuvre_samples_ = in_manoeuvre_ ? std::min(manoeuvre_samples_ + 1, NoiseOrMotion::kWindow) : 0;
+  if (!all_noise || manoeuvre_samples_ < NoiseOrMotion::kWindow) return;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (has(m.valid, a)) monitor_.adopt(a, noise_or_motion_.variance(a), noise_or_motion_.widening(a));
+  }
+  jump(kHistory);
+  end_manoeuvre();
 }
 
 void Engine::follow_rest(const Measurement& m) noexcept {

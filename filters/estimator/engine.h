@@ -9,6 +9,7 @@
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/fading_trackers.h"
 #include "filters/estimator/innovation_monitor.h"
+#include "filters/estimator/noise_or_motion.h"
 #include "filters/estimator/rest_filter.h"
 #include "filters/estimator/sensor_check.h"
 
@@ -48,6 +49,7 @@ class Engine {
   void end_manoeuvre() noexcept;
   void hold(const Measurement& m, EstimatorOutput& out) noexcept;
   void admit_held() noexcept;
+  void judge_noise(const Measurement& m) noexcept;
   void jump(int since) noexcept;
   void remember(const Axes& rate, std::uint32_t valid) noexcept;
   [[nodiscard]] std::span<const Axes> recent(std::size_t count) noexcept;
@@ -64,6 +66,7 @@ class Engine {
   std::unique_ptr<RestFilter> rest_;
   SensorCheck check_;
   InnovationMonitor monitor_;
+  NoiseOrMotion noise_or_motion_;
   FadingTrackers trackers_;
   AngleLedger ledger_;
   EstimatorHealth health_;
@@ -77,6 +80,7 @@ class Engine {
   std::uint32_t started_ = 0, booked_ = 0;  // axes that have a state, axes whose angle is being kept
   bool first_ = true, in_manoeuvre_ = false, held_ = false, settling_ = false, lost_ = false;
   int quiet_ = 0, calm_ = 0, until_lag_ = 0;
+  int manoeuvre_samples_ = 0;
   std::int64_t steps_ = 0;
   double rest_gain_ = 0.0;          // at rest, averaged
   double settling_variance_ = 0.0;  // of the rate after the last measurement while P settles

@@ -13,6 +13,8 @@ constexpr double kMovedRatio = 2.0;
 // The same while running. Noise correlated by 0.6 from sample to sample reaches it.
 constexpr double kMostOverStill = 4.0;
 
+// What was measured over thousands of samples may have been this much too small.
+constexpr double kAllowance = 1.25;
 // What a single sum may say about the colour, in squared sigmas: a manoeuvre about to be found is none.
 constexpr double kColourClip = 16.0;
 
@@ -79,7 +81,24 @@ void InnovationMonitor::learn_colour(std::size_t axis) noexcept {
     // Relative error of such a variance; sums that overlap count for fewer.
     const double overlap = std::max(1.0, 2.0 * kLadder[rung] / (3.0 * kColourEvery));
     const double certain = variance / (1.0 + 2.0 * std::sqrt(2.0 * overlap * share));
-    colour.widening[rung] = std::clamp(certain, 1.0, kMostColour);
+    colour.widening[rung] = std::clamp(certain, 1.0, colour.most);
+  }
+}
+
+void InnovationMonitor::allow(std::size_t axis, double variance, double widening) noexcept {
+  allowed_[axis] = kAllowance * variance;
+  colour_[axis].most = std::max(kMostColour, kAllowance * widening);
+}
+
+void InnovationMonitor::adopt(std::size_t axis, double variance, double widening) noexcept {
+  allow(axis, variance, widening);
+  variance_[axis] = variance;
+  Colour& colour = colour_[axis];
+  colour.count = kColourMemory / 8.0;
+  for (std::size_t rung = 0; rung < kLadder.size(); ++rung) {
+    // The sum of m samples varies m times as much as white noise's at most.
+    const double wide = std::clamp(kAllowance * widening, 1.0, static_cast<double>(kLadder[rung]));
+    colour.variance[rung] = colour.widening[rung] = wide;
   }
 }
 
@@ -93,7 +112,8 @@ bool InnovationMonitor::learn(std::size_t axis, double innovation, double factor
   variance_[axis] += (square - variance_[axis]) / learned_[axis];
   if (armed_) {
     if (still_[axis].count >= kMemory)
-      variance_[axis] = std::min(variance_[axis], kMostOverStill * still_[axis].variance);
+      variance_[axis] =
+          std::min(variance_[axis], std::max(kMostOverStill * still_[axis].variance, allowed_[axis]));
     return false;
   }
   if (learned_[axis] < kLearning) return false;

@@ -55,6 +55,12 @@ class InnovationMonitor {
   // taken for noise.
   void learn_still(std::size_t axis, double rate) noexcept;
 
+  // What has long been seen to be noise may be this loud, (rad/s)^2, and its sums this much wider than white
+  // noise's, whatever third differences say.
+  void allow(std::size_t axis, double variance, double widening) noexcept;
+  // Takes that for the noise at once, after a manoeuvre that was none.
+  void adopt(std::size_t axis, double variance, double widening) noexcept;
+
   // Forgets the sums, keeps the scale: the change was dealt with.
   void rearm() noexcept { length_ = 0; }
 
@@ -83,9 +89,11 @@ class InnovationMonitor {
   std::array<std::array<double, kRing>, kMaxAxes> sums_{};  // of clipped innovations, up to each sample
   std::array<double, kMaxAxes> variance_{};
   std::array<double, kMaxAxes> learned_{};
+  std::array<double, kMaxAxes> allowed_{};  // variance that was seen to be noise
   struct Colour {
     std::array<double, kLadder.size()> variance;  // of each sum over that of white noise
-    std::array<double, kLadder.size()> widening;  // the part of it that is certain, 1 to kMostColour
+    std::array<double, kLadder.size()> widening;  // the part of it that is certain, 1 to `most`
+    double most = kMostColour;
     double count = kColourPrior;
     Colour() noexcept {
       variance.fill(1.0);

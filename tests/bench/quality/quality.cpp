@@ -27,15 +27,16 @@ constexpr int kSamples = 12'000;
 constexpr std::size_t kFrom = 1000;
 constexpr double kPeriod = 0.01;
 
-double rmse(const std::vector<double>& estimate, const std::vector<double>& truth) {
+double rmse(const std::vector<double>& estimate, const std::vector<double>& truth, std::size_t from = kFrom) {
   double sum = 0.0;
-  for (std::size_t i = kFrom; i < truth.size(); ++i)
+  for (std::size_t i = from; i < truth.size(); ++i)
     sum += (estimate[i] - truth[i]) * (estimate[i] - truth[i]);
-  return std::sqrt(sum / static_cast<double>(truth.size() - kFrom));
+  return std::sqrt(sum / static_cast<double>(truth.size() - from));
 }
 
 struct Outcome {
   std::vector<double> denoised;
+  std::vector<bool> manoeuvre;
   ifog::EstimatorHealth health;
 };
 
@@ -51,6 +52,7 @@ Outcome run(const ifog::FilterSettings& settings, const std::vector<double>& mea
     estimator.step(in, out);
     ++in.sequence;
     outcome.denoised.push_back(out.denoised_radps[0]);
+    outcome.manoeuvre.push_back((out.flags & ifog::kManoeuvre) != 0);
   }
   outcome.health = estimator.health();
   return outcome;
@@ -132,6 +134,38 @@ void false_triggers(double ratio, long samples) {
               static_cast<unsigned long long>(manoeuvres), static_cast<unsigned long long>(gated));
 }
 
+// The same in noise whose neighbouring samples are correlated, once the colour is learned, and what following
+// costs there.
+void coloured(int samples) {
+  constexpr std::size_t kLearned = 20'000;
+  constexpr std::uint64_t kSeeds = 4;
+  std::printf(
+      "\nAt rest in coloured noise, irwe-akfg + following, %llu records of %d samples, the first %zu not "
+      "counted.\n\n| correlation of neighbours | Q/R | samples in manoeuvres | most in a record | RMSE over "
+      "that "
+      "without following |\n|---|---|---|---|---|\n",
+      static_cast<unsigned long long>(kSeeds), samples, kLearned);
+  for (const double correlation : {0.5, 0.7, 0.8, 0.9, 0.95, 0.98}) {
+    for (const double ratio : {1e-3, 1e-6}) {
+      double share = 0.0, most = 0.0, followed = 0.0, plain = 0.0;
+      for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        const Record record =
+            ifog::bench::make_record(ifog::bench::scenarios()[0], seed + 2000, samples, ratio, correlation);
+        const Outcome got = run(settings({"irwe-akfg", true}, ratio, 1.0), record.measured);
+        const Outcome without = run(settings({"irwe-akfg", false}, ratio, 1.0), record.measured);
+        const auto moving = std::count(got.manoeuvre.begin() + kLearned, got.manoeuvre.end(), true);
+        const double part = static_cast<double>(moving) / (samples - static_cast<double>(kLearned));
+        share += part / kSeeds;
+        most = std::max(most, part);
+        followed += std::pow(rmse(got.denoised, record.truth, kLearned), 2);
+        plain += std::pow(rmse(without.denoised, record.truth, kLearned), 2);
+      }
+      std::printf("| %g | %g | %.2f %% | %.2f %% | %.3f |\n", correlation, ratio, 100 * share, 100 * most,
+                  std::sqrt(followed / plain));
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -155,5 +189,6 @@ int main(int argc, char** argv) {
   }
   study(ratio, seeds);
   if (samples > 0) false_triggers(ratio, samples);
+  if (samples > 0) coloured(static_cast<int>(std::clamp(samples / 10, 50'000L, 1'000'000L)));
   return 0;
 }

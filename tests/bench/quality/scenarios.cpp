@@ -42,15 +42,18 @@ constexpr std::array kScenarios{Scenario{"static", still},    Scenario{"step 20Ï
 
 std::span<const Scenario> scenarios() { return kScenarios; }
 
-Record make_record(const Scenario& scenario, std::uint64_t seed, int samples, double ratio) {
+Record make_record(const Scenario& scenario, std::uint64_t seed, int samples, double ratio,
+                   double correlation) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   Record record;
-  double walk = 0.0;
+  double walk = 0.0, noise = 0.0;
   for (int i = 0; i < samples; ++i) {
     if (i > 0) walk += std::sqrt(ratio) * normal(random);
+    const double fresh = normal(random);
+    noise = i == 0 ? fresh : correlation * noise + std::sqrt(1.0 - correlation * correlation) * fresh;
     record.truth.push_back(walk + scenario.motion(i));
-    record.measured.push_back(record.truth.back() + normal(random));
+    record.measured.push_back(record.truth.back() + noise);
   }
   return record;
 }

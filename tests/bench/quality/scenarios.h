@@ -19,8 +19,10 @@ struct Record {
   std::vector<double> truth, measured;
 };
 
-// A random walk of variance ratio a step in unit white noise, plus the motion.
-Record make_record(const Scenario& scenario, std::uint64_t seed, int samples, double ratio);
+// A random walk of variance ratio a step in unit noise, plus the motion. correlation: of neighbouring samples
+// of the noise, an autoregressive process of first order.
+Record make_record(const Scenario& scenario, std::uint64_t seed, int samples, double ratio,
+                   double correlation = 0.0);
 
 // The scalar Kalman filter that knows both variances (but no motion), by hand: what every rule is measured
 // against.
