@@ -199,16 +199,17 @@ void Engine::follow_rest(const Measurement& m) noexcept {
 // share.
 double Engine::noise(std::size_t axis) const noexcept { return monitor_.variance(axis) * (1.0 - rest_gain_); }
 
-// One sample that nothing else supports: passed over, and booked in case the next one supports it.
+// A sample that nothing else supports yet: passed over, and booked in case the next one supports it. In noise
+// with tails or a colour it takes several in a row.
 void Engine::hold(const Measurement& m, EstimatorOutput& out) noexcept {
   out.flags |= kGated;
   ++health_.gated;
   rest_->skip();
+  if (!held_) held_angle_ = {};
   held_ = true;
   for (std::size_t a = 0; a < axes_; ++a) {
-    held_angle_[a] = 0.0;
     if (!has(m.valid, a) || in_manoeuvre_) continue;
-    held_angle_[a] = (m.in.rate_radps[a] - last_output_[a]) * m.dt_s;
+    held_angle_[a] += (m.in.rate_radps[a] - last_output_[a]) * m.dt_s;
     // Clipped, it counts for the scale: what happens to one sample in a hundred is the sensor's noise.
     monitor_.learn(a, m.innovation[a], m.noise_scale);
   }
