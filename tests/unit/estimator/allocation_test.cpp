@@ -1,50 +1,10 @@
 // Heap allocations of Estimator::step(): none, whatever the rule, the weights and the model, through rest,
-// outliers, gaps, missing samples, a manoeuvre and a divergence. malloc itself is replaced, so that Eigen's
-// own allocations count.
+// outliers, gaps, missing samples, a manoeuvre and a divergence.
 #include <gtest/gtest.h>
-
-#include <atomic>
-#include <cerrno>
-#include <cstdlib>
 
 #include "filters/rules/rule.h"
 #include "tests/unit/estimator/drive.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define IFOG_SANITIZED 1
-#else
-#define IFOG_SANITIZED 0
-#endif
-
-namespace {
-std::atomic<bool> counting{false};
-std::atomic<std::uint64_t> allocations{0};
-void count() {
-  if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
-}
-}  // namespace
-
-#if !IFOG_SANITIZED
-// glibc's own, under the names it exports for this purpose.
-extern "C" {
-void* __libc_malloc(std::size_t);                 // NOLINT(bugprone-reserved-identifier)
-void* __libc_memalign(std::size_t, std::size_t);  // NOLINT(bugprone-reserved-identifier)
-
-void* malloc(std::size_t size) {
-  count();
-  return __libc_malloc(size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  count();
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
-  count();
-  *out = __libc_memalign(alignment, size);
-  return *out == nullptr ? ENOMEM : 0;
-}
-}
-#endif
+#include "tests/unit/malloc_counter.h"
 
 namespace {
 
@@ -56,7 +16,7 @@ std::uint64_t allocations_of(const ifog::FilterSettings& settings) {
   ifog::Estimator estimator(settings, 3, kPeriod);
   ifog::EstimatorInput in;
   ifog::EstimatorOutput out;
-  counting = true;
+  count_allocations(true);
   for (std::size_t i = 0; i < r.measured.size(); ++i) {
     in.sequence = i;
     in.dt_s = i % 701 == 700 ? 20 * kPeriod : kPeriod;
@@ -65,18 +25,14 @@ std::uint64_t allocations_of(const ifog::FilterSettings& settings) {
     in.rate_radps = {rate, -rate, 0.5 * rate};
     estimator.step(in, out);
   }
-  counting = false;
-  return allocations.exchange(0);
+  count_allocations(false);
+  return take_allocations();
 }
 
 TEST(Allocation, NoStepAllocates) {
-  if (IFOG_SANITIZED)
+  if (!allocations_can_be_counted())
     GTEST_SKIP() << "a sanitizer has its own allocator; a build without one (preset release) counts";
-  // The counter counts.
-  counting = true;
-  free(malloc(1));  // NOLINT(cppcoreguidelines-no-malloc)
-  counting = false;
-  ASSERT_GT(allocations.exchange(0), 0U);
+  ASSERT_TRUE(allocation_counter_works());
 
   struct Model {
     const char* name;
