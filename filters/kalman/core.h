@@ -33,14 +33,21 @@ struct KalmanCore {
     }
   }
 
-  [[nodiscard]] double rate(int axis) const noexcept { return h.dot(x.col(axis)); }
-  [[nodiscard]] double variance() const noexcept { return h.dot(p * h); }
+  // A single state is the rate itself, h = 1: no product with it, each of which the next step would wait for.
+  [[nodiscard]] double rate(int axis) const noexcept {
+    if constexpr (n == 1) return x(0, axis);
+    return h.dot(x.col(axis));
+  }
+  [[nodiscard]] double variance() const noexcept {
+    if constexpr (n == 1) return p(0, 0);
+    return h.dot(p * h);
+  }
 
   // Gain and covariance for innovation covariance c >= h'P h. In Joseph's form, in which R = c - h'P h enters
   // as a square: it equals (13) exactly and stays positive where (13) loses digits.
   void correct(double c) noexcept {
     if constexpr (n == 1) {
-      // A single state is the rate itself, h = 1; one division then serves gain and covariance.
+      // One division then serves gain and covariance.
       gain(0) = p(0, 0) / c;
       p(0, 0) = gain(0) * (c - p(0, 0));
     } else {
