@@ -32,7 +32,7 @@ std::string recording(int count) {
     sample.environment_fresh = ~0U;
     driver.encode_bytes(sample, bytes);
   }
-  const std::string path =
+  std::string path =
       std::filesystem::temp_directory_path() / ("ifog-allocation-" + std::to_string(getpid()) + ".kvh");
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
