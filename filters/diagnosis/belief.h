@@ -2,6 +2,8 @@
 // same error. Predictions average over both.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "filters/model/model.h"
@@ -21,10 +23,19 @@ struct NoiseBelief {
   std::vector<double> flicker_s;  // time constants of the bank
 };
 
+// A bias that depends on which way a channel came, and that no form corrects; see hysteresis.h.
+struct Hysteresis {
+  std::string channel;
+  double half_width = 0.0;   // of the play, in the channel's unit
+  double coefficient = 0.0;  // rad/s per unit of the channel
+  double likelihood_ratio = 0.0;
+};
+
 // All effects, with one of them replaced by what it cannot be told from.
 struct OtherExplanation {
   std::vector<Effect> effects;
   double weight = 0.0;  // likelihood beside that of the effects reported
+  std::optional<Hysteresis> hysteresis;
 };
 
 }  // namespace ifog

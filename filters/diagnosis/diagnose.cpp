@@ -6,12 +6,15 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/consistent.h"
 #include "filters/diagnosis/drop.h"
 #include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
 #include "filters/diagnosis/findings.h"
+#include "filters/diagnosis/hysteresis.h"
 #include "filters/diagnosis/judge.h"
 #include "filters/diagnosis/lines.h"
+#include "filters/diagnosis/loop_rivals.h"
 #include "filters/diagnosis/moving_line.h"
 #include "filters/diagnosis/outliers.h"
 #include "filters/diagnosis/prediction.h"
@@ -21,6 +24,7 @@
 #include "filters/diagnosis/resonances.h"
 #include "filters/diagnosis/search.h"
 #include "filters/diagnosis/series.h"
+#include "filters/diagnosis/steady.h"
 #include "filters/diagnosis/tries.h"
 #include "filters/diagnosis/unexplained.h"
 
@@ -31,6 +35,9 @@ constexpr int kFolds = 4;
 constexpr int kDwellFolds = 10;
 constexpr double kWorse = 1.05;
 constexpr double kWorseSlowly = 1.2;
+constexpr double kOpposed = 2.5;     // standard deviations
+constexpr double kUnsteady = 16.27;  // chi-square of three degrees of freedom, 0.1 %
+constexpr double kUnsteadyShare = 0.2;
 
 class Account {
  public:
@@ -81,6 +88,10 @@ class Account {
     }
     take_effects();
     clean_data_ = with_reconstructed_channels(data_);
+    if (set_hysteresis_apart()) {
+      found_ = search_effects(data_, search);
+      take_effects();
+    }
     drop_what_does_not_hold();
     fit_jointly();
     write_effects();
@@ -95,7 +106,7 @@ class Account {
   // Whether the effects make the error on held-out data smaller: what is quick, and what a heading is made
   // of, where chance has fewer pieces to average over.
   [[nodiscard]] bool holds() const {
-    for (const auto& [pieces, most] : {std::pair{2000.0, kWorse}, std::pair{20.0, kWorseSlowly}}) {
+    const auto grows = [&](double pieces, double most) {
       double before = 0.0;
       double after = 0.0;
       for (const EvenError& error : errors_) {
@@ -104,9 +115,50 @@ class Account {
         before += variance_of(means_over(error.before, count));
         after += variance_of(means_over(error.held_out, count));
       }
-      if (after > most * before) return false;
+      return after > most * before;
+    };
+    return !grows(2000.0, kWorse) && (!grows(20.0, kWorseSlowly) || slow_noise_may_oppose());
+  }
+
+  // Slow noise that happens to run against the effects hides them in the raw error, and their removal lays it
+  // bare. That is no reason to leave them out where noise as large as the model's does it now and then.
+  [[nodiscard]] bool slow_noise_may_oppose() const {
+    const Columns all = design(clean_data_, found_.clean);
+    const Eigen::Index k = constant_columns();
+    const Eigen::Index p = all.cols() - 1 - k;
+    Columns columns(all.rows(), k + 2);
+    columns << all.leftCols(1 + k), all.rightCols(p) * found_.clean_coefficients.tail(p);
+    const Eigen::VectorXd taken = Eigen::VectorXd::Ones(k + 1);
+    const Eigen::MatrixXd known = Eigen::MatrixXd::Zero(k + 1, k + 1);
+    return disagreement(data_.grid, found_.noise, columns, k, taken, known) < kOpposed;
+  }
+
+  // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
+  bool set_hysteresis_apart() {
+    result_.hysteresis = certain_hysteresis(clean_data_, fit_loops(clean_data_, found_.clean, found_.noise),
+                                            options_.significance);
+    if (!result_.hysteresis) return false;
+    for (std::size_t c = 0; c < data_.channels.size(); ++c) {
+      if (data_.channels[c].name != result_.hysteresis->channel) continue;
+      const Eigen::VectorXd loop = hysteresis_loop(clean_data_, c, result_.hysteresis->half_width);
+      for (std::size_t b = 0; b < data_.grid.size(); ++b) {
+        const auto row = static_cast<Eigen::Index>(b);
+        if (data_.grid.valid[b]) data_.grid.error[row] -= result_.hysteresis->coefficient * loop[row];
+      }
     }
+    clean_data_.grid.error = data_.grid.error;
     return true;
+  }
+
+  // What a few outliers, a change of the noise or one part of the record make up is no effect.
+  [[nodiscard]] bool stands(std::size_t i) const {
+    const NoiseShape& shape = found_.noise.shape;
+    const double ratio = std::min(ratio_without_outliers(clean_data_, found_.clean, i, shape),
+                                  ratio_in_changing_noise(clean_data_, found_.clean, i, shape));
+    if (tail(ratio, 1) * found_.tries >= options_.significance) return false;
+    if (data_.grid.dwells) return true;  // there contiguous parts are held out in turn
+    const Unsteadiness unsteady = unsteadiness(clean_data_, found_.clean, i, shape);
+    return unsteady.square < kUnsteady || unsteady.share < kUnsteadyShare;
   }
 
   // The last word is the error on held-out data: effects that make it larger are no model, whatever their
@@ -121,12 +173,7 @@ class Account {
       take_effects();
     };
     for (std::size_t i = 0; i < found_.clean.size();) {
-      const NoiseShape& shape = found_.noise.shape;
-      const double ratio = std::min(ratio_without_outliers(clean_data_, found_.clean, i, shape),
-                                    ratio_in_changing_noise(clean_data_, found_.clean, i, shape));
-      const bool stands = found_.clean[i].channel == Candidate::kNone ||
-                          tail(ratio, 1) * found_.tries < options_.significance;
-      if (stands)
+      if (found_.clean[i].channel == Candidate::kNone || stands(i))
         ++i;
       else
         drop(i);
@@ -305,6 +352,8 @@ class Account {
 
   void write_effects() {
     Findings findings = findings_of(data_, clean_data_, found_, joint_, options_.axis);
+    add_loop_rivals(clean_data_, fit_loops(clean_data_, found_.clean, found_.noise), found_.noise.shape,
+                    options_.axis, findings);
     result_.effects = std::move(findings.effects);
     result_.indistinguishable = std::move(findings.pairs);
     result_.others = std::move(findings.others);
@@ -343,6 +392,7 @@ class Account {
     result_.unexplained = describe_unexplained(longest->before, longest->after, longest->start_s,
                                                data_.grid.sample_s, found_.noise, data_.grid, peaks);
     if (moving_) describe_moving(*moving_, result_.unexplained);
+    if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     if (!moving_ && !data_.grid.dwells) {
       const std::string words = resonances_in_words(find_resonances(longest->after, data_.grid.sample_s));
       if (!words.empty()) result_.remarks.push_back(words);

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,8 +60,8 @@ struct Indistinguishable {
 
 struct Unexplained {
   double fraction = 0.0;  // of the variance of the error that is neither white noise nor explained
-  std::string
-      kind;  // "nothing", "slow", "line", "moving_line", "bursts", "changing_variance", "uncorrelated"
+  // "nothing", "slow", "line", "moving_line", "bursts", "changing_variance", "hysteresis", "uncorrelated"
+  std::string kind;
   std::string hint;
   double frequency_hz = 0.0;    // "line", "moving_line"
   std::vector<double> times_s;  // "bursts"
@@ -98,6 +99,7 @@ struct Diagnosis {
   std::map<std::string, double> before, after;  // held-out figures, units in their names
   std::vector<Indistinguishable> indistinguishable;
   Unexplained unexplained;
+  std::optional<Hysteresis> hysteresis;
   HeadingPrediction heading;  // if the channels run as they did in the longest record
   NoiseBelief belief;
   std::vector<OtherExplanation> others;

@@ -11,8 +11,6 @@
 namespace ifog {
 namespace {
 
-// Another explanation that loses more than this, twice the log-likelihood, weighs less than 1 %.
-constexpr double kNoRival = 9.2;
 // The joint fit is linear in the logarithm of a time constant: further it is not to be trusted.
 constexpr double kFarthest = 0.3;
 
@@ -31,10 +29,16 @@ bool is_searched(const ModelParameter& parameter, const std::string& form) {
                         : parameter.name == time_constant_name(form_named(form).value_or(Form::kRate));
 }
 
-// All effects fitted by generalised least squares, at the time constants they have.
-std::vector<Effect> fitted(const BlockData& data, const std::vector<Candidate>& candidates,
-                           const NoiseShape& shape, const std::string& axis) {
-  const Columns columns = design(data, candidates);
+}  // namespace
+
+std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
+                                   const NoiseShape& shape, const std::string& axis,
+                                   const Eigen::VectorXd* beside) {
+  Columns columns = design(data, candidates);
+  if (beside) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) = *beside;
+  }
   const Eigen::VectorXd c = solve(data.grid, shape, columns);
   Eigen::Index at = static_cast<Eigen::Index>(data.grid.starts.size()) - 1;
   std::vector<Effect> effects;
@@ -47,8 +51,6 @@ std::vector<Effect> fitted(const BlockData& data, const std::vector<Candidate>& 
   }
   return effects;
 }
-
-}  // namespace
 
 JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& found) {
   JointFit joint = joint_fit(clean, found.clean, found.clean_coefficients, found.noise);
@@ -122,8 +124,9 @@ Findings findings_of(const BlockData& data, const BlockData& clean, const Search
   for (const Alternative& alternative : found.alternatives) {
     std::vector<Candidate> instead = found.clean;
     instead[alternative.of] = alternative.candidate;
-    OtherExplanation other{fitted(clean, instead, found.noise.shape, axis),
-                           std::exp(-0.5 * std::max(0.0, alternative.loss))};
+    OtherExplanation other{fitted_effects(clean, instead, found.noise.shape, axis),
+                           std::exp(-0.5 * std::max(0.0, alternative.loss)),
+                           {}};
     Indistinguishable pair;
     pair.effects = {findings.effects[alternative.of].effect, other.effects[alternative.of]};
     pair.correlation = alternative.correlation;

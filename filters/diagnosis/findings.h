@@ -18,6 +18,15 @@ struct Findings {
   std::vector<OtherExplanation> others;  // with the effects' parameters fitted anew
 };
 
+// Another explanation that loses more than this, twice the log-likelihood, weighs less than 1 %.
+inline constexpr double kNoRival = 9.2;
+
+// All effects fitted by generalised least squares, at the time constants they have; `beside`: one more
+// regressor in the fit.
+std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
+                                   const NoiseShape& shape, const std::string& axis,
+                                   const Eigen::VectorXd* beside = nullptr);
+
 // Coefficients, time constants and their errors from `joint`. clean: the reconstructed channels.
 Findings findings_of(const BlockData& data, const BlockData& clean, const SearchResult& found,
                      const JointFit& joint, const std::string& axis);

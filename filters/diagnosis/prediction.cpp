@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "filters/diagnosis/hysteresis.h"
 #include "filters/diagnosis/uncertainty.h"
 
 namespace ifog {
@@ -135,6 +136,13 @@ Effects effects_on(const BlockData& next, const BlockData& held, const std::vect
   return on;
 }
 
+void add_loop(const BlockData& data, const Hysteresis& known, Eigen::VectorXd& to) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.channels[c].name == known.channel)
+      to += known.coefficient * hysteresis_loop(data, c, known.half_width);
+  }
+}
+
 // Mean square over the phase of a line of this frequency and amplitude.
 double line_square(const Weights& weights, const Effect& line) {
   const double turn = 2.0 * std::numbers::pi * parameter(line, "frequency_hz") * weights.step_s;
@@ -186,11 +194,13 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   for (const FoundEffect& found : diagnosis.effects) mine.push_back(found.effect);
   const BlockData data = cut_to_blocks({next});
   const BlockData held = held_in_range(data, diagnosis.ranges);
-  const Effects on = effects_on(data, held, mine);
+  Effects on = effects_on(data, held, mine);
+  if (diagnosis.hysteresis) add_loop(data, *diagnosis.hysteresis, on.left);
   std::vector<Effects> others;
   double all = 1.0;
   for (const OtherExplanation& other : diagnosis.others) {
     others.push_back(effects_on(data, held, other.effects));
+    if (other.hysteresis) add_loop(data, *other.hysteresis, others.back().going_on);
     all += other.weight;
   }
   const auto n = static_cast<Eigen::Index>(on.gradient.cols());

@@ -161,8 +161,9 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
 }
 
 std::optional<std::pair<Candidate, Candidate>> Scan::best_pair(const std::vector<Candidate>& base,
-                                                               const NoiseFit& noise) const {
-  std::vector<Scored> scored = score(base, noise, false);
+                                                               const NoiseFit& noise,
+                                                               const NoiseShape* at) const {
+  std::vector<Scored> scored = score(base, noise, false, nullptr, at);
   std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
   if (scored.size() < 2) return std::nullopt;
   // A masked effect scores low alone, so the best of each shape is kept, not just the best.
@@ -178,7 +179,7 @@ std::optional<std::pair<Candidate, Candidate>> Scan::best_pair(const std::vector
     columns.col(static_cast<Eigen::Index>(i)) = regressors(data_, kept[i]).col(0);
   NoiseShape quieter = noise.shape;
   quieter.walk *= 0.1;
-  const Projected p = project(base, quieter, columns);
+  const Projected p = project(base, at ? *at : quieter, columns);
   const Eigen::MatrixXd gram = p.columns.transpose() * p.columns;
   const Eigen::VectorXd xy = p.columns.transpose() * p.y;
   double best = 0.0;

@@ -39,9 +39,10 @@ class Scan {
   // The most likely positions of a step of the rate, one a record at most.
   [[nodiscard]] std::vector<Scored> steps(const std::vector<Candidate>& base, const NoiseFit& noise) const;
 
-  // The two of the best few dozen that explain most together.
-  [[nodiscard]] std::optional<std::pair<Candidate, Candidate>> best_pair(const std::vector<Candidate>& base,
-                                                                         const NoiseFit& noise) const;
+  // The two of the best few dozen that explain most together, at a noise with less walk than `noise` or at
+  // the one given.
+  [[nodiscard]] std::optional<std::pair<Candidate, Candidate>> best_pair(
+      const std::vector<Candidate>& base, const NoiseFit& noise, const NoiseShape* at = nullptr) const;
 
  private:
   void fill(std::size_t candidate);

@@ -23,7 +23,12 @@ constexpr double kTrialFactor = 1.3;   // noise parameters need no more precisio
 // sensors without effects.
 constexpr double kProfiled = 3.0;
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
+constexpr double kDependent = 0.2;        // correlation of two coefficients
 constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
+
+bool is_event(const Candidate& candidate) {
+  return candidate.form == Form::kLine || candidate.form == Form::kStep;
+}
 
 class Loop {
  public:
@@ -40,6 +45,7 @@ class Loop {
       if (!add_one() && !add_pair()) break;
       revise();
     }
+    revise_pairs();
     drop_what_slow_denies();
     try_second_lags();
     finish(result);
@@ -226,6 +232,57 @@ class Loop {
         noise_ = trial.noise;
       }
     }
+  }
+
+  // Two effects whose coefficients depend on each other can be two others together: a slow channel with a lag
+  // and its settling at the start are the channel and its derivative.
+  void revise_pairs() {
+    const std::size_t first = options_.given.size();
+    for (std::size_t i = first; i < model_.size(); ++i) {
+      for (std::size_t j = i + 1; j < model_.size(); ++j) {
+        if (is_event(model_[i]) || is_event(model_[j]) || !depend(i, j)) continue;
+        const Trial other = best_instead_of(i, j);
+        if (other.model.empty()) continue;
+        if (other.score < 2.0 * noise_.log_likelihood - penalty(model_) + kSwapGain || !proven(other))
+          continue;
+        model_ = other.model;
+        noise_ = other.noise;
+      }
+    }
+  }
+
+  [[nodiscard]] bool depend(std::size_t i, std::size_t j) const {
+    Eigen::MatrixXd covariance;
+    solve(data_.grid, noise_.shape, design(data_, model_), &covariance);
+    const auto place = [&](std::size_t k) {
+      auto at = static_cast<Eigen::Index>(data_.grid.starts.size()) - 1;
+      for (std::size_t before = 0; before < k; ++before) at += model_[before].form == Form::kLine ? 2 : 1;
+      return at;
+    };
+    const Eigen::Index a = place(i);
+    const Eigen::Index b = place(j);
+    return std::abs(covariance(a, b)) > kDependent * std::sqrt(covariance(a, a) * covariance(b, b));
+  }
+
+  // Empty when the best two are the two there are.
+  [[nodiscard]] Trial best_instead_of(std::size_t i, std::size_t j) const {
+    std::vector<Candidate> model;
+    for (std::size_t k = 0; k < model_.size(); ++k) {
+      if (k != i && k != j) model.push_back(model_[k]);
+    }
+    const NoiseFit without = fit_noise(data_.grid, design(data_, model), noise_.shape);
+    const auto pair = scan_.best_pair(model, without, &noise_.shape);
+    if (!pair) return {};
+    const auto [a, b] = *pair;
+    const auto is = [&](const Candidate& x, const Candidate& y) {
+      return x.same_shape(model_[i]) && y.same_shape(model_[j]);
+    };
+    if (is(a, b) || is(b, a)) return {};
+    model.push_back(a);
+    model.push_back(b);
+    const std::size_t last = model.size() - 1;
+    const Trial once = refined(std::move(model), last, noise_.shape);
+    return refined(once.model, last - 1, once.noise.shape);
   }
 
   void finish(SearchResult& result) {

@@ -7,6 +7,7 @@
 
 #include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -199,6 +200,20 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
     found.hint = "what stays is white noise";
   }
   return found;
+}
+
+void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
+  const std::string unit = unit_of(loop.channel);
+  constexpr double kDegreePerHour = M_PI / 180.0 / 3600.0;
+  found.kind = "hysteresis";
+  found.frequency_hz = 0.0;
+  found.times_s.clear();
+  found.hint = text(
+      "part of the bias depends on which way %s came: a loop %.3g %s wide and %.3g °/h high. No form of the "
+      "model describes it and nothing of it is corrected. Let it run up and down between the same values, "
+      "and look at the mounting of the coil and at its potting.",
+      loop.channel.c_str(), 2.0 * loop.half_width, unit.c_str(),
+      2.0 * loop.half_width * std::abs(loop.coefficient) / kDegreePerHour);
 }
 
 void describe_moving(const MovingLine& line, Unexplained& found) {

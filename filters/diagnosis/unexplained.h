@@ -14,7 +14,8 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
                                  const std::vector<SpectralLine>& peaks);
 
-// A line that follows the rotation takes the description's place.
+// A line that follows the rotation, or a loop, takes the description's place.
 void describe_moving(const MovingLine& line, Unexplained& found);
+void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
 
 }  // namespace ifog

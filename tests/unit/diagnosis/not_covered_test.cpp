@@ -1,0 +1,155 @@
+// What no form describes must not pass for what one does: a loop in the temperature, a coefficient that is
+// another one in every part of the record.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/hysteresis.h"
+#include "filters/diagnosis/steady.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kBlocks = 3000;
+
+BlockData quiet(std::uint64_t seed, double noise_from_half = 1.0) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  BlockData data;
+  BlockGrid& grid = data.grid;
+  grid.block_s = grid.fine_s = grid.sample_s = 1.0;
+  grid.starts = {0, kBlocks};
+  grid.valid.assign(kBlocks, 1);
+  grid.error.resize(static_cast<Eigen::Index>(kBlocks));
+  FineChannel channel;
+  channel.name = "temperature_degC";
+  double walk = 0.0;
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    const double t = static_cast<double>(i);
+    grid.time_s.push_back(t);
+    walk += 0.01 * normal(random);
+    grid.error[static_cast<Eigen::Index>(i)] =
+        (i < kBlocks / 2 ? 1.0 : noise_from_half) * normal(random) + walk;
+    channel.values.push_back(25.0 + 10.0 * std::sin(2.0 * M_PI * t / 1100.0) +
+                             4.0 * std::sin(2.0 * M_PI * t / 310.0));
+  }
+  const auto [low, high] = std::minmax_element(channel.values.begin(), channel.values.end());
+  channel.low = *low;
+  channel.high = *high;
+  channel.varies = channel.smooth = true;
+  data.channels = {channel};
+  return data;
+}
+
+void add(BlockData& data, const Eigen::VectorXd& effect) { data.grid.error += effect; }
+
+Eigen::VectorXd temperature(const BlockData& data) {
+  const std::vector<double>& values = data.channels[0].values;
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())).array() -
+         25.0;
+}
+
+Candidate linear() {
+  Candidate candidate;
+  candidate.form = Form::kLinear;
+  candidate.channel = 0;
+  return candidate;
+}
+
+std::optional<Hysteresis> found_in(const BlockData& data, const std::vector<Candidate>& model) {
+  const NoiseFit noise = fit_noise(data.grid, design(data, model));
+  return certain_hysteresis(data, fit_loops(data, model, noise), 0.01);
+}
+
+// Up by 4, down by 4, up again, with a play of 1 either way: the loop's corners by hand.
+TEST(Hysteresis, LoopIsThatOfThePlayOperator) {
+  BlockData data = quiet(1);
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    const double phase = static_cast<double>(i % 800) / 100.0;
+    data.channels[0].values[i] = phase < 4.0 ? phase : 8.0 - phase;
+  }
+  const Eigen::VectorXd loop = hysteresis_loop(data, 0, 1.0);
+  EXPECT_NEAR(loop[0], 0.0, 1e-12);
+  EXPECT_NEAR(loop[50], -0.5, 1e-12);   // still inside the play: it has not moved
+  EXPECT_NEAR(loop[400], -1.0, 1e-12);  // dragged along from below
+  EXPECT_NEAR(loop[500], 0.0, 1e-12);   // turned, half way through the play
+  EXPECT_NEAR(loop[790], 1.0, 1e-12);   // dragged along from above
+}
+
+TEST(Hysteresis, IsFoundWithItsWidthAndItsSize) {
+  BlockData data = quiet(2);
+  add(data, 0.5 * temperature(data) + 0.4 * hysteresis_loop(data, 0, 4.2));
+  const auto found = found_in(data, {linear()});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->channel, "temperature_degC");
+  EXPECT_NEAR(found->half_width, 4.2, 1.5);
+  EXPECT_NEAR(found->coefficient * found->half_width, 0.4 * 4.2, 0.3);
+}
+
+// A lag is a loop, too, but of a form that is known, and better described by that.
+TEST(Hysteresis, IsNeitherChanceNorALag) {
+  int of_chance = 0;
+  int of_a_lag = 0;
+  for (std::uint64_t seed = 10; seed < 25; ++seed) {
+    BlockData data = quiet(seed);
+    of_chance += found_in(data, {}) ? 1 : 0;
+    Candidate lag = linear();
+    lag.form = Form::kLagged;
+    lag.time_constant_s = 60.0;
+    add(data, 0.5 * regressors(data, lag).col(0));
+    of_a_lag += found_in(data, {lag}) ? 1 : 0;
+  }
+  EXPECT_EQ(of_chance, 0);
+  EXPECT_EQ(of_a_lag, 0);
+}
+
+Unsteadiness unsteadiness_of(const BlockData& data) {
+  constexpr NoiseShape kAsDrawn{1e-4, 0.0, 0.0, 0.0};
+  return unsteadiness(data, {linear()}, 0, kAsDrawn);
+}
+
+// Chi-square of three degrees of freedom has the mean 3 and the variance 6, also where the noise doubles half
+// way through.
+TEST(Steady, IsChiSquareWhereTheEffectIsTheSame) {
+  for (const double noise_from_half : {1.0, 2.0}) {
+    constexpr int kDraws = 60;
+    double mean = 0.0;
+    double most = 0.0;
+    for (std::uint64_t seed = 100; seed < 100 + kDraws; ++seed) {
+      BlockData data = quiet(seed, noise_from_half);
+      add(data, 0.3 * temperature(data));
+      const double value = unsteadiness_of(data).square;
+      mean += value / kDraws;
+      most = std::max(most, value);
+    }
+    EXPECT_NEAR(mean, 3.0, 4.0 * std::sqrt(6.0 / kDraws)) << noise_from_half;
+    EXPECT_LT(most, 16.27) << noise_from_half;
+  }
+}
+
+TEST(Steady, SeesACoefficientThatChanges) {
+  for (std::uint64_t seed = 200; seed < 210; ++seed) {
+    BlockData data = quiet(seed);
+    Eigen::VectorXd effect = 0.3 * temperature(data);
+    effect.tail(static_cast<Eigen::Index>(kBlocks / 2)) *= 0.3;
+    add(data, effect);
+    const Unsteadiness found = unsteadiness_of(data);
+    EXPECT_GT(found.square, 16.27);
+    EXPECT_GT(found.share, 0.1);
+  }
+}
+
+// A strong effect with a little curvature that its form lacks is not all the same, and yet the same effect.
+TEST(Steady, SmallDeparturesOfAStrongEffectAreASmallShare) {
+  BlockData data = quiet(300);
+  const Eigen::VectorXd t = temperature(data);
+  add(data, 3.0 * t + Eigen::VectorXd(0.03 * t.array().square()));
+  const Unsteadiness found = unsteadiness_of(data);
+  EXPECT_GT(found.square, 16.27);
+  EXPECT_LT(found.share, 0.01);
+}
+
+}  // namespace
+}  // namespace ifog
