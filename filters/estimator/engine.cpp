@@ -162,11 +162,8 @@ void Engine::judge_noise(const Measurement& m) noexcept {
     if (!has(m.valid, a)) continue;
     noise_or_motion_.take(a, m.in.rate_radps[a],
                           in_manoeuvre_ ? trackers_.best_innovation(a) : m.innovation[a]);
-    if (noise_or_motion_.noise(a)) {
-      monitor_.allow(a, noise_or_motion_.variance(a), noise_or_motion_.widening(a));
-    } else {
-      all_noise = false;
-    }
+    monitor_.allow(a, noise_or_motion_.variance(a), noise_or_motion_.widening(a));
+    all_noise = all_noise && noise_or_motion_.noise(a);
   }
   manoeuvre_samples_ = in_manoeuvre_ ? std::min(manoeuvre_samples_ + 1, NoiseOrMotion::kWindow) : 0;
   if (!all_noise || manoeuvre_samples_ < NoiseOrMotion::kWindow) return;

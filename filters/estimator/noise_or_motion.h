@@ -8,7 +8,8 @@
 // and of noise correlated over 20 samples a quarter and more.
 //
 // Judged in windows of 4096 samples. What two in a row call noise is noise, with the smaller of their
-// variances: a blow passes.
+// variances: a blow passes. It counts until a window is quieter: noise does not go away, a structure's
+// ringing does.
 #pragma once
 
 #include <algorithm>
@@ -40,13 +41,10 @@ class NoiseOrMotion {
 
   // The last two windows were noise.
   [[nodiscard]] bool noise(std::size_t axis) const noexcept { return findings_[axis].noise >= 2; }
-  // Then: its variance, (rad/s)^2, and the variance of a sum of 64 samples over 64 times that.
-  [[nodiscard]] double variance(std::size_t axis) const noexcept {
-    return std::min(findings_[axis].variance[0], findings_[axis].variance[1]);
-  }
-  [[nodiscard]] double widening(std::size_t axis) const noexcept {
-    return std::min(findings_[axis].widening[0], findings_[axis].widening[1]);
-  }
+  // Of what was last known for noise, zero when nothing is: its variance, (rad/s)^2, and the variance of a
+  // sum of 64 samples over 64 times that.
+  [[nodiscard]] double variance(std::size_t axis) const noexcept { return findings_[axis].known_variance; }
+  [[nodiscard]] double widening(std::size_t axis) const noexcept { return findings_[axis].known_widening; }
 
  private:
   static constexpr int kShort = 32, kLong = 64;
@@ -55,8 +53,10 @@ class NoiseOrMotion {
   static constexpr double kFalls = 1.25;
   // Share of the variance that a tracker leaves at least of noise.
   static constexpr double kLeft = 0.125;
-  // Noise keeps its variance from one window to the next, to this factor.
+  // Noise keeps its variance from one window to the next, and from one quarter of a window to another, to
+  // these factors: a blow and what rings after it do not.
   static constexpr double kSteady = 1.5;
+  static constexpr double kSteadyQuarters = 3.0;
 
   struct Window {
     int count = 0;
@@ -65,10 +65,15 @@ class NoiseOrMotion {
     double sum = 0.0, last_short = 0.0, last_long = 0.0;  // of blocks
     double long_squares = 0.0;                            // of sums of 64 samples
     double short_steps = 0.0, long_steps = 0.0;  // squares of differences between neighbouring blocks
+    // Squares about the means of the blocks: up to now, up to the quarter begun, and in the quietest and the
+    // loudest quarter.
+    double begun = 0.0, quietest = 1e300, loudest = 0.0;
+    [[nodiscard]] double within() const noexcept { return square - long_squares / kLong; }
   };
   struct Finding {
-    int noise = 0;  // windows in a row
-    std::array<double, 2> variance{}, widening{};
+    int noise = 0;                          // windows in a row
+    double variance = 0.0, widening = 0.0;  // of the last window
+    double known_variance = 0.0, known_widening = 0.0;
   };
 
   static void end_block(Window& w) noexcept {
@@ -81,6 +86,11 @@ class NoiseOrMotion {
     }
     w.last_short = w.sum;
     w.sum = 0.0;
+    if (w.count % (kWindow / 4) != 0) return;
+    const double quarter = w.within() - w.begun;
+    w.begun = w.within();
+    w.quietest = std::min(w.quietest, quarter);
+    w.loudest = std::max(w.loudest, quarter);
   }
 
   static void judge(Finding& finding, const Window& w) noexcept {
@@ -88,15 +98,21 @@ class NoiseOrMotion {
     const double allan_short = w.short_steps / (2.0 * kShort * kShort * kShortPairs);
     const double allan_long = w.long_steps / (2.0 * kLong * kLong * kLongPairs);
     // About the mean of each block, and of the blocks about each other, so that a drift does not count.
-    const double within = (w.square - w.long_squares / kLong) / kWindow;
-    const double variance = within + allan_long;
-    const bool noise =
-        variance > 0.0 && allan_long < kFalls * allan_short && w.left > kLeft * kWindow * variance;
-    const double last = finding.variance[0];
+    const double variance = w.within() / kWindow + allan_long;
+    const bool noise = variance > 0.0 && allan_long < kFalls * allan_short &&
+                       w.left > kLeft * kWindow * variance && w.loudest < kSteadyQuarters * w.quietest;
+    const double widening = variance > 0.0 ? kLong * allan_long / variance : 0.0;
+    const double last = finding.variance;
     const bool steady = variance < kSteady * last && last < kSteady * variance;
     finding.noise = !noise ? 0 : steady ? finding.noise + 1 : 1;
-    finding.variance = {variance, finding.variance[0]};
-    finding.widening = {variance > 0.0 ? kLong * allan_long / variance : 0.0, finding.widening[0]};
+    if (finding.noise >= 2) {
+      finding.known_variance = std::min(variance, last);
+      finding.known_widening = std::min(widening, finding.widening);
+    } else if (kSteady * variance < finding.known_variance) {
+      finding.known_variance = finding.known_widening = 0.0;
+    }
+    finding.variance = variance;
+    finding.widening = widening;
   }
 
   std::array<Window, kMaxAxes> windows_{};

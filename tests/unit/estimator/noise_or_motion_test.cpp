@@ -73,6 +73,18 @@ TEST(NoiseOrMotion, ADriftIsNoPartOfTheNoise) {
   EXPECT_NEAR(judge.variance(0), 1.0, 0.1);
 }
 
+// A structure that is struck once a window: as loud from one window to the next.
+TEST(NoiseOrMotion, BlowsAreNotSteady) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  double last = 0.0;
+  const auto struck = [&](int i) {
+    return last = (1.0 + 100.0 * std::exp(-(i % NoiseOrMotion::kWindow) / 500.0)) * normal(random);
+  };
+  NoiseOrMotion judge;
+  EXPECT_EQ(called_noise(judge, 11, struck, [&](int) { return last; }), 0);
+}
+
 TEST(NoiseOrMotion, AWalkIsMotionAndABlowIsNotSteady) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -82,7 +94,7 @@ TEST(NoiseOrMotion, AWalkIsMotionAndABlowIsNotSteady) {
       called_noise(
           walked, 11, [&](int) { return walk += normal(random); }, [&](int) { return 2.0 * normal(random); }),
       0);
-  // A burst of noise for a window: the two before and after it disagree.
+  // A burst of noise for a window: the two before and after it disagree. Noise is never quieter than it is.
   NoiseOrMotion burst;
   double last = 0.0;
   const auto loud = [&](int i) {
@@ -90,6 +102,10 @@ TEST(NoiseOrMotion, AWalkIsMotionAndABlowIsNotSteady) {
   };
   EXPECT_EQ(called_noise(burst, 6, loud, [&](int) { return last; }), 4);
   EXPECT_FALSE(burst.noise(0));
+  EXPECT_NEAR(burst.variance(0), 1.0, 0.1);
+  const auto quiet = [&](int) { return last = 0.5 * normal(random); };
+  EXPECT_EQ(called_noise(burst, 1, quiet, [&](int) { return last; }), 0);
+  EXPECT_EQ(burst.variance(0), 0.0);
 }
 
 }  // namespace
