@@ -58,6 +58,7 @@ std::string probability(double p) { return p < 1e-6 ? "below one in a million" :
 
 std::vector<std::string> in_reading_order(const std::map<std::string, double>& figures) {
   std::vector<std::string> keys;
+  keys.reserve(figures.size());
   for (const auto& [key, value] : figures) keys.push_back(key);
   std::stable_sort(keys.begin(), keys.end(), [](const std::string& a, const std::string& b) {
     return family(a) != family(b) ? family(a) < family(b) : averaging_time(a) < averaging_time(b);
