@@ -64,16 +64,20 @@ Flicker::Flicker(double B, double period_s, double duration_s, Draw draw) : draw
   const double sigma = std::sqrt(variance);
   double rest = 0.0;
   const double slowest = 8.0 * std::max(duration_s, period_s);
-  for (double correlation = period_s / 16.0; correlation < slowest * kSpacing; correlation *= kSpacing) {
+  double correlation = period_s / 16.0;
+  while (correlation < slowest * kSpacing) {
     const Step s = step_of(period_s / correlation);
     parts_.push_back({s.decay, sigma * s.drive, s.mean_weight, sigma * draw_.normal()});
     rest += variance * s.rest;
+    correlation *= kSpacing;
   }
   // Faster processes are white at this sample time; without them the spectrum bends down below the Nyquist
   // frequency.
-  for (double correlation = period_s / 16.0 / kSpacing; correlation > 1e-9 * period_s;
-       correlation /= kSpacing)
+  correlation = period_s / 16.0 / kSpacing;
+  while (correlation > 1e-9 * period_s) {
     rest += variance * variance_of_mean(period_s / correlation);
+    correlation /= kSpacing;
+  }
   rest_ = std::sqrt(rest);
 }
 

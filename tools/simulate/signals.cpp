@@ -180,9 +180,8 @@ std::vector<double> motion_signal(const Recipe& m, const Grid& grid, Draw draw) 
     fill([&](double t) { return level_at(m.list.at("rates_radps"), m["dwell_s"], t); });
     smooth(m["edge_s"]);
   } else if (m.kind == "steps") {
-    std::vector<double> levels;
-    const double dwells = grid.duration() / m["dwell_s"];
-    for (double k = 0.0; k <= dwells; k += 1.0) levels.push_back(m["sigma_radps"] * draw.normal());
+    std::vector<double> levels(static_cast<std::size_t>(grid.duration() / m["dwell_s"]) + 1);
+    for (double& level : levels) level = m["sigma_radps"] * draw.normal();
     fill([&](double t) { return level_at(levels, m["dwell_s"], t); });
   } else {  // random
     GaussMarkov source(m["sigma_radps"], m["correlation_s"], grid.period(), draw);
