@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   app.add_option("--kind", o.kind, "only this kind, as named in the table");
   app.add_option("--method", o.method)->check(CLI::IsMember({"ifog", "oracle", "blind"}));
   app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
-  app.add_flag("--promises", o.promises, "list every interval and heading error by sensor");
+  app.add_flag("--promises", o.promises, "list every effect, interval and heading error by sensor");
   app.add_flag("--quiet", o.quiet, "no list of failures");
   app.add_option("--jobs", o.jobs, "sensors at a time")->check(CLI::Range(1, 256));
   app.add_option("--minutes", o.minutes,

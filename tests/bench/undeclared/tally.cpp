@@ -193,9 +193,9 @@ void print_promises(std::ostream& out, const std::vector<Score>& scores) {
       std::snprintf(part, sizeof part, "  %s %+.2f (%.2f)", p.name.c_str(), p.error_in_sigma, p.width);
       text += part;
     }
-    line(out, "seed %-8llu %-22s %5.1f sigma  heading %7.3f%s", static_cast<unsigned long long>(s.seed),
-         name_of(s.kind), s.sigma, s.heading_square ? std::sqrt(*s.heading_square) : std::nan(""),
-         text.c_str());
+    line(out, "seed %-8llu %-22s %5.1f sigma  error %7.3f  heading %7.3f%s",
+         static_cast<unsigned long long>(s.seed), name_of(s.kind), s.sigma, s.effect_error,
+         s.heading_square ? std::sqrt(*s.heading_square) : std::nan(""), text.c_str());
   }
 }
 
