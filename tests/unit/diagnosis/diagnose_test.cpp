@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "filters/diagnosis/prediction.h"
 #include "filters/effects/compensator.h"
 #include "filters/random/philox.h"
 
@@ -115,6 +118,43 @@ TEST(Diagnose, ALagOfTwoTimeConstants) {
   }
   EXPECT_EQ(d.effects[0].effect.parameters.size(), 3U);
   EXPECT_NEAR(sum, 210.0, 15.0);
+}
+
+// A temperature and its rate are together a lag that was never at rest before the record, which a lag and a
+// warm-up describe nearly as well; on the next record only the first two are right.
+TEST(Diagnose, ATemperatureAndItsRateAreNoLagThatWarmsUp) {
+  Sensor s = quiet(30);
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    const double t = 0.1 * static_cast<double>(i);
+    const double slope = 6.0 * 2.0 * M_PI / 900.0 * std::cos(2.0 * M_PI * t / 900.0) + 1.0 / 300.0;
+    s.rate[i] += 2e-7 * (s.temperature[i] - 25.0) - 2e-7 * 150.0 * slope;
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_EQ(d.effects.size(), 2U);
+  std::vector<std::string> forms{d.effects[0].effect.form, d.effects[1].effect.form};
+  std::sort(forms.begin(), forms.end());
+  EXPECT_EQ(forms, (std::vector<std::string>{"linear", "rate"}));
+}
+
+// Hysteresis: said to be one, not corrected, and counted into the heading that is promised.
+TEST(Diagnose, NamesALoopAndLeavesItAlone) {
+  Sensor s = quiet(31);
+  double play = s.temperature[0];
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    play = std::clamp(play, s.temperature[i] - 2.5, s.temperature[i] + 2.5);
+    s.rate[i] += 4e-7 * (play - s.temperature[i]);
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_TRUE(d.hysteresis);
+  EXPECT_EQ(d.hysteresis->channel, "temperature_degC");
+  EXPECT_NEAR(d.hysteresis->half_width, 2.5, 0.8);
+  EXPECT_EQ(d.unexplained.kind, "hysteresis");
+  EXPECT_TRUE(d.effects.empty());
+  // Angle of the loop over its own longest run, against the noise's alone.
+  const double with_loop = predict_heading(d, s.record(), 150.0, {600.0}).sigma_rad[0];
+  Diagnosis without = d;
+  without.hysteresis.reset();
+  EXPECT_GT(with_loop, 3.0 * predict_heading(without, s.record(), 150.0, {600.0}).sigma_rad[0]);
 }
 
 // The model it writes corrects the sensor's next record by the code the daemon runs.
