@@ -74,11 +74,17 @@ Json figures_json(const std::map<std::string, double>& figures) {
   return json;
 }
 
-Json unexplained_json(const Unexplained& unexplained) {
+Json unexplained_json(const Diagnosis& diagnosis) {
+  const Unexplained& unexplained = diagnosis.unexplained;
   Json json = {
       {"fraction", number(unexplained.fraction)}, {"kind", unexplained.kind}, {"hint", unexplained.hint}};
   if (unexplained.frequency_hz > 0.0) json["frequency_hz"] = unexplained.frequency_hz;
   if (!unexplained.times_s.empty()) json["times_s"] = unexplained.times_s;
+  if (diagnosis.hysteresis) {
+    json["channel"] = diagnosis.hysteresis->channel;
+    json["half_width"] = number(diagnosis.hysteresis->half_width);
+    json["coefficient"] = number(diagnosis.hysteresis->coefficient);
+  }
   return json;
 }
 
@@ -120,7 +126,7 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
       if (!each.axis.empty()) json["indistinguishable"].back()["axis"] = each.axis;
     }
   }
-  put("unexplained", [](const Diagnosis& d) { return unexplained_json(d.unexplained); });
+  put("unexplained", [](const Diagnosis& d) { return unexplained_json(d); });
   put("heading_prediction", [](const Diagnosis& d) { return heading_json(d.heading); });
   json["remarks"] = Json::array();
   for (const AxisDiagnosis& each : axes) {
