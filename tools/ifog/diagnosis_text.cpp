@@ -107,7 +107,9 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   if (!axis.axis.empty()) report += "Axis " + axis.axis + "\n";
   report += text("%zu samples at %.4g Hz\n", diagnosis.samples, diagnosis.sample_rate_hz);
   report += noise_line(diagnosis.noise);
-  if (diagnosis.effects.empty()) {
+  if (diagnosis.effects.empty() && diagnosis.hysteresis) {
+    report += "\nFound: nothing that a correction could take away; see what stays unexplained.\n";
+  } else if (diagnosis.effects.empty()) {
     report += "\nFound: nothing. No channel, line or jump explains more of this error than noise would.\n";
   } else {
     report += "\nFound:\n";

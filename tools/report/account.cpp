@@ -83,6 +83,10 @@ std::string account_of_change(const Diagnosis& d, const std::string& key) {
 }
 
 std::string account(const Diagnosis& d) {
+  if (d.effects.empty() && d.hysteresis) {
+    return "<p><strong>Nothing was found that a correction could take away.</strong></p>\n<p>" +
+           account_of_rest(d) + "</p>\n";
+  }
   if (d.effects.empty()) {
     return "<p><strong>Nothing was found.</strong> No channel, and no pattern in time, explains more of this "
            "error than "

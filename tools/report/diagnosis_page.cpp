@@ -312,9 +312,10 @@ std::string axis_sections(const Page& page, const PageAxis& axis) {
                  time_picture(d) + allan_picture(d) + spectrum_picture(d));
   std::string effects;
   for (std::size_t i = 0; i < d.effects.size(); ++i) effects += effect_section(axis, i);
-  out += section("effects" + id, "What was found" + of,
-                 effects.empty() ? "<p>No effect passed. The error is what the noise below makes of it.</p>\n"
-                                 : effects);
+  const char* none = d.hysteresis
+                         ? "<p>No effect that a correction could take away; see what remains.</p>\n"
+                         : "<p>No effect passed. The error is what the noise below makes of it.</p>\n";
+  out += section("effects" + id, "What was found" + of, effects.empty() ? none : effects);
   out += section("figures" + id, "Before and after in figures" + of, figures_table(d));
   out += section("confusable" + id, "What cannot be told apart" + of, confusable_list(d));
   out += section("remaining" + id, "What remains" + of, remaining(d));
