@@ -157,7 +157,7 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
                               candidate.second_time_constant_s),
                   candidate.channel);
   }
-  Columns columns = Columns::Zero(n, candidate.form == Form::kLine ? 2 : 1);
+  Columns columns = Columns::Zero(n, candidate.width());
   for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
     const double start = grid.time_s[grid.starts[r]];
     for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {

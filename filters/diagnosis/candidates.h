@@ -20,6 +20,7 @@ struct Candidate {
   std::size_t record = 0;     // step, line: where it is
   double frequency_hz = 0.0;  // line
 
+  [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0; }
   [[nodiscard]] bool same_shape(const Candidate& other) const;  // but for time constants
 };

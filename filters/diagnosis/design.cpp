@@ -18,7 +18,7 @@ Columns constants(const BlockGrid& grid) {
 Columns design(const BlockData& data, const std::vector<Candidate>& effects) {
   const Columns constant = constants(data.grid);
   Eigen::Index width = 1 + constant.cols();
-  for (const Candidate& effect : effects) width += effect.form == Form::kLine ? 2 : 1;
+  for (const Candidate& effect : effects) width += effect.width();
   Columns columns(constant.rows(), width);
   columns.col(0) = data.grid.error;
   columns.middleCols(1, constant.cols()) = constant;
@@ -29,6 +29,16 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects) {
     at += mine.cols();
   }
   return columns;
+}
+
+Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at) {
+  auto column = static_cast<Eigen::Index>(grid.starts.size());
+  for (std::size_t i = 0; i < at; ++i) column += effects[i].width();
+  return column;
+}
+
+Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured) {
+  return measured - columns * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns).solve(measured);
 }
 
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {

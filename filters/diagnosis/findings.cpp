@@ -22,8 +22,6 @@ std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& va
   return used;
 }
 
-Eigen::Index width_of(const Candidate& candidate) { return candidate.form == Form::kLine ? 2 : 1; }
-
 bool is_searched(const ModelParameter& parameter, const std::string& form) {
   return form == "line" ? parameter.name == "frequency_hz"
                         : parameter.name == time_constant_name(form_named(form).value_or(Form::kRate));
@@ -45,9 +43,9 @@ std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Cand
   for (const Candidate& candidate : candidates) {
     effects.push_back(effect_of(data, candidate));
     effects.back().axis = axis;
-    for (Eigen::Index j = 0; j < width_of(candidate); ++j)
+    for (Eigen::Index j = 0; j < candidate.width(); ++j)
       effects.back().parameters[static_cast<std::size_t>(j)].value = c[at + j];
-    at += width_of(candidate);
+    at += candidate.width();
   }
   return effects;
 }
@@ -100,7 +98,7 @@ Findings findings_of(const BlockData& data, const BlockData& clean, const Search
     effect.p_value = chosen.p_value;
     effect.likelihood_ratio = chosen.likelihood_ratio;
     Eigen::VectorXd part = Eigen::VectorXd::Zero(columns.rows());
-    for (Eigen::Index j = 0; j < width_of(chosen.candidate); ++j) {
+    for (Eigen::Index j = 0; j < chosen.candidate.width(); ++j) {
       ModelParameter& parameter = effect.effect.parameters[static_cast<std::size_t>(j)];
       parameter.value = joint.values[at + j];
       parameter.std_error = std::sqrt(joint.covariance(at + j, at + j));
@@ -117,7 +115,7 @@ Findings findings_of(const BlockData& data, const BlockData& clean, const Search
     const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
     effect.variance_explained = std::min(1.0, share);
     findings.parts.push_back(std::move(part));
-    at += width_of(chosen.candidate);
+    at += chosen.candidate.width();
     findings.effects.push_back(std::move(effect));
   }
 

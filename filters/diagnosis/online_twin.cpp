@@ -38,7 +38,7 @@ void fit_to_readings(const BlockData& recorded, const BlockData& clean, SearchRe
   Eigen::Index at = static_cast<Eigen::Index>(recorded.grid.starts.size()) - 1;
   for (Chosen& chosen : result.chosen) {
     const Eigen::Index place = at;
-    at += chosen.candidate.form == Form::kLine ? 2 : 1;
+    at += chosen.candidate.width();
     const bool memory = chosen.candidate.form == Form::kRate || chosen.candidate.form == Form::kSecondRate ||
                         chosen.candidate.form == Form::kLagged;
     if (!memory) continue;

@@ -9,23 +9,13 @@ namespace {
 constexpr double kFar = 4.0;
 constexpr double kMedianOfNormal = 0.6744897501960817;  // of |x|, x unit normal
 
-Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured) {
-  return measured - columns * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns).solve(measured);
-}
-
-Eigen::Index column_of(const BlockData& data, const std::vector<Candidate>& model, std::size_t at) {
-  auto column = static_cast<Eigen::Index>(data.grid.starts.size());
-  for (std::size_t i = 0; i < at; ++i) column += model[i].form == Form::kLine ? 2 : 1;
-  return column;
-}
-
 }  // namespace
 
 double ratio_in_changing_noise(const BlockData& data, const std::vector<Candidate>& model, std::size_t at,
                                const NoiseShape& shape) {
   Columns white = design(data, model);
   Whitening(data.grid, shape).apply(white);
-  const Eigen::Index mine = column_of(data, model, at);
+  const Eigen::Index mine = column_of(data.grid, model, at);
   const Eigen::Index p = white.cols() - 1;
   Columns others(white.rows(), p - 1);
   others << white.middleCols(1, mine - 1), white.rightCols(p - mine);
@@ -63,8 +53,8 @@ double ratio_without_outliers(const BlockData& data, const std::vector<Candidate
     if (grid.valid[b] && std::abs(left[row]) <= far) kept.row(n++) = white.row(row);
   }
   kept.conservativeResize(n, Eigen::NoChange);
-  const Eigen::Index from = column_of(data, model, at);
-  const Eigen::Index width = model[at].form == Form::kLine ? 2 : 1;
+  const Eigen::Index from = column_of(data.grid, model, at);
+  const Eigen::Index width = model[at].width();
   Columns without(n, p - width);
   without << kept.middleCols(1, from - 1), kept.rightCols(p + 1 - from - width);
   const double with_it = left_by(kept.rightCols(p), kept.col(0)).squaredNorm();

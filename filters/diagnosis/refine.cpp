@@ -11,8 +11,7 @@ namespace ifog {
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which) {
   Columns columns = design(data, model);
-  Eigen::Index place = 1 + constants(data.grid).cols();
-  for (std::size_t i = 0; i < at; ++i) place += model[i].form == Form::kLine ? 2 : 1;
+  const Eigen::Index place = column_of(data.grid, model, at);
   const auto value = [&](double log_tau) {
     Candidate trial = model[at];
     trial.*which = std::exp(log_tau);

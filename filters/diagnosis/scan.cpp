@@ -130,11 +130,7 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
     for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
       const auto from = static_cast<Eigen::Index>(grid.starts[r]);
       const auto length = static_cast<Eigen::Index>(grid.starts[r + 1]) - from;
-      // A steady filter answers a step the same way wherever it is.
-      Columns answer = Columns::Zero(static_cast<Eigen::Index>(grid.size()), 1);
-      answer.col(0).segment(from, length).setOnes();
-      Whitening(grid, shape).apply(answer);
-      const Eigen::VectorXd h = answer.col(0).segment(from, length);
+      const Eigen::VectorXd h = answer_to_step(grid, shape, r);
       Eigen::VectorXd energy(length);
       double sum = 0.0;
       for (Eigen::Index k = 0; k < length; ++k) energy[k] = sum += h[k] * h[k];

@@ -65,7 +65,7 @@ class Loop {
   }
 
   [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
-    const int columns = candidate.form == Form::kLine ? 2 : 1;
+    const int columns = static_cast<int>(candidate.width());
     const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
     return std::min(1.0, kProfiled * tail(ratio, columns) * tries);
   }
@@ -254,13 +254,8 @@ class Loop {
   [[nodiscard]] bool depend(std::size_t i, std::size_t j) const {
     Eigen::MatrixXd covariance;
     solve(data_.grid, noise_.shape, design(data_, model_), &covariance);
-    const auto place = [&](std::size_t k) {
-      auto at = static_cast<Eigen::Index>(data_.grid.starts.size()) - 1;
-      for (std::size_t before = 0; before < k; ++before) at += model_[before].form == Form::kLine ? 2 : 1;
-      return at;
-    };
-    const Eigen::Index a = place(i);
-    const Eigen::Index b = place(j);
+    const Eigen::Index a = column_of(data_.grid, model_, i) - 1;
+    const Eigen::Index b = column_of(data_.grid, model_, j) - 1;
     return std::abs(covariance(a, b)) > kDependent * std::sqrt(covariance(a, a) * covariance(b, b));
   }
 

@@ -8,10 +8,6 @@ namespace {
 
 constexpr std::size_t kParts = 4;
 
-Eigen::VectorXd left_by(const Eigen::MatrixXd& columns, const Eigen::VectorXd& measured) {
-  return measured - columns * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns).solve(measured);
-}
-
 }  // namespace
 
 Unsteadiness unsteadiness(const BlockData& data, const std::vector<Candidate>& model, std::size_t at,
@@ -19,9 +15,8 @@ Unsteadiness unsteadiness(const BlockData& data, const std::vector<Candidate>& m
   Columns white = design(data, model);
   Whitening(data.grid, shape).apply(white);
   const Eigen::Index p = white.cols() - 1;
-  auto mine = static_cast<Eigen::Index>(data.grid.starts.size());
-  for (std::size_t i = 0; i < at; ++i) mine += model[i].form == Form::kLine ? 2 : 1;
-  Eigen::MatrixXd others(white.rows(), p - 1);
+  const Eigen::Index mine = column_of(data.grid, model, at);
+  Columns others(white.rows(), p - 1);
   others << white.middleCols(1, mine - 1), white.rightCols(p - mine);
   const Eigen::VectorXd x = left_by(others, white.col(mine));
   const Eigen::VectorXd left = left_by(white.rightCols(p), white.col(0));

@@ -57,12 +57,8 @@ double independent_columns(const Columns& projected) {
 double independent_steps(const BlockGrid& grid, const NoiseShape& shape, double ratio) {
   double sum = 0.0;
   for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    const auto from = static_cast<Eigen::Index>(grid.starts[r]);
-    const auto length = static_cast<Eigen::Index>(grid.starts[r + 1]) - from;
-    Columns answer = Columns::Zero(static_cast<Eigen::Index>(grid.size()), 1);
-    answer.col(0).segment(from, length).setOnes();
-    Whitening(grid, shape).apply(answer);
-    const Eigen::VectorXd h = answer.col(0).segment(from, length);
+    const Eigen::VectorXd h = answer_to_step(grid, shape, r);
+    const Eigen::Index length = h.size();
     // A step at a later block answers with the same series, cut short: of lengths n and n - 1.
     double energy = h[0] * h[0];
     double product = 0.0;

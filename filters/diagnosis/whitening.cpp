@@ -31,6 +31,15 @@ Eigen::MatrixXd steady_covariance(const Eigen::VectorXd& f, const Eigen::VectorX
 
 }  // namespace
 
+Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, std::size_t record) {
+  const auto from = static_cast<Eigen::Index>(grid.starts[record]);
+  const auto length = static_cast<Eigen::Index>(grid.starts[record + 1]) - from;
+  Columns answer = Columns::Zero(static_cast<Eigen::Index>(grid.size()), 1);
+  answer.col(0).segment(from, length).setOnes();
+  Whitening(grid, shape).apply(answer);
+  return answer.col(0).segment(from, length);
+}
+
 std::vector<double> flicker_bank(const BlockGrid& grid) {
   std::size_t longest = 0;
   for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r)

@@ -49,6 +49,10 @@ class Whitening {
   double innovation_variance_ = 1.0;
 };
 
+// What the filter makes of a step at the start of the record, block by block to its end. A steady filter
+// answers a step the same way wherever it is.
+Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, std::size_t record);
+
 // Time constants of the bank, in blocks.
 std::vector<double> flicker_bank(const BlockGrid& grid);
 
