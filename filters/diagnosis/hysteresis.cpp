@@ -11,8 +11,6 @@ namespace {
 
 // Half widths of the play, of the channel's range.
 constexpr std::array kShares = {0.05, 0.08, 0.12, 0.17, 0.22, 0.28, 0.35};
-// The noise is fitted anew under each loop, as under each effect: see search.cpp.
-constexpr double kProfiled = 3.0;
 constexpr double kCertain = 0.1;  // of the significance
 // Twice the log-likelihood, before the noise is fitted anew: further below the model no loop recovers.
 constexpr double kHopeless = -30.0;

@@ -18,10 +18,6 @@ constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a p
 constexpr double kSecondLag = 16.0;    // and a second time constant of a lag
 constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
 constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
-// The noise is fitted anew under each candidate, from a record that holds few of its longest swings: chance
-// then exceeds a likelihood ratio about so many times as often as with known noise. Found on simulated
-// sensors without effects.
-constexpr double kProfiled = 3.0;
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
 constexpr double kDependent = 0.2;        // correlation of two coefficients
 constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
