@@ -124,6 +124,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   input.sequence = in.sequence;
   input.dt_s = in.dt_s;
   input.rate_radps = out.compensated_radps;
+  input.covered_s = in.covered_s;
   input.valid_axes = in.valid_axes;
   parts.estimator_->step(input, out.estimate);
   if (parts.compensator_)

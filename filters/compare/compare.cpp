@@ -26,17 +26,27 @@ struct Series {
   std::size_t at_rest = 0;                           // samples
 };
 
-// Steps between samples; the first is the nominal period.
-std::vector<double> step_times(const ComparisonInput& in) {
-  std::vector<double> dt(in.time_s.size(), in.period_s);
-  for (std::size_t k = 1; k < dt.size(); ++k) dt[k] = in.time_s[k] - in.time_s[k - 1];
-  return dt;
+struct Steps {
+  std::vector<double> dt_s;       // between samples; the first is the nominal period
+  std::vector<double> covered_s;  // the sample's own share of it: a gap's time is not its
+};
+
+Steps step_times(const ComparisonInput& in) {
+  const std::vector<double> nominal(in.time_s.size(), in.period_s);
+  Steps steps{nominal, nominal};
+  for (std::size_t k = 1; k < nominal.size(); ++k) {
+    const double dt = in.time_s[k] - in.time_s[k - 1];
+    steps.dt_s[k] = dt;
+    steps.covered_s[k] = dt / std::max(1.0, std::round(dt / in.period_s));
+  }
+  return steps;
 }
 
-EstimatorInput input_at(const ComparisonInput& in, std::span<const double> dt, std::size_t k, double added) {
+EstimatorInput input_at(const ComparisonInput& in, const Steps& steps, std::size_t k, double added) {
   EstimatorInput sample;
   sample.sequence = k;
-  sample.dt_s = dt[k];
+  sample.dt_s = steps.dt_s[k];
+  sample.covered_s.fill(steps.covered_s[k]);
   for (std::size_t a = 0; a < in.rate.size(); ++a) {
     const double rate = in.rate[a][k];
     if (!std::isfinite(rate)) continue;
@@ -46,7 +56,7 @@ EstimatorInput input_at(const ComparisonInput& in, std::span<const double> dt, s
   return sample;
 }
 
-Series run(const ComparisonInput& in, std::span<const double> dt, const FilterSettings& settings) {
+Series run(const ComparisonInput& in, const Steps& steps, const FilterSettings& settings) {
   const std::size_t axes = in.rate.size();
   const std::size_t n = in.time_s.size();
   Series out;
@@ -55,7 +65,7 @@ Series run(const ComparisonInput& in, std::span<const double> dt, const FilterSe
   Estimator estimator(settings, static_cast<int>(axes), in.period_s);
   EstimatorOutput step;
   for (std::size_t k = 0; k < n; ++k) {
-    const EstimatorInput sample = input_at(in, dt, k, 0.0);
+    const EstimatorInput sample = input_at(in, steps, k, 0.0);
     estimator.step(sample, step);
     const bool at_rest = (step.flags & kManoeuvre) == 0;
     if (at_rest) ++out.at_rest;
@@ -73,7 +83,7 @@ Series run(const ComparisonInput& in, std::span<const double> dt, const FilterSe
 
 // The step is the difference between two runs over the same samples, with and without it: what the noise does
 // cancels as far as the rule is linear, and what remains is how the rule answers a real change of rate.
-std::optional<double> step_samples(const ComparisonInput& in, std::span<const double> dt,
+std::optional<double> step_samples(const ComparisonInput& in, const Steps& steps,
                                    const FilterSettings& settings, std::size_t place, std::size_t axis,
                                    double size) {
   const std::size_t begin = place > kStepRunUp ? place - kStepRunUp : 0;
@@ -82,16 +92,16 @@ std::optional<double> step_samples(const ComparisonInput& in, std::span<const do
   Estimator with(settings, static_cast<int>(in.rate.size()), in.period_s);
   EstimatorOutput a, b;
   for (std::size_t k = begin; k < end; ++k) {
-    without.step(input_at(in, dt, k, 0.0), a);
-    with.step(input_at(in, dt, k, k >= place ? size : 0.0), b);
+    without.step(input_at(in, steps, k, 0.0), a);
+    with.step(input_at(in, steps, k, k >= place ? size : 0.0), b);
     if (k >= place && b.denoised_radps[axis] - a.denoised_radps[axis] >= 0.9 * size)
       return static_cast<double>(k - place + 1);
   }
   return std::nullopt;
 }
 
-StepResponse step_response(const ComparisonInput& in, std::span<const double> dt,
-                           const FilterSettings& settings, std::size_t axis, double sigmas) {
+StepResponse step_response(const ComparisonInput& in, const Steps& steps, const FilterSettings& settings,
+                           std::size_t axis, double sigmas) {
   StepResponse response;
   response.size_sigma = sigmas;
   const std::size_t n = in.time_s.size();
@@ -100,7 +110,7 @@ StepResponse step_response(const ComparisonInput& in, std::span<const double> dt
   for (std::size_t i = 0; i < kStepPlaces; ++i) {
     const std::size_t place = kStepRunUp + (n - kStepRunUp - kStepWindow) * i / (kStepPlaces - 1);
     reached.push_back(
-        step_samples(in, dt, settings, place, axis, sigmas * std::sqrt(settings.measurement_noise)));
+        step_samples(in, steps, settings, place, axis, sigmas * std::sqrt(settings.measurement_noise)));
   }
   response.samples = median_reached(reached);
   return response;
@@ -147,7 +157,7 @@ Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& opt
   if (n < 2) throw std::invalid_argument("fewer than two samples, expected a record");
   for (const auto& rate : in.rate)
     if (rate.size() != n) throw std::invalid_argument("rate columns and time differ in length");
-  const std::vector<double> dt = step_times(in);
+  const Steps steps = step_times(in);
 
   Comparison result;
   for (std::size_t a = 0; a < in.rate.size(); ++a) {
@@ -161,18 +171,18 @@ Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& opt
   for (const std::string& rule : options.rules) {
     FilterSettings settings = options.settings;
     settings.rule = rule;
-    Series series = run(in, dt, settings);
+    Series series = run(in, steps, settings);
     for (std::size_t a = 0; a < in.rate.size(); ++a) {
       ComparisonRow row;
       row.rule = rule;
       row.axis = static_cast<int>(a);
       add_series_figures(row, in, series.denoised[a]);
-      const HeadingClosure closure = heading_closure(series.denoised[a], in.rate[a], dt);
+      const HeadingClosure closure = heading_closure(series.denoised[a], in.rate[a], steps.covered_s);
       row.heading_end_rad = closure.end_rad;
       row.heading_max_rad = closure.max_rad;
       row.share_at_rest = static_cast<double>(series.at_rest) / static_cast<double>(n);
       add_innovation_figures(row, series.innovation[a], std::move(series.nis[a]));
-      row.step = {step_response(in, dt, settings, a, 20.0), step_response(in, dt, settings, a, 5.0)};
+      row.step = {step_response(in, steps, settings, a, 20.0), step_response(in, steps, settings, a, 5.0)};
       result.rows.push_back(std::move(row));
     }
     result.denoised.push_back(std::move(series.denoised));

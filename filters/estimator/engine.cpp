@@ -206,7 +206,7 @@ void Engine::hold(const Measurement& m, EstimatorOutput& out) noexcept {
   held_ = true;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a) || in_manoeuvre_) continue;
-    held_angle_[a] += (m.in.rate_radps[a] - last_output_[a]) * m.dt_s;
+    held_angle_[a] += (m.in.rate_radps[a] - last_output_[a]) * m.covered_s(a);
     // Clipped, it counts for the scale: what happens to one sample in a hundred is the sensor's noise.
     monitor_.learn(a, m.innovation[a], m.noise_scale);
   }
@@ -346,7 +346,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       rate += ledger_.payment(a, lag_s_);
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
       if (has(m.valid, a) && ((out.flags & kGated) == 0 || in_manoeuvre_)) {
-        ledger_.book(a, m.in.rate_radps[a], rate, m.dt_s, in_manoeuvre_);
+        ledger_.book(a, m.in.rate_radps[a], rate, m.covered_s(a), in_manoeuvre_);
         if (!in_manoeuvre_) ledger_.settle(a, rest, lag_s_);
       }
     }

@@ -36,6 +36,9 @@ class Engine {
     std::uint32_t valid = 0;
     double dt_s = 0.0, noise_scale = 1.0;
     Axes innovation{};  // of the filter at rest; zero where not valid
+    [[nodiscard]] double covered_s(std::size_t axis) const noexcept {
+      return in.covered_s[axis] > 0.0 ? in.covered_s[axis] : dt_s;
+    }
   };
 
   [[nodiscard]] std::uint32_t screen(const EstimatorInput& in, EstimatorOutput& out) noexcept;

@@ -19,6 +19,9 @@ struct EstimatorInput {
   double dt_s = 0.0;                          // time covered by this sample; after a gap, the whole gap
   std::array<double, kMaxAxes> rate_radps{};  // compensated mean rate over dt
   std::uint32_t valid_axes = 0;               // bit i; an axis that is not valid is only predicted
+  // By axis, of dt the time in which the rate was measured: what a gap hides is no angle, and none is owed
+  // for it. 0: all of dt.
+  std::array<double, kMaxAxes> covered_s{};
   double averaged_s = 0.0;  // time the rate is a mean over (white noise falls with it); 0: the nominal period
 };
 
