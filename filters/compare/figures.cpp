@@ -45,15 +45,17 @@ AgainstReference against_reference(std::span<const double> output, std::span<con
                                    double period_s, int longest_samples) {
   AgainstReference result;
   double square = 0.0;
+  double bias = 0.0;
   std::size_t n = 0;
   for (std::size_t k = 0; k < output.size(); ++k) {
     const double d = output[k] - reference[k];
     if (!std::isfinite(d)) continue;
     square += d * d;
-    result.bias += (d - result.bias) / static_cast<double>(++n);
+    bias += (d - bias) / static_cast<double>(++n);
   }
   if (n == 0) return result;
   result.rmse = std::sqrt(square / static_cast<double>(n));
+  result.bias = bias;
 
   const int longest = std::min(longest_samples, static_cast<int>(output.size() / 4));
   if (longest < 1) return result;

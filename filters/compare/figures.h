@@ -11,8 +11,8 @@ namespace ifog {
 [[nodiscard]] double spread(std::span<const double> values);
 
 struct AgainstReference {
-  double rmse = 0.0;  // root mean square of output − reference
-  double bias = 0.0;  // mean of output − reference
+  std::optional<double> rmse;  // root mean square of output − reference; nothing where one is always missing
+  std::optional<double> bias;  // mean of output − reference
   std::optional<double>
       lag_s;  // how far the output trails; nothing when the reference does not move enough to tell
 };

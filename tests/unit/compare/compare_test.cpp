@@ -30,7 +30,7 @@ TEST(CompareFigures, LagOfADelayedSineIsTheDelay) {
   const auto against = ifog::against_reference(output, reference, kPeriod, 90);
   ASSERT_TRUE(against.lag_s.has_value());
   EXPECT_NEAR(*against.lag_s, kDelay, 1e-4);
-  EXPECT_NEAR(against.bias, 0.02, 1e-4);
+  EXPECT_NEAR(against.bias.value(), 0.02, 1e-4);
 }
 
 TEST(CompareFigures, AReferenceAtRestTellsNoLag) {
@@ -56,6 +56,12 @@ TEST(CompareFigures, MissingSamplesCountNeitherForNorAgainst) {
   const std::vector<double> with{1.0, nan, 3.0, 5.0}, without{1.0, 3.0, 5.0};
   EXPECT_DOUBLE_EQ(ifog::spread(with), ifog::spread(without));
   EXPECT_DOUBLE_EQ(ifog::spread(without), 2.0);
+}
+
+TEST(CompareFigures, AReferenceWithoutAValueTellsNothing) {
+  const std::vector<double> missing(100, std::numeric_limits<double>::quiet_NaN());
+  const auto against = ifog::against_reference(noise(3, 100), missing, 0.01, 20);
+  EXPECT_FALSE(against.rmse || against.bias || against.lag_s);
 }
 
 TEST(CompareFigures, TheMedianIsUnknownWhenMostDidNotArrive) {
