@@ -435,6 +435,8 @@ class Account {
 }  // namespace
 
 Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options) {
+  if (!(options.fit_from < options.fit_to))
+    throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const bool partly = options.fit_from > 0.0 || options.fit_to < 1.0;
   const std::vector<Record> fitted = partly ? fitted_part(records, options) : records;
   const WithoutRamps parts = take_out_ramps(fitted, options.significance);

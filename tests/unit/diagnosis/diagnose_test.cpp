@@ -194,6 +194,10 @@ TEST(Diagnose, SeveralRecordsHaveASwitchOnBiasEach) {
 TEST(Diagnose, RefusesWhatItCannotUse) {
   EXPECT_THROW(diagnose({}, {}), std::invalid_argument);
   Sensor s = quiet(27);
+  DiagnoseOptions backwards;
+  backwards.fit_from = 0.6;
+  backwards.fit_to = 0.5;
+  EXPECT_THROW(diagnose({s.record()}, backwards), std::invalid_argument);
   Record r = s.record();
   r.rate_radps = r.rate_radps.subspan(1);
   EXPECT_THROW(diagnose({r}, {}), std::invalid_argument);
