@@ -75,28 +75,28 @@ std::vector<double> means_over(std::span<const double> error, std::size_t count)
 
 double allan_deviation(std::span<const double> error, std::size_t count) {
   if (count == 0 || error.size() < 3 * count) return kMissing;
-  // Running sums; a missing sample is bridged by the one before it.
+  // Running sums, above the first value there is, and numbers of values.
   std::vector<double> sum(error.size() + 1, 0.0);
-  double last = 0.0;
-  for (const double v : error) {
-    if (std::isfinite(v)) {
-      last = v;
-      break;
-    }
-  }
-  const double offset = last;
+  std::vector<double> there(error.size() + 1, 0.0);
+  const auto first = std::find_if(error.begin(), error.end(), [](double v) { return std::isfinite(v); });
+  const double offset = first == error.end() ? 0.0 : *first;
   for (std::size_t i = 0; i < error.size(); ++i) {
-    if (std::isfinite(error[i])) last = error[i];
-    sum[i + 1] = sum[i] + (last - offset);
+    const bool finite = std::isfinite(error[i]);
+    sum[i + 1] = sum[i] + (finite ? error[i] - offset : 0.0);
+    there[i + 1] = there[i] + (finite ? 1.0 : 0.0);
   }
   double square = 0.0;
   double n = 0.0;
-  const double scale = 1.0 / static_cast<double>(count);
+  const double least = 0.5 * static_cast<double>(count);
   for (std::size_t i = 0; i + 2 * count < sum.size(); ++i) {
-    const double d = (sum[i + 2 * count] - 2.0 * sum[i + count] + sum[i]) * scale;
+    const double one = there[i + count] - there[i];
+    const double other = there[i + 2 * count] - there[i + count];
+    if (one < least || other < least) continue;
+    const double d = (sum[i + 2 * count] - sum[i + count]) / other - (sum[i + count] - sum[i]) / one;
     square += d * d;
     n += 1.0;
   }
+  if (n == 0.0) return kMissing;
   return std::sqrt(0.5 * square / n);
 }
 

@@ -22,7 +22,7 @@ std::map<std::string, double> pooled(const std::vector<std::map<std::string, dou
 std::vector<double> means_over(std::span<const double> error, std::size_t count);
 
 // Overlapping Allan deviation at one averaging time of `count` samples, NaN when the record is too short for
-// it.
+// it. Means of fewer than half of their samples do not count.
 double allan_deviation(std::span<const double> error, std::size_t count);
 
 }  // namespace ifog

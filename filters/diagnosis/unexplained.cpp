@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "filters/diagnosis/even_error.h"
 #include "filters/diagnosis/figures.h"
@@ -168,8 +169,11 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
     double least = 1e300;
     double most = 0.0;
     for (std::size_t p = 0; p < 8; ++p) {
-      const double typical = median({energy.begin() + static_cast<std::ptrdiff_t>(p * part),
-                                     energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part)});
+      std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
+                                   energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
+      std::erase(measured, 0.0);  // gaps
+      if (2 * measured.size() < part || measured.empty()) continue;
+      const double typical = median(std::move(measured));
       least = std::min(least, typical);
       most = std::max(most, typical);
     }

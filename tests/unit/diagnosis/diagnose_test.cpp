@@ -191,6 +191,18 @@ TEST(Diagnose, SeveralRecordsHaveASwitchOnBiasEach) {
   EXPECT_TRUE(diagnose({a.record(), b.record()}, {}).effects.empty());
 }
 
+// White noise has the Allan deviation of its mean, with a gap as without.
+TEST(Diagnose, AGapIsNeitherQuietNorAChangeOfTheNoise) {
+  Sensor s = quiet(28);
+  for (std::size_t i = 0; i < s.time.size(); ++i) {
+    s.rate[i] = 1e-6 * gaussian(static_cast<std::uint32_t>(i), 3, 28);
+    if (i >= 7500) s.time[i] += 3000.0;
+  }
+  const Diagnosis found = diagnose({s.record()}, {});
+  EXPECT_NEAR(found.before.at("adev_1s_radps"), 1e-6 / std::sqrt(10.0), 0.03e-6);
+  EXPECT_NE(found.unexplained.kind, "changing_variance");
+}
+
 TEST(Diagnose, RefusesWhatItCannotUse) {
   EXPECT_THROW(diagnose({}, {}), std::invalid_argument);
   Sensor s = quiet(27);
