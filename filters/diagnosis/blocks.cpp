@@ -20,13 +20,18 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+std::string too_few(std::size_t used) {
+  return "a diagnosis needs at least 32 samples with a rate, and with a reference if there is one: " +
+         std::to_string(used) + " found";
+}
+
 double median_period(const std::vector<Record>& records) {
   std::vector<double> steps;
   for (const Record& record : records) {
     const std::size_t n = std::min<std::size_t>(record.time_s.size(), 20001);
     for (std::size_t i = 1; i < n; ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
   }
-  if (steps.empty()) throw std::invalid_argument("a diagnosis needs at least 32 samples");
+  if (steps.empty()) throw std::invalid_argument(too_few(records.size()));
   return median(std::move(steps));
 }
 
@@ -41,6 +46,10 @@ void check(const std::vector<Record>& records) {
       }
     };
     same(record.rate_radps.size(), "the rate");
+    if (record.reference_radps.empty() != records.front().reference_radps.empty())
+      throw std::invalid_argument(record.name +
+                                  ": either all captures have a reference rate or none, unlike " +
+                                  records.front().name);
     if (!record.reference_radps.empty()) same(record.reference_radps.size(), "the reference");
     for (const RecordChannel& channel : record.channels) same(channel.values.size(), channel.name);
     for (std::size_t i = 1; i < n; ++i) {
@@ -155,7 +164,13 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   }
   grid.starts.push_back(grid.valid.size());
   grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
-  if (grid.used() < 32) throw std::invalid_argument("a diagnosis needs at least 32 samples");
+  if (grid.used() < 32) throw std::invalid_argument(too_few(grid.used()));
+  const auto [least, most] = std::minmax_element(error.begin(), error.end());
+  if (grid.white_variance == 0.0 && *least == *most) {
+    throw std::invalid_argument(records.front().name +
+                                ": the rate, less the reference if there is one, never changes; expected "
+                                "measurements");
+  }
 
   const Record& first = records.front();
   const bool several = a_step > 1;

@@ -23,8 +23,8 @@ Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured)
 // record.
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);
 
-// Coefficients of the columns after the first by generalised least squares, on the rows where `use` says so.
-// Covariance too, when asked for.
+// Coefficients of the columns after the first by generalised least squares; their covariance too, when asked
+// for.
 Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
                       Eigen::MatrixXd* covariance = nullptr);
 

@@ -27,6 +27,7 @@
 #include "filters/diagnosis/steady.h"
 #include "filters/diagnosis/tries.h"
 #include "filters/diagnosis/unexplained.h"
+#include "filters/diagnosis/unused_channels.h"
 
 namespace ifog {
 namespace {
@@ -63,6 +64,8 @@ class Account {
 
   Diagnosis run() {
     for (const Record& record : records_) result_.samples += record.time_s.size();
+    const std::string unused = unused_channels(records_, data_);
+    if (!unused.empty()) result_.remarks.push_back(unused);
     result_.sample_rate_hz = 1.0 / data_.grid.sample_s;
     SearchOptions search;
     search.significance = options_.significance;
@@ -123,6 +126,7 @@ class Account {
   // Slow noise that happens to run against the effects hides them in the raw error, and their removal lays it
   // bare. That is no reason to leave them out where noise as large as the model's does it now and then.
   [[nodiscard]] bool slow_noise_may_oppose() const {
+    if (found_.clean.empty()) return true;
     const Columns all = design(clean_data_, found_.clean);
     const Eigen::Index k = constant_columns();
     const Eigen::Index p = all.cols() - 1 - k;

@@ -107,7 +107,8 @@ struct Diagnosis {
   DiagnosisSeries series;
 };
 
-// Throws std::invalid_argument, one line: no record, spans of unequal length, fewer than 32 usable samples.
+// Throws std::invalid_argument, one line: no record, a part to fit that ends before it begins, spans of
+// unequal length, a reference in some records only, fewer than 32 usable samples.
 Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options);
 
 // The model these findings make: effects, covariance, ranges, noise. Source is for the caller to fill.

@@ -14,6 +14,7 @@ constexpr std::array kShares = {0.05, 0.08, 0.12, 0.17, 0.22, 0.28, 0.35};
 constexpr double kCertain = 0.1;  // of the significance
 // Twice the log-likelihood, before the noise is fitted anew: further below the model no loop recovers.
 constexpr double kHopeless = -30.0;
+constexpr double kLoopParameters = 3.0;  // its size, its width, and the channel's linear effect
 
 double log_likelihood(const Eigen::MatrixXd& gram, const std::vector<Eigen::Index>& columns, double n) {
   const auto p = static_cast<Eigen::Index>(columns.size());
@@ -102,9 +103,12 @@ std::vector<LoopFit> fit_loops(const BlockData& data, const std::vector<Candidat
     for (const Candidate& each : model) {
       if (each.channel != c || each.form == Form::kProduct)
         fit.beside.push_back(each);
-      else if (each.form != Form::kLinear)
+      else
         fit.instead_of.push_back(each);
     }
+    for (const Candidate& each : fit.instead_of)
+      fit.saved += 1.0 + (each.searched() ? 1.0 : 0.0) + (each.second_time_constant_s > 0.0 ? 1.0 : 0.0);
+    fit.saved -= kLoopParameters;
     Candidate linear;
     linear.form = Form::kLinear;
     linear.channel = c;
@@ -136,8 +140,11 @@ std::optional<Hysteresis> certain_hysteresis(const BlockData& data, const std::v
   for (std::size_t c = 0; c < data.channels.size(); ++c)
     tries += may_have_a_loop(data, c) ? kProfiled * static_cast<double>(kShares.size()) : 0.0;
   std::optional<Hysteresis> found;
+  const double each_parameter = std::log(static_cast<double>(data.grid.used()));
   for (const LoopFit& fit : fits) {
-    if (tail(fit.loop.likelihood_ratio, 2) * tries > kCertain * significance) continue;
+    const bool certain = tail(fit.loop.likelihood_ratio, 2) * tries <= kCertain * significance;
+    const bool plainer = fit.saved > 0.0 && fit.loop.likelihood_ratio + each_parameter * fit.saved > 0.0;
+    if (!certain && !plainer) continue;
     if (!found || fit.loop.likelihood_ratio > found->likelihood_ratio) found = fit.loop;
   }
   return found;

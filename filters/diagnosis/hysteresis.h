@@ -22,7 +22,8 @@ struct LoopFit {
   Hysteresis loop;                    // ratio: against the model, below zero when it explains less
   NoiseFit noise;                     // with it
   std::vector<Candidate> beside;      // other channels' effects, and the channel's linear one
-  std::vector<Candidate> instead_of;  // the channel's other effects
+  std::vector<Candidate> instead_of;  // the channel's effects in the model, the linear one too
+  double saved = 0.0;                 // parameters that the model has more than the loop
 };
 
 // Of every smooth channel the best loop, fitted in place of what the model says of that channel but for a
@@ -31,7 +32,9 @@ std::vector<LoopFit> fit_loops(const BlockData& data, const std::vector<Candidat
                                const NoiseFit& noise);
 
 // The one that overrules the model. A width and a channel were chosen, so it has to be certain: ten times
-// below `significance` after correction for that.
+// below `significance` after correction for that. Of a model with more parameters than the loop it need only
+// be the better by the Bayesian information criterion: effects of one channel that cancel each other can
+// imitate anything.
 std::optional<Hysteresis> certain_hysteresis(const BlockData& data, const std::vector<LoopFit>& fits,
                                              double significance);
 

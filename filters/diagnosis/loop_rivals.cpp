@@ -9,10 +9,18 @@ namespace {
 // A loop has a width besides its size and is rarer than any form: twice the log-likelihood, as complexity().
 constexpr double kComplexity = 8.0;
 
-double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  const Eigen::VectorXd x = a.array() - a.mean();
-  const Eigen::VectorXd y = b.array() - b.mean();
-  return x.dot(y) / std::max(x.norm() * y.norm(), 1e-300);
+// As the noise filter sees them.
+double correlation(const BlockGrid& grid, const NoiseShape& shape, const Eigen::VectorXd& a,
+                   const Eigen::VectorXd& b) {
+  Columns both(a.size(), 2);
+  both << a, b;
+  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+    auto part = both.middleRows(static_cast<Eigen::Index>(grid.starts[r]),
+                                static_cast<Eigen::Index>(grid.starts[r + 1] - grid.starts[r]));
+    part.rowwise() -= part.colwise().mean().eval();
+  }
+  Whitening(grid, shape).apply(both);
+  return both.col(0).dot(both.col(1)) / std::max(both.col(0).norm() * both.col(1).norm(), 1e-300);
 }
 
 // Sum of effects and coefficients over the blocks.
@@ -32,7 +40,8 @@ Eigen::VectorXd sum_of(const BlockData& data, const std::vector<Candidate>& cand
 void add_loop_rivals(const BlockData& data, const std::vector<LoopFit>& fits, const NoiseShape& shape,
                      const std::string& axis, Findings& findings) {
   for (const LoopFit& fit : fits) {
-    if (fit.instead_of.empty()) continue;
+    const auto linear = [](const Candidate& each) { return each.form == Form::kLinear; };
+    if (std::all_of(fit.instead_of.begin(), fit.instead_of.end(), linear)) continue;
     double loss = kComplexity - fit.loop.likelihood_ratio;
     for (const Candidate& each : fit.instead_of) loss -= complexity(each);
     if (loss > kNoRival) continue;
@@ -47,11 +56,13 @@ void add_loop_rivals(const BlockData& data, const std::vector<LoopFit>& fits, co
     model.insert(model.end(), fit.instead_of.begin(), fit.instead_of.end());
     const std::vector<Effect> mine = fitted_effects(data, model, shape, axis);
     Indistinguishable pair;
-    pair.effects = {mine.back(), Effect{}};
+    const auto nonlinear = std::find_if_not(fit.instead_of.begin(), fit.instead_of.end(), linear);
+    pair.effects = {effect_of(data, *nonlinear), Effect{}};
+    pair.effects[0].axis = axis;
     pair.effects[1].form = "hysteresis";
     pair.effects[1].channel = fit.loop.channel;
     pair.effects[1].axis = axis;
-    pair.correlation = correlation(sum_of(data, model, mine),
+    pair.correlation = correlation(data.grid, shape, sum_of(data, model, mine),
                                    sum_of(data, fit.beside, other.effects) + fit.loop.coefficient * loop);
     pair.separate_by = "a capture in which " + fit.loop.channel +
                        " runs up and down between the same values, more than once";

@@ -22,6 +22,7 @@ Unsteadiness unsteadiness(const BlockData& data, const std::vector<Candidate>& m
   const Eigen::VectorXd left = left_by(white.rightCols(p), white.col(0));
   const double variance = left.squaredNorm() / std::max(1.0, static_cast<double>(data.grid.used() - p));
   const double all = x.squaredNorm();
+  if (!(all > 0.0)) return {};
 
   struct Part {
     double moment = 0.0, energy = 0.0, scatter = 0.0;

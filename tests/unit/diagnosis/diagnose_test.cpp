@@ -203,6 +203,23 @@ TEST(Diagnose, AGapIsNeitherQuietNorAChangeOfTheNoise) {
   EXPECT_NE(found.unexplained.kind, "changing_variance");
 }
 
+TEST(Diagnose, NamesTheChannelsItCannotUse) {
+  const Sensor a = quiet(25);
+  const Sensor b = quiet(26);
+  const std::vector<double> constant(a.rate.size(), 1.0);
+  const std::vector<double> empty(a.rate.size(), std::nan(""));
+  Record first = a.record();
+  first.channels.push_back({"pressure_hPa", constant});
+  first.channels.push_back({"light_W", empty});
+  Record second = b.record();
+  second.channels = {second.channels[0], {"pressure_hPa", constant}, {"light_W", empty}};
+  const Diagnosis d = diagnose({first, second}, {});
+  ASSERT_FALSE(d.remarks.empty());
+  EXPECT_EQ(d.remarks[0],
+            "channels that say nothing here and were left out: supply_V (not in every capture); "
+            "light_W (without a value); pressure_hPa (never changing)");
+}
+
 TEST(Diagnose, RefusesWhatItCannotUse) {
   EXPECT_THROW(diagnose({}, {}), std::invalid_argument);
   Sensor s = quiet(27);
@@ -211,6 +228,13 @@ TEST(Diagnose, RefusesWhatItCannotUse) {
   backwards.fit_to = 0.5;
   EXPECT_THROW(diagnose({s.record()}, backwards), std::invalid_argument);
   Record r = s.record();
+  r.reference_radps = s.temperature;
+  EXPECT_THROW(diagnose({s.record(), r}, {}), std::invalid_argument);
+  const std::vector<double> still(s.rate.size(), 3e-5);
+  r = s.record();
+  r.rate_radps = still;
+  EXPECT_THROW(diagnose({r}, {}), std::invalid_argument);
+  r = s.record();
   r.rate_radps = r.rate_radps.subspan(1);
   EXPECT_THROW(diagnose({r}, {}), std::invalid_argument);
 }
