@@ -165,12 +165,6 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   grid.starts.push_back(grid.valid.size());
   grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
   if (grid.used() < 32) throw std::invalid_argument(too_few(grid.used()));
-  const auto [least, most] = std::minmax_element(error.begin(), error.end());
-  if (grid.white_variance == 0.0 && *least == *most) {
-    throw std::invalid_argument(records.front().name +
-                                ": the rate, less the reference if there is one, never changes; expected "
-                                "measurements");
-  }
 
   const Record& first = records.front();
   const bool several = a_step > 1;

@@ -40,6 +40,18 @@ constexpr double kOpposed = 2.5;     // standard deviations
 constexpr double kUnsteady = 16.27;  // chi-square of three degrees of freedom, 0.1 %
 constexpr double kUnsteadyShare = 0.2;
 
+// A stuck device, or a placeholder: rounding would be all there is to explain.
+void refuse_constant(const std::vector<Record>& records) {
+  for (const Record& record : records) {
+    const std::vector<double> error = error_of(record);
+    const double first = error.empty() ? 0.0 : error.front();
+    if (!std::all_of(error.begin(), error.end(), [&](double value) { return value == first; })) return;
+  }
+  throw std::invalid_argument(records.front().name +
+                              ": the rate, less the reference if there is one, never changes; expected "
+                              "measurements");
+}
+
 class Account {
  public:
   // records: as given. clean: with what the ramps explain taken out of the rate, and the ramps out of the
@@ -63,6 +75,7 @@ class Account {
   }
 
   Diagnosis run() {
+    refuse_constant(records_);
     for (const Record& record : records_) result_.samples += record.time_s.size();
     const std::string unused = unused_channels(records_, data_);
     if (!unused.empty()) result_.remarks.push_back(unused);

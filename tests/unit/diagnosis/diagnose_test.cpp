@@ -154,6 +154,11 @@ TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   const double with_loop = predict_heading(d, s.record(), 150.0, {600.0}).sigma_rad[0];
   Diagnosis without = d;
   without.hysteresis.reset();
+  // Of the next capture nobody knows the rate yet: a placeholder will do.
+  const std::vector<double> unknown(s.rate.size(), 0.0);
+  Record next = s.record();
+  next.rate_radps = unknown;
+  EXPECT_DOUBLE_EQ(predict_heading(d, next, 150.0, {600.0}).sigma_rad[0], with_loop);
   EXPECT_GT(with_loop, 3.0 * predict_heading(without, s.record(), 150.0, {600.0}).sigma_rad[0]);
 }
 
