@@ -207,9 +207,10 @@ class Account {
       drop(least);
     }
     if (names.empty()) return;
-    result_.remarks.push_back("the innovations suggest " + names +
-                              ", but a few knocks or a change of the noise make it seem so, or the error on "
-                              "held-out data would grow: left out");
+    result_.remarks.push_back(
+        "the innovations suggest " + names +
+        ", but a few knocks or a change of the noise make it seem so, it is not the same "
+        "all along the record, or the error on held-out data would grow: left out");
   }
 
   void take_effects() {
