@@ -8,8 +8,8 @@
 #include <string>
 
 #include "daemon/config/config.h"
-#include "daemon/health/log.h"
-#include "daemon/housekeeping.h"
+#include "daemon/housekeeping/housekeeping.h"
+#include "daemon/housekeeping/log.h"
 
 namespace {
 

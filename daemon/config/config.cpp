@@ -9,7 +9,7 @@
 
 #include "daemon/config/table_reader.h"
 #include "drivers/capture/text_file.h"
-#include "filters/model/toml_file.h"
+#include "filters/model_file/toml_file.h"
 
 namespace ifog {
 namespace {

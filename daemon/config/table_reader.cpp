@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "filters/model/toml_file.h"
+#include "filters/model_file/toml_file.h"
 
 namespace ifog {
 namespace {

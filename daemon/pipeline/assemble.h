@@ -11,7 +11,7 @@
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/transport.h"
 #include "filters/chain/signal_chain.h"
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 

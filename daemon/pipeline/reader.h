@@ -12,7 +12,7 @@
 #include "daemon/health/event.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
-#include "daemon/pipeline/sensor_facts.h"
+#include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/transport.h"
 #include "filters/chain/incrementer.h"

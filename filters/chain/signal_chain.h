@@ -18,7 +18,7 @@
 #include "filters/effects/compensator.h"
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/settings.h"
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 

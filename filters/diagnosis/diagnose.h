@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "filters/diagnosis/belief.h"
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 

@@ -16,7 +16,7 @@
 
 #include "filters/effects/shape.h"
 #include "filters/estimator/estimator.h"
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 

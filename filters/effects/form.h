@@ -16,7 +16,7 @@
 #include <string>
 #include <string_view>
 
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 

@@ -8,8 +8,8 @@
 
 #include "filters/estimator/estimator.h"
 #include "filters/kalman/settled.h"
-#include "filters/models/state_model.h"
 #include "filters/rules/rule.h"
+#include "filters/state_models/state_model.h"
 
 namespace ifog {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "filters/models/state_model.h"
+#include "filters/state_models/state_model.h"
 
 namespace ifog {
 

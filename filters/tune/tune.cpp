@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "filters/kalman/likelihood.h"
-#include "filters/models/state_model.h"
+#include "filters/state_models/state_model.h"
 #include "filters/tune/candidate.h"
 
 namespace ifog {

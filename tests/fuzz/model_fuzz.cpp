@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "tools/ifog/capture_input.h"
-#include "tools/ifog/capture_output.h"
+#include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/commands.h"
 
 namespace ifog::tools {

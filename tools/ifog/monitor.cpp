@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/health/status_report.h"
+#include "daemon/housekeeping/status_report.h"
 #include "tools/ifog/commands.h"
 
 namespace ifog::tools {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "tools/ifog/allan_record.h"
+#include "tools/ifog/allan/allan_record.h"
+#include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/lcm_log.h"
 #include "tools/ifog/plot.h"
 
 namespace ifog::tools {

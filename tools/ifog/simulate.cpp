@@ -5,8 +5,8 @@
 
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
-#include "tools/ifog/capture_input.h"
-#include "tools/ifog/capture_output.h"
+#include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/commands.h"
 #include "tools/simulate/simulator.h"
 

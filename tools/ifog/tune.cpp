@@ -12,10 +12,10 @@
 
 #include "drivers/capture/text_file.h"
 #include "filters/allan/stretches.h"
-#include "filters/model/model.h"
-#include "tools/ifog/capture_input.h"
+#include "filters/model_file/model.h"
+#include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/progress.h"
+#include "tools/ifog/console/progress.h"
 
 namespace ifog::tools {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 namespace ifog::report {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "drivers/capture/text_file.h"
-#include "filters/model/toml_file.h"
+#include "filters/model_file/toml_file.h"
 #include "tools/simulate/simulator.h"
 
 namespace ifog::simulate {

@@ -19,8 +19,8 @@
 
 #include "filters/estimator/estimator.h"
 #include "filters/kalman/core.h"
-#include "filters/models/state_model.h"
 #include "filters/rules/rule.h"
+#include "filters/state_models/state_model.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "filters/diagnosis/prediction.h"
+#include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/health/status_report.h"
+#include "daemon/housekeeping/status_report.h"
 #include "drivers/host/driver_instance.h"
 
 namespace ifog {

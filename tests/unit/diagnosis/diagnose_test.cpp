@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/diagnosis/prediction.h"
+#include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/compensator.h"
 #include "filters/random/philox.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "filters/diagnosis/hysteresis.h"
-#include "filters/diagnosis/steady.h"
+#include "filters/diagnosis/checks/chow_test.h"
+#include "filters/diagnosis/residual/hysteresis.h"
 
 namespace ifog {
 namespace {

@@ -1,4 +1,4 @@
-#include "filters/diagnosis/ramp.h"
+#include "filters/diagnosis/record/ramp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Peaks of a structure are named, noise is not taken for one.
-#include "filters/diagnosis/resonances.h"
+#include "filters/diagnosis/residual/resonances.h"
 
 #include <gtest/gtest.h>
 

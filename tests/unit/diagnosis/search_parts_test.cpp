@@ -5,12 +5,12 @@
 #include <cmath>
 #include <random>
 
-#include "filters/diagnosis/consistent.h"
-#include "filters/diagnosis/online_twin.h"
-#include "filters/diagnosis/reconstruct.h"
-#include "filters/diagnosis/record_lines.h"
-#include "filters/diagnosis/search.h"
-#include "filters/diagnosis/tries.h"
+#include "filters/diagnosis/checks/hausman_test.h"
+#include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/residual/record_lines.h"
+#include "filters/diagnosis/search/effective_tries.h"
+#include "filters/diagnosis/search/fit_to_readings.h"
+#include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 namespace {

@@ -1,14 +1,14 @@
 // The promises of a fit, kept in repeated trials: how often intervals hold the truth, and how large the
 // heading error of another capture is beside what was predicted for it.
-#include "filters/diagnosis/uncertainty.h"
+#include "filters/diagnosis/regression/uncertainty.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filters/diagnosis/findings.h"
-#include "filters/diagnosis/prediction.h"
-#include "filters/diagnosis/search.h"
+#include "filters/diagnosis/report/findings.h"
+#include "filters/diagnosis/report/prediction.h"
+#include "filters/diagnosis/search/search.h"
 #include "filters/random/philox.h"
 
 namespace ifog {

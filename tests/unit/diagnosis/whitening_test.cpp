@@ -1,11 +1,11 @@
-#include "filters/diagnosis/whitening.h"
+#include "filters/diagnosis/regression/whitening.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filters/diagnosis/noise_fit.h"
-#include "filters/diagnosis/prediction.h"
+#include "filters/diagnosis/regression/noise_fit.h"
+#include "filters/diagnosis/report/prediction.h"
 #include "filters/random/philox.h"
 
 namespace ifog {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "filters/kalman/likelihood.h"
-#include "filters/models/state_model.h"
+#include "filters/state_models/state_model.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "filters/kalman/core.h"
-#include "filters/models/state_model.h"
+#include "filters/state_models/state_model.h"
 
 namespace {
 

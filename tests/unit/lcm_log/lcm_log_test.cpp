@@ -1,5 +1,5 @@
 // Logs of lcm-logger as captures: written here with LCM's own library, read by ours.
-#include "tools/ifog/lcm_log.h"
+#include "tools/ifog/captures/lcm_log.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "filters/model/model.h"
+#include "filters/model_file/model.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "filters/model/sha256.h"
+#include "filters/model_file/sha256.h"
 
 namespace ifog {
 namespace {

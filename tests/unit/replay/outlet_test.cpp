@@ -1,5 +1,5 @@
 // What `ifog replay` does when the system has no room: the system is a stand-in that answers as told.
-#include "tools/ifog/outlet.h"
+#include "tools/ifog/replay/outlet.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@
 
 #include "drivers/transport/pace.h"
 #include "drivers/transport/transport.h"
-#include "tools/ifog/lateness.h"
+#include "tools/ifog/replay/lateness.h"
 
 namespace {
 

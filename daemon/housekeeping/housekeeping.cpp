@@ -1,0 +1,268 @@
+#include "daemon/housekeeping/housekeeping.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <systemd/sd-daemon.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "daemon/realtime/realtime.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::int64_t kTick_ns = 100'000'000;
+constexpr int kTicksPerSecond = 10;
+constexpr std::uint64_t kWordedPerSecond = 5;  // event lines of one sensor; the rest is in the counters
+// A thread that has not come round for this long is stuck; the watchdog then restarts the service.
+constexpr int kStuck_s = 3;
+
+class Signals {
+ public:
+  Signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
+    fd_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+    if (fd_ < 0) throw std::runtime_error("no signalfd left");
+  }
+  ~Signals() { close(fd_); }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+
+  // The next signal, 0 when none came until `deadline_ns` of the monotonic clock.
+  int wait(std::int64_t deadline_ns) const {
+    const std::int64_t left = std::max<std::int64_t>(0, deadline_ns - monotonic_ns());
+    const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
+    pollfd wanted{fd_, POLLIN, 0};
+    if (ppoll(&wanted, 1, &timeout, nullptr) <= 0) return 0;
+    signalfd_siginfo info{};
+    return read(fd_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)
+               ? static_cast<int>(info.ssi_signo)
+               : 0;
+  }
+
+ private:
+  int fd_;
+};
+
+std::vector<std::string> axis_names(const ifog_description& description) {
+  std::vector<std::string> out;
+  for (std::uint32_t i = 0; i < description.axes; ++i) out.emplace_back(description.axis[i]);
+  return out;
+}
+
+}  // namespace
+
+Housekeeping::Housekeeping(Config config) : config_(std::move(config)), log_(make_log("")) {
+  status_publisher_ = make_lcm_publisher(config_.lcm_url);
+  std::vector<ChannelSources::Wanted> wanted;
+  std::string errors;
+  for (const SensorConfig& sensor : config_.sensors) {
+    try {
+      AssembledSensor parts = assemble(sensor, config_, make_lcm_publisher(config_.lcm_url));
+      const ifog_description& description = parts.pipeline->reader().driver().description();
+      int index = 0;
+      for (const ChannelConfig& channel : outside_channels(sensor))
+        wanted.push_back({channel, parts.outside, index++});
+      StatusReport report(sensor.name, parts.channels, axis_names(description));
+      sensors_.push_back(std::make_unique<Sensor>(Sensor{.config = sensor,
+                                                         .parts = std::move(parts),
+                                                         .report = std::move(report),
+                                                         .log = make_log(sensor.name)}));
+    } catch (const std::exception& error) {
+      errors += (errors.empty() ? "" : "\n") + config_.file + ":" + std::to_string(sensor.line) +
+                ": sensor \"" + sensor.name + "\": " + error.what();
+    }
+  }
+  if (!errors.empty()) throw ConfigError(errors);
+  sources_ = std::make_unique<ChannelSources>(std::move(wanted), config_.lcm_url);
+}
+
+Housekeeping::~Housekeeping() = default;
+
+void Housekeeping::notify(const std::string& state) { sd_notify(0, state.c_str()); }
+
+bool Housekeeping::open_all() {
+  bool any = false;
+  for (const auto& sensor : sensors_) {
+    try {
+      sensor->parts.pipeline->open();
+      any = true;
+    } catch (const std::exception& error) {
+      sensor->log->error("{}", error.what());
+    }
+  }
+  return any;
+}
+
+void Housekeeping::start_all() {
+  for (const auto& sensor : sensors_) {
+    for (const std::string& effect : sensor->parts.left_out) sensor->log->warn("not corrected: {}", effect);
+    if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
+      sensor->log->warn("{}", missed);
+    const PipelinePlan& plan = sensor->parts.pipeline->plan();
+    sensor->log->info("reading {} at {} Hz, publishing on {}",
+                      sensor->parts.pipeline->reader().transport().name(), plan.facts.nominal_rate_hz,
+                      plan.lcm_channel);
+  }
+  sources_->start();
+}
+
+void Housekeeping::drain_events(Sensor& sensor) {
+  Event event;
+  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty())
+    sensor.log->warn("{}", warning);
+  while (sensor.parts.pipeline->take_event(event)) {
+    const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
+    if (fault && sensor.worded >= kWordedPerSecond) {
+      ++sensor.unworded;
+      continue;
+    }
+    if (fault) ++sensor.worded;
+    sensor.log->log(fault ? spdlog::level::warn : spdlog::level::info, "{}", describe(event));
+  }
+}
+
+void Housekeeping::publish(Sensor& sensor) {
+  const status_t& message = sensor.report.message();
+  buffer_.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
+  const std::string channel = sensor.config.lcm_channel() + "_STATUS";
+  if (!status_publisher_->publish(channel.c_str(), buffer_))
+    sensor.log->warn("LCM did not take the status message");
+}
+
+void Housekeeping::report_second(Sensor& sensor, double interval_s) {
+  Pipeline& pipeline = *sensor.parts.pipeline;
+  sensor.answered = pipeline.filter().take_snapshot(sensor.snapshot);
+  sensor.unanswered = sensor.answered || pipeline.ended() ? 0 : sensor.unanswered + 1;
+  const std::uint64_t turns = pipeline.reader().counters().turns.value();
+  sensor.reader_stuck = turns != sensor.reader_turns || pipeline.ended() ? 0 : sensor.reader_stuck + 1;
+  sensor.reader_turns = turns;
+  if (sensor.unworded > 0) sensor.log->warn("{} more such lines in this second", sensor.unworded);
+  sensor.worded = sensor.unworded = 0;
+  const status_t& message = sensor.report.update(pipeline, sensor.snapshot, interval_s);
+  bool fault_worded = message.fault.empty() || message.fault == sensor.fault;
+  if (message.state != sensor.state) {
+    const bool good = message.state == status_t::STATE_RUNNING || message.state == status_t::STATE_STARTING ||
+                      message.state == status_t::STATE_ENDED;
+    sensor.log->log(good ? spdlog::level::info : spdlog::level::warn, "{}{}{}", state_name(message.state),
+                    message.fault.empty() ? "" : ": ", message.fault);
+    sensor.state = message.state;
+    fault_worded = true;
+  }
+  if (!fault_worded) sensor.log->warn("{}", message.fault);
+  sensor.fault = message.fault;
+  if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
+  publish(sensor);
+}
+
+bool Housekeeping::all_alive() const {
+  return std::all_of(sensors_.begin(), sensors_.end(), [](const auto& sensor) {
+    return sensor->unanswered < kStuck_s && sensor->reader_stuck < kStuck_s;
+  });
+}
+
+void Housekeeping::reload() {
+  notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
+  try {
+    const Config fresh = read_config(config_.file);
+    for (const auto& sensor : sensors_) {
+      const auto found =
+          std::find_if(fresh.sensors.begin(), fresh.sensors.end(),
+                       [&sensor](const SensorConfig& other) { return other.name == sensor->config.name; });
+      if (found == fresh.sensors.end()) {
+        sensor->log->warn("no longer in {}: goes on until a restart", config_.file);
+        continue;
+      }
+      // Only what can change between two samples; a device or a driver needs a restart.
+      sensor->config.model = found->model;
+      sensor->config.filter = found->filter;
+      sensor->config.start_up_s = found->start_up_s;
+      const Pipeline& pipeline = *sensor->parts.pipeline;
+      auto parts = std::make_unique<ChainParts>(sensor_chain_settings(
+          sensor->config, pipeline.reader().driver().description(), read_sensor_model(sensor->config)));
+      for (const std::string& effect : parts->left_out()) sensor->log->warn("not corrected: {}", effect);
+      sensor->log->info("reloaded: model {}, filter settings",
+                        sensor->config.model.empty() ? "none" : sensor->config.model);
+      sensor->parts.pipeline->filter().offer(std::move(parts));
+    }
+  } catch (const std::exception& error) {
+    log_->error("reload refused, going on as before: {}", error.what());
+  }
+  notify("READY=1");
+}
+
+void Housekeeping::stop_all() {
+  notify("STOPPING=1");
+  sources_->stop();
+  for (const auto& sensor : sensors_) sensor->parts.pipeline->stop();
+  for (const auto& sensor : sensors_) {
+    drain_events(*sensor);
+    report_second(*sensor, 0.0);
+    const status_t& message = sensor->report.message();
+    sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
+                      message.samples_published, message.sequence_missing, message.samples_merged);
+  }
+}
+
+int Housekeeping::run() {
+  if (!open_all()) {
+    log_->error("no sensor can run");
+    return 1;
+  }
+  if (config_.lock_memory)
+    if (const std::string missed = lock_memory(); !missed.empty()) log_->warn("{}", missed);
+  const Signals signals;
+  start_all();
+  notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
+  bool watchdog = true;
+  bool ended = false;
+  std::int64_t deadline_ns = monotonic_ns();
+  std::int64_t second_ns = deadline_ns;
+  for (int tick = 1; !ended; ++tick) {
+    deadline_ns += kTick_ns;
+    if (const int signal = signals.wait(deadline_ns); signal == SIGHUP) {
+      reload();
+      deadline_ns -= kTick_ns;
+      continue;
+    } else if (signal != 0) {
+      log_->info("stopping on {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
+      break;
+    }
+    ended = true;
+    for (const auto& sensor : sensors_) {
+      drain_events(*sensor);
+      sensor->parts.pipeline->filter().collect_retired();
+      ended = ended && sensor->parts.pipeline->ended();
+      if (tick % kTicksPerSecond == kTicksPerSecond - 1) sensor->parts.pipeline->filter().ask();
+    }
+    if (tick % kTicksPerSecond != 0 || ended) continue;
+    const std::int64_t now_ns = monotonic_ns();
+    double rate = 0.0;
+    for (const auto& sensor : sensors_) {
+      report_second(*sensor, static_cast<double>(now_ns - second_ns) * 1e-9);
+      rate += sensor->report.message().output_rate_hz;
+    }
+    second_ns = now_ns;
+    // After a long halt of the machine, no burst of overdue seconds.
+    deadline_ns = std::max(deadline_ns, now_ns - kTick_ns);
+    if (!all_alive() && std::exchange(watchdog, false))
+      log_->critical("a pipeline is stuck: no more signs of life");
+    if (watchdog)
+      notify("WATCHDOG=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s), " +
+             std::to_string(std::lround(rate)) + " samples/s published");
+  }
+  stop_all();
+  const bool failed = std::any_of(sensors_.begin(), sensors_.end(), [](const auto& sensor) {
+    return sensor->report.message().state == status_t::STATE_FAILED;
+  });
+  return failed ? 1 : 0;
+}
+
+}  // namespace ifog

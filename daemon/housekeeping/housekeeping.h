@@ -1,0 +1,64 @@
+// The daemon around its pipelines: opens, starts, watches, reports, reloads and stops them. One ordinary
+// thread, which does everything that allocates, locks, formats or waits.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/channels/channel_sources.h"
+#include "daemon/config/config.h"
+#include "daemon/housekeeping/log.h"
+#include "daemon/housekeeping/status_report.h"
+#include "daemon/pipeline/assemble.h"
+
+namespace ifog {
+
+class Housekeeping {
+ public:
+  // Throws ConfigError (a sensor that cannot be put together) or std::runtime_error (LCM). SIGTERM, SIGINT
+  // and SIGHUP must be blocked in the calling thread, so that all threads block them.
+  explicit Housekeeping(Config config);
+  ~Housekeeping();
+
+  // Until SIGTERM, SIGINT or the end of all files. 0, or 1 when no sensor can run or a file could not be
+  // read.
+  int run();
+
+ private:
+  struct Sensor {
+    SensorConfig config;
+    AssembledSensor parts;
+    StatusReport report;
+    std::shared_ptr<spdlog::logger> log;
+    FilterSnapshot snapshot{};
+    bool answered = true;  // the filter thread answered the last question
+    int unanswered = 0;    // seconds since it did
+    std::uint64_t reader_turns = 0;
+    int reader_stuck = 0;      // seconds since the reader last came round
+    std::int32_t state = -1;   // as last logged
+    std::string fault{};       // as last logged
+    std::uint64_t worded = 0;  // events logged in this second
+    std::uint64_t unworded = 0;
+  };
+
+  bool open_all();
+  void start_all();
+  void drain_events(Sensor& sensor);
+  void report_second(Sensor& sensor, double interval_s);
+  void publish(Sensor& sensor);
+  [[nodiscard]] bool all_alive() const;
+  void reload();
+  void stop_all();
+  void notify(const std::string& state);
+
+  Config config_;
+  std::shared_ptr<spdlog::logger> log_;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
+  std::unique_ptr<ChannelSources> sources_;
+  std::unique_ptr<Publisher> status_publisher_;
+  std::vector<std::uint8_t> buffer_;
+};
+
+}  // namespace ifog

@@ -1,0 +1,92 @@
+#include "daemon/housekeeping/log.h"
+
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <sys/stat.h>
+#include <syslog.h>
+#include <unistd.h>
+
+#define SD_JOURNAL_SUPPRESS_LOCATION
+#include <systemd/sd-journal.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+namespace ifog {
+namespace {
+
+constexpr const char* kDaemon = "ifogd";  // name of the log that belongs to no sensor
+
+int priority(spdlog::level::level_enum level) {
+  switch (level) {
+    case spdlog::level::critical:
+      return LOG_CRIT;
+    case spdlog::level::err:
+      return LOG_ERR;
+    case spdlog::level::warn:
+      return LOG_WARNING;
+    case spdlog::level::info:
+      return LOG_INFO;
+    default:
+      return LOG_DEBUG;
+  }
+}
+
+// spdlog's own systemd sink carries no fields beside its own; `journalctl IFOG_SENSOR=x` needs one.
+class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    const std::string name(message.logger_name.begin(), message.logger_name.end());
+    const bool of_sensor = name != kDaemon;
+    std::string text = "MESSAGE=" + (of_sensor ? name + ": " : "");
+    text.append(message.payload.begin(), message.payload.end());
+    std::string level = "PRIORITY=" + std::to_string(priority(message.level));
+    std::string identifier = "SYSLOG_IDENTIFIER=ifogd";
+    std::string sensor = "IFOG_SENSOR=" + name;
+    std::array<iovec, 4> fields{iovec{text.data(), text.size()}, iovec{level.data(), level.size()},
+                                iovec{identifier.data(), identifier.size()},
+                                iovec{sensor.data(), sensor.size()}};
+    sd_journal_sendv(fields.data(), of_sensor ? 4 : 3);
+  }
+  void flush_() override {}
+};
+
+// systemd.exec(5): the variable names the device and inode of the journal's socket if that is our standard
+// error.
+bool under_the_journal() {
+  const char* const stream = std::getenv("JOURNAL_STREAM");
+  struct stat err {};
+  if (stream == nullptr || fstat(STDERR_FILENO, &err) != 0) return false;
+  return std::to_string(err.st_dev) + ":" + std::to_string(err.st_ino) == stream;
+}
+
+std::shared_ptr<spdlog::sinks::sink>& the_sink() {
+  static std::shared_ptr<spdlog::sinks::sink> sink;
+  return sink;
+}
+
+}  // namespace
+
+void set_up_log(const std::string& level) {
+  if (under_the_journal())
+    the_sink() = std::make_shared<JournalSink>();
+  else
+    the_sink() = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+  the_sink()->set_pattern("%Y-%m-%dT%H:%M:%S.%e %l: %n: %v");
+  the_sink()->set_level(level == "debug"     ? spdlog::level::debug
+                        : level == "warning" ? spdlog::level::warn
+                        : level == "error"   ? spdlog::level::err
+                                             : spdlog::level::info);
+}
+
+std::shared_ptr<spdlog::logger> make_log(const std::string& sensor) {
+  if (!the_sink()) set_up_log("info");
+  auto log = std::make_shared<spdlog::logger>(sensor.empty() ? kDaemon : sensor, the_sink());
+  log->set_level(spdlog::level::debug);
+  log->flush_on(spdlog::level::debug);
+  return log;
+}
+
+}  // namespace ifog

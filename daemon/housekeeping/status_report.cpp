@@ -1,0 +1,180 @@
+#include "daemon/housekeeping/status_report.h"
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "drivers/transport/transport.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kSilence_s = 2.0;  // open, and nothing for this long: no data
+
+struct Named {
+  const char* name;
+  std::int64_t status_t::*field;
+};
+
+// Those that stand still while all is well.
+constexpr std::array kFaults{
+    Named{"frames_crc", &status_t::frames_crc},
+    Named{"frames_format", &status_t::frames_format},
+    Named{"bytes_skipped", &status_t::bytes_skipped},
+    Named{"sequence_gaps", &status_t::sequence_gaps},
+    Named{"sequence_missing", &status_t::sequence_missing},
+    Named{"ring_overflows", &status_t::ring_overflows},
+    Named{"samples_merged", &status_t::samples_merged},
+    Named{"kernel_drops", &status_t::kernel_drops},
+    Named{"can_error_frames", &status_t::can_error_frames},
+    Named{"reopened", &status_t::reopened},
+    Named{"lcm_failures", &status_t::lcm_failures},
+    Named{"invalid_samples", &status_t::invalid_samples},
+    Named{"channel_stale", &status_t::channel_stale},
+    Named{"out_of_range", &status_t::out_of_range},
+    Named{"divergences", &status_t::divergences},
+    Named{"events_lost", &status_t::events_lost},
+};
+
+std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(count); }
+
+std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
+  const Transport& transport = pipeline.reader().transport();
+  switch (transport.state()) {
+    case TransportState::gone:
+      return status_t::STATE_REOPENING;
+    case TransportState::ended:
+      // A fault at the end is a file that is cut off or damaged.
+      if (transport.reason() != 0 || transport.fault().what != nullptr ||
+          pipeline.reader().counters().bytes_at_end.value() != 0)
+        return status_t::STATE_FAILED;
+      return status_t::STATE_ENDED;
+    case TransportState::open:
+      break;
+  }
+  if (pipeline.reader().counters().samples.value() == 0) return status_t::STATE_STARTING;
+  const std::int64_t last = pipeline.reader().counters().last_arrival_ns.load(std::memory_order_relaxed);
+  const bool silent = !transport.holds_back() && static_cast<double>(now_ns - last) * 1e-9 > kSilence_s;
+  if (silent) return status_t::STATE_NO_DATA;
+  return status_t::STATE_RUNNING;
+}
+
+std::string fault_of(const Reader& reader) {
+  const Transport& transport = reader.transport();
+  const TransportFault fault = transport.fault();
+  if (transport.state() != TransportState::open && transport.reason() != 0)
+    return transport.name() + ": " + std::strerror(transport.reason());
+  if (const std::uint64_t left = reader.counters().bytes_at_end.value(); left != 0)
+    return transport.name() + ": ends within a frame, its last " + std::to_string(left) +
+           " bytes are no whole one (is the file cut off?)";
+  if (fault.what == nullptr) return "";
+  return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + fault.what;
+}
+
+}  // namespace
+
+const char* state_name(std::int32_t state) {
+  switch (state) {
+    case status_t::STATE_STARTING:
+      return "starting";
+    case status_t::STATE_RUNNING:
+      return "running";
+    case status_t::STATE_NO_DATA:
+      return "no data";
+    case status_t::STATE_REOPENING:
+      return "device gone";
+    case status_t::STATE_ENDED:
+      return "ended";
+    case status_t::STATE_FAILED:
+      return "failed";
+    default:
+      return "unknown";
+  }
+}
+
+StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels,
+                           const std::vector<std::string>& axes)
+    : before_(), now_() {
+  now_.sensor = std::move(sensor);
+  now_.version = IFOG_VERSION;
+  now_.axes = static_cast<std::int8_t>(axes.size());
+  now_.nis_mean.resize(axes.size());
+  now_.whiteness.resize(axes.size());
+  now_.measurement_noise.resize(axes.size());
+  now_.allan_rate_radps.resize(axes.size());
+  now_.channels = static_cast<std::int32_t>(channels.size());
+  now_.channel_value.resize(channels.size());
+  now_.channel_age_s.resize(channels.size());
+  now_.channel_name = std::move(channels);
+  before_ = now_;
+}
+
+const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
+  before_ = now_;
+  const ReaderCounters& reader = pipeline.reader().counters();
+  const FilterCounters& filter = pipeline.filter().counters();
+  const Transport& transport = pipeline.reader().transport();
+  const TransportCounters line = transport.counters();
+  const std::int64_t now_ns = realtime_ns();
+  now_.utime = now_ns / 1000;
+  now_.model = snapshot.model.data();
+  now_.state = state_of(pipeline, now_ns);
+  now_.fault = fault_of(pipeline.reader());
+  now_.samples_in = as_signed(reader.samples.value());
+  now_.samples_published = as_signed(filter.published.value());
+  now_.frames_good = as_signed(reader.frames_good.value());
+  now_.frames_crc = as_signed(reader.frames_crc.value());
+  now_.frames_format = as_signed(reader.frames_format.value() + line.malformed);
+  now_.bytes_skipped = as_signed(reader.bytes_skipped.value());
+  now_.sequence_gaps = as_signed(reader.gaps.value());
+  now_.sequence_missing = as_signed(reader.missing.value());
+  now_.ring_overflows = as_signed(pipeline.queue().overflows());
+  now_.samples_merged = as_signed(pipeline.queue().merged());
+  now_.kernel_drops = as_signed(line.kernel_drops);
+  now_.can_error_frames = as_signed(line.error_frames);
+  now_.reopened = as_signed(line.reopened);
+  now_.lcm_failures = as_signed(filter.lcm_failures.value());
+  now_.invalid_samples = as_signed(reader.invalid.value());
+  now_.gated = as_signed(snapshot.health.gated);
+  now_.channel_stale = as_signed(filter.channel_stale.value());
+  now_.out_of_range = as_signed(filter.out_of_range.value());
+  now_.events_lost = as_signed(pipeline.events_lost());
+  now_.floor_hits = as_signed(snapshot.health.floor_hits);
+  now_.manoeuvres = as_signed(snapshot.health.manoeuvres);
+  now_.divergences = as_signed(snapshot.health.divergences);
+  now_.filter_resets = as_signed(filter.filter_resets.value());
+  if (interval_s > 0.0) {
+    now_.input_rate_hz = static_cast<double>(now_.samples_in - before_.samples_in) / interval_s;
+    now_.output_rate_hz =
+        static_cast<double>(now_.samples_published - before_.samples_published) / interval_s;
+  }
+  now_.clock_offset_ppm = reader.clock_offset_ppm.load(std::memory_order_relaxed);
+  now_.latency_p50_us = snapshot.latency.percentile_us(0.5);
+  now_.latency_p99_us = snapshot.latency.percentile_us(0.99);
+  now_.latency_max_us = snapshot.latency.max_us();
+  for (std::size_t i = 0; i < now_.nis_mean.size(); ++i) {
+    now_.nis_mean[i] = snapshot.health.nis_mean[i];
+    now_.whiteness[i] = snapshot.health.whiteness[i];
+    now_.measurement_noise[i] = snapshot.health.measurement_noise[i];
+  }
+  now_.octaves = snapshot.allan_octaves;
+  now_.allan_tau0_s = snapshot.allan_period_s;
+  for (std::size_t i = 0; i < now_.allan_rate_radps.size(); ++i)
+    now_.allan_rate_radps[i].assign(snapshot.allan_radps[i].begin(),
+                                    snapshot.allan_radps[i].begin() + now_.octaves);
+  for (std::size_t i = 0; i < now_.channel_value.size(); ++i) {
+    now_.channel_value[i] = snapshot.channel[i];
+    now_.channel_age_s[i] = static_cast<double>(snapshot.channel_age_s[i]);
+  }
+  return now_;
+}
+
+std::string StatusReport::moved() const {
+  std::string out;
+  for (const Named& fault : kFaults)
+    if (const std::int64_t by = now_.*fault.field - before_.*fault.field; by != 0)
+      out += (out.empty() ? "" : ", ") + std::string(fault.name) + " +" + std::to_string(by);
+  return out;
+}
+
+}  // namespace ifog

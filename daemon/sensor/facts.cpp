@@ -1,0 +1,43 @@
+#include "daemon/sensor/facts.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace ifog {
+
+static_assert(kMaxAxes == IFOG_MAX_AXES && kMaxChannels >= IFOG_MAX_ENVIRONMENT,
+              "the chain must hold whatever a plugin may deliver");
+
+SensorFacts sensor_facts(const ifog_description& description, double nominal_rate_hz, int outside_channels) {
+  SensorFacts facts;
+  facts.kind = description.kind == IFOG_RATE          ? SensorKind::rate
+               : description.kind == IFOG_DELTA_ANGLE ? SensorKind::delta_angle
+                                                      : SensorKind::angle;
+  facts.axes = static_cast<int>(description.axes);
+  facts.sequence_modulus = description.sequence_modulus;
+  facts.nominal_rate_hz = nominal_rate_hz > 0.0 ? nominal_rate_hz : description.nominal_rate_hz;
+  if (!(facts.nominal_rate_hz > 0.0))
+    throw std::runtime_error("the driver does not know the sample rate: nominal_rate_hz must be given");
+  facts.angle_wrap_rad = description.angle_wrap_rad;
+  facts.frame_channels = static_cast<int>(description.environments);
+  facts.channels = facts.frame_channels + outside_channels;
+  if (facts.channels > kMaxChannels)
+    throw std::runtime_error(std::to_string(facts.channels) + " channels, expected at most " +
+                             std::to_string(kMaxChannels));
+  return facts;
+}
+
+void read_sample(const ifog_sample& sample, int frame_channels, Reading& out) noexcept {
+  out.arrival_ns = sample.arrival_ns;
+  out.device_time_ns = (sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0 ? sample.device_time_ns : -1;
+  out.sequence = sample.sequence;
+  out.has_sequence = (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0;
+  out.status = sample.status;
+  out.valid_axes = sample.valid_axes;
+  std::copy_n(sample.value, kMaxAxes, out.value.begin());
+  out.fresh_channels = sample.environment_fresh;
+  std::copy_n(sample.environment, frame_channels, out.channel.begin());
+}
+
+}  // namespace ifog

@@ -1,0 +1,129 @@
+#include "filters/diagnosis/checks/proof.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "filters/diagnosis/checks/hausman_test.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kWorse = 1.25;    // chance makes slow noise and an effect run together or against each other
+constexpr double kGradual = 4.0;   // twice the log-likelihood
+constexpr double kDisagree = 3.0;  // standard deviations
+
+// Sum of squares of the block means less the effects, about each record's mean.
+double left_over(const BlockData& data, const Claimed& claimed) {
+  const Columns columns = design(data, claimed.model);
+  const Eigen::Index p = columns.cols() - 1 - constants(data.grid).cols();
+  const Eigen::VectorXd c = solve(data.grid, claimed.noise.shape, columns);
+  Eigen::VectorXd left = columns.col(0);
+  if (p > 0) left -= columns.rightCols(p) * c.tail(p);
+  double sum = 0.0;
+  for (std::size_t r = 0; r + 1 < data.grid.starts.size(); ++r) {
+    double mean = 0.0;
+    double square = 0.0;
+    double n = 0.0;
+    for (std::size_t b = data.grid.starts[r]; b < data.grid.starts[r + 1]; ++b) {
+      if (!data.grid.valid[b]) continue;
+      const double value = left[static_cast<Eigen::Index>(b)];
+      n += 1.0;
+      const double step = value - mean;
+      mean += step / n;
+      square += step * (value - mean);
+    }
+    sum += square;
+  }
+  return sum;
+}
+
+// Whether a change spread over some time around the step explains more than the step itself.
+bool gradual(const BlockData& data, const Claimed& claimed) {
+  const BlockGrid& grid = data.grid;
+  const Candidate& step = claimed.model.back();
+  Columns columns = design(data, claimed.model);
+  const double sudden = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
+  const std::size_t from = grid.starts[step.record];
+  const std::size_t to = grid.starts[step.record + 1];
+  for (const double share : {0.005, 0.02, 0.06}) {
+    const double width_s = std::max(4.0, share * static_cast<double>(to - from)) * grid.block_s;
+    for (std::size_t b = from; b < to; ++b) {
+      columns(static_cast<Eigen::Index>(b), columns.cols() - 1) =
+          std::clamp(0.5 + (grid.time_s[b] - step.time_s) / width_s, 0.0, 1.0);
+    }
+    const double spread = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
+    if (2.0 * (spread - sudden) > kGradual) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool predicts(const BlockData& data, const Claimed& claimed) {
+  Columns white = design(data, claimed.model);
+  Whitening(data.grid, claimed.noise.shape).apply(white);
+  const Eigen::Index last = white.cols() - 1;
+  const Columns others = white.middleCols(1, last - 1);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(others);
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(others.rows(), others.cols());
+  Eigen::VectorXd y = white.col(0);
+  Eigen::VectorXd x = white.col(last);
+  y -= q * (q.transpose() * y);
+  x -= q * (q.transpose() * x);
+  constexpr int kFolds = 4;
+  const std::vector<int> fold = folds_of(data.grid, kFolds);
+  std::array<double, kFolds> xy{};
+  std::array<double, kFolds> xx{};
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const auto f = static_cast<std::size_t>(fold[static_cast<std::size_t>(i)]);
+    xy[f] += x[i] * y[i];
+    xx[f] += x[i] * x[i];
+  }
+  const double all_xy = std::accumulate(xy.begin(), xy.end(), 0.0);
+  const double all_xx = std::accumulate(xx.begin(), xx.end(), 0.0);
+  double gain = 0.0;
+  for (std::size_t f = 0; f < kFolds; ++f) {
+    if (all_xx - xx[f] <= 0.0) continue;
+    const double c = (all_xy - xy[f]) / (all_xx - xx[f]);
+    gain += 2.0 * c * xy[f] - c * c * xx[f];
+  }
+  return gain > 0.0;
+}
+
+bool stays(const BlockData& data, const Claimed& claimed) {
+  if (gradual(data, claimed)) return false;
+  const BlockGrid& grid = data.grid;
+  const Candidate& step = claimed.model.back();
+  const Columns columns = design(data, claimed.model);
+  const Eigen::VectorXd c = solve(grid, claimed.noise.shape, columns);
+  const Eigen::Index last = columns.cols() - 1;
+  const std::size_t from = grid.starts[step.record];
+  const std::size_t to = grid.starts[step.record + 1];
+  const std::size_t window = std::max<std::size_t>(8, (to - from) / 20);
+  std::array<double, 2> sum{};
+  std::array<double, 2> count{};
+  for (std::size_t b = from; b < to; ++b) {
+    const double away = std::abs(grid.time_s[b] - step.time_s) / grid.block_s;
+    if (!grid.valid[b] || away < 3.0 || away > static_cast<double>(window)) continue;
+    const auto row = static_cast<Eigen::Index>(b);
+    const std::size_t side = grid.time_s[b] > step.time_s ? 1 : 0;
+    sum[side] += columns(row, 0) - columns.row(row).segment(1, last - 1).dot(c.head(last - 1));
+    count[side] += 1.0;
+  }
+  if (count[0] < 4.0 || count[1] < 4.0) return false;
+  const double found = sum[1] / count[1] - sum[0] / count[0];
+  return found * c[last - 1] > 0.0 && std::abs(found) > 0.4 * std::abs(c[last - 1]);
+}
+
+bool holds_for_slow(const BlockData& data, const Claimed& claimed, const Claimed& without) {
+  if (left_over(data, claimed) <= kWorse * left_over(data, without)) return true;
+  const Columns columns = design(data, claimed.model);
+  Eigen::MatrixXd covariance;
+  const Eigen::VectorXd c = solve(data.grid, claimed.noise.shape, columns, &covariance);
+  return disagreement(data.grid, claimed.noise, columns, constants(data.grid).cols(), c, covariance) <
+         kDisagree;
+}
+
+}  // namespace ifog

@@ -1,0 +1,28 @@
+// What an effect has to prove beyond its likelihood.
+#pragma once
+
+#include "filters/diagnosis/regression/design.h"
+#include "filters/diagnosis/regression/noise_fit.h"
+
+namespace ifog {
+
+// A model whose last effect is on trial, with the noise that belongs to it.
+struct Claimed {
+  const std::vector<Candidate>& model;
+  const NoiseFit& noise;
+};
+
+// Whether the last effect's coefficient from the other folds makes the innovations of each fold smaller, all
+// folds together. Constants and the effects before it are projected out on all blocks first.
+bool predicts(const BlockData& data, const Claimed& claimed);
+
+// A knock makes innovations like a step's. A step is still there later: the means before and after differ by
+// it. And it is sudden: a change spread over a part of the record must not explain more.
+bool stays(const BlockData& data, const Claimed& claimed);
+
+// A correction must not make the error larger than slow noise makes it by chance: where it does grow against
+// the model without the last effect, the coefficient that plain least squares finds has to agree with the one
+// found in innovations.
+bool holds_for_slow(const BlockData& data, const Claimed& claimed, const Claimed& without);
+
+}  // namespace ifog

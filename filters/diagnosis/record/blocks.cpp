@@ -1,0 +1,253 @@
+#include "filters/diagnosis/record/blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+// Steps of the fine grid a block may have; a lag of a block is then known to a sixteenth of it.
+constexpr std::size_t kMostFine = 16;
+// A block counts when this share of its samples is there.
+constexpr double kLeastShare = 0.5;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string too_few(std::size_t used) {
+  return "a diagnosis needs at least 32 samples with a rate, and with a reference if there is one: " +
+         std::to_string(used) + " found";
+}
+
+double median_period(const std::vector<Record>& records) {
+  std::vector<double> steps;
+  for (const Record& record : records) {
+    const std::size_t n = std::min<std::size_t>(record.time_s.size(), 20001);
+    for (std::size_t i = 1; i < n; ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
+  }
+  if (steps.empty()) throw std::invalid_argument(too_few(records.size()));
+  return median(std::move(steps));
+}
+
+void check(const std::vector<Record>& records) {
+  if (records.empty()) throw std::invalid_argument("a diagnosis needs a record");
+  for (const Record& record : records) {
+    const std::size_t n = record.time_s.size();
+    const auto same = [&](std::size_t size, const std::string& what) {
+      if (size != n) {
+        throw std::invalid_argument(record.name + ": " + what + " has " + std::to_string(size) +
+                                    " values, time has " + std::to_string(n));
+      }
+    };
+    same(record.rate_radps.size(), "the rate");
+    if (record.reference_radps.empty() != records.front().reference_radps.empty())
+      throw std::invalid_argument(record.name +
+                                  ": either all captures have a reference rate or none, unlike " +
+                                  records.front().name);
+    if (!record.reference_radps.empty()) same(record.reference_radps.size(), "the reference");
+    for (const RecordChannel& channel : record.channels) same(channel.values.size(), channel.name);
+    for (std::size_t i = 1; i < n; ++i) {
+      if (!(record.time_s[i] > record.time_s[i - 1])) {
+        throw std::invalid_argument(record.name + ": time does not increase at sample " + std::to_string(i));
+      }
+    }
+  }
+}
+
+// Noise of one sample from its neighbours' differences, by their median: steps, ramps and bursts do not
+// count.
+double white_variance(const std::vector<Record>& records) {
+  std::vector<double> differences;
+  for (const Record& record : records) {
+    const std::size_t n = record.rate_radps.size();
+    const std::size_t stride = std::max<std::size_t>(1, n / 50000);
+    for (std::size_t i = 1; i < n; i += stride) {
+      double d = record.rate_radps[i] - record.rate_radps[i - 1];
+      if (!record.reference_radps.empty()) d -= record.reference_radps[i] - record.reference_radps[i - 1];
+      if (std::isfinite(d)) differences.push_back(std::abs(d));
+    }
+  }
+  if (differences.empty()) return 0.0;
+  const double sigma = median(std::move(differences)) / 0.6744897501960817;
+  return sigma * sigma / 2.0;
+}
+
+std::size_t fine_index(const Record& record, std::size_t i, double fine_s) {
+  return static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s[0]) / fine_s + 0.5));
+}
+
+// Means of one column over the fine grid of one record; steps without a value hold the last one.
+void fill(const Record& record, std::span<const double> values, double fine_s, std::size_t steps,
+          std::vector<double>& means, std::vector<double>* power) {
+  std::vector<double> sum(steps, 0.0);
+  std::vector<double> square(power ? steps : 0, 0.0);
+  std::vector<std::uint32_t> count(steps, 0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t k = std::min(fine_index(record, i, fine_s), steps - 1);
+    if (!std::isfinite(values[i])) continue;
+    sum[k] += values[i];
+    if (power) square[k] += values[i] * values[i];
+    ++count[k];
+  }
+  double held = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < steps && !std::isfinite(held); ++k) {
+    if (count[k]) held = sum[k] / count[k];
+  }
+  if (!std::isfinite(held)) held = 0.0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    if (count[k]) held = sum[k] / count[k];
+    means.push_back(held);
+    if (power) power->push_back(count[k] ? std::max(0.0, square[k] / count[k] - held * held) : 0.0);
+  }
+}
+
+void describe(FineChannel& channel) {
+  const auto [low, high] = std::minmax_element(channel.values.begin(), channel.values.end());
+  channel.low = *low;
+  channel.high = *high;
+  const double scale = std::max({std::abs(channel.low), std::abs(channel.high), 1e-300});
+  channel.varies = channel.high - channel.low > 1e-9 * scale;
+}
+
+}  // namespace
+
+std::size_t BlockGrid::used() const {
+  return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), std::uint8_t{1}));
+}
+
+BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
+  check(records);
+  BlockData data;
+  BlockGrid& grid = data.grid;
+  grid.sample_s = median_period(records);
+  grid.white_variance = white_variance(records);
+  double span = 0.0;
+  for (const Record& record : records) span += record.time_s.back() - record.time_s.front() + grid.sample_s;
+  const double samples = span / grid.sample_s;
+  const auto a_block = static_cast<std::size_t>(std::ceil(samples / static_cast<double>(most_blocks)));
+  const std::size_t a_step = (a_block + kMostFine - 1) / kMostFine;
+  grid.fine = (a_block + a_step - 1) / a_step;
+  grid.fine_s = static_cast<double>(a_step) * grid.sample_s;
+  grid.block_s = static_cast<double>(grid.fine) * grid.fine_s;
+
+  std::vector<double> error;
+  std::vector<std::size_t> blocks_of;
+  for (const Record& record : records) {
+    grid.starts.push_back(grid.valid.size());
+    const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
+    const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
+    blocks_of.push_back(blocks);
+    std::vector<double> sum(blocks, 0.0);
+    std::vector<double> count(blocks, 0.0);
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+      double value = record.rate_radps[i];
+      if (!record.reference_radps.empty()) value -= record.reference_radps[i];
+      if (!std::isfinite(value)) continue;
+      const std::size_t b = fine_index(record, i, grid.fine_s) / grid.fine;
+      sum[b] += value;
+      count[b] += 1.0;
+    }
+    const double full = grid.block_s / grid.sample_s;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const bool enough = count[b] >= std::max(1.0, kLeastShare * full);
+      grid.valid.push_back(enough ? 1 : 0);
+      error.push_back(enough ? sum[b] / count[b] : 0.0);
+      grid.time_s.push_back(record.time_s[0] + (static_cast<double>(b) + 0.5) * grid.block_s -
+                            0.5 * grid.fine_s);
+    }
+  }
+  grid.starts.push_back(grid.valid.size());
+  grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
+  if (grid.used() < 32) throw std::invalid_argument(too_few(grid.used()));
+
+  const Record& first = records.front();
+  const bool several = a_step > 1;
+  const auto add = [&](const std::string& name, auto&& values_of) {
+    FineChannel channel;
+    channel.name = name;
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      const std::span<const double> values = values_of(records[r]);
+      fill(records[r], values, grid.fine_s, blocks_of[r] * grid.fine, channel.values,
+           several ? &channel.power : nullptr);
+    }
+    describe(channel);
+    data.channels.push_back(std::move(channel));
+  };
+  for (const RecordChannel& channel : first.channels) {
+    bool everywhere = true;
+    for (const Record& record : records) {
+      everywhere =
+          everywhere && std::any_of(record.channels.begin(), record.channels.end(),
+                                    [&](const RecordChannel& other) { return other.name == channel.name; });
+    }
+    if (!everywhere) continue;
+    add(channel.name, [&](const Record& record) {
+      for (const RecordChannel& other : record.channels) {
+        if (other.name == channel.name) return other.values;
+      }
+      return std::span<const double>{};
+    });
+  }
+  if (std::all_of(records.begin(), records.end(),
+                  [](const Record& r) { return !r.reference_radps.empty(); })) {
+    data.reference = static_cast<std::ptrdiff_t>(data.channels.size());
+    add(first.reference_name, [](const Record& record) { return record.reference_radps; });
+    // Averages of seconds at rates that were set: whatever drifts between them is not sampled as drift.
+    grid.dwells = grid.sample_s > 1.0 && data.channels.back().varies;
+  }
+  return data;
+}
+
+namespace {
+
+template <class Step>
+Eigen::VectorXd block_means(const BlockGrid& grid, Step&& step) {
+  Eigen::VectorXd means(static_cast<Eigen::Index>(grid.size()));
+  const double share = 1.0 / static_cast<double>(grid.fine);
+  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+      double sum = 0.0;
+      for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k)
+        sum += step(k, k == grid.starts[r] * grid.fine);
+      means[static_cast<Eigen::Index>(b)] = sum * share;
+    }
+  }
+  return means;
+}
+
+}  // namespace
+
+Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std::size_t channel) {
+  Shape shape(settings);
+  const FineChannel& source = data.channels[channel];
+  const bool add_power =
+      !source.power.empty() && (settings.form == Form::kQuadratic || settings.form == Form::kBandPower);
+  return block_means(data.grid, [&](std::size_t k, bool starts) {
+    if (starts) shape.restart();
+    const double value = shape.step(source.values[k], data.grid.fine_s);
+    return add_power ? value + source.power[k] : value;
+  });
+}
+
+Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std::size_t channel,
+                       const ShapeSettings& with_settings, std::size_t with_channel) {
+  Shape shape(settings);
+  Shape with(with_settings);
+  const FineChannel& source = data.channels[channel];
+  const FineChannel& other = data.channels[with_channel];
+  return block_means(data.grid, [&](std::size_t k, bool starts) {
+    if (starts) {
+      shape.restart();
+      with.restart();
+    }
+    return shape.step(source.values[k], data.grid.fine_s) * with.step(other.values[k], data.grid.fine_s);
+  });
+}
+
+}  // namespace ifog

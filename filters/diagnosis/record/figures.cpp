@@ -1,0 +1,141 @@
+#include "filters/diagnosis/record/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "filters/diagnosis/record/even_grid.h"
+
+namespace ifog {
+namespace {
+
+const double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+double rms_about_mean(std::span<const double> values) {
+  const auto finite = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  return finite < 2 ? kMissing : std::sqrt(variance_of(values));
+}
+
+double lag_one(std::span<const double> values) {
+  const double rms = rms_about_mean(values);
+  double mean = 0.0;
+  double n = 0.0;
+  for (const double v : values) {
+    if (std::isfinite(v)) {
+      mean += v;
+      n += 1.0;
+    }
+  }
+  if (n < 4.0 || !(rms > 0.0)) return 0.0;
+  mean /= n;
+  double sum = 0.0;
+  double pairs = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]) || !std::isfinite(values[i - 1])) continue;
+    sum += (values[i] - mean) * (values[i - 1] - mean);
+    pairs += 1.0;
+  }
+  return pairs > 0.0 ? sum / pairs / (rms * rms) : 0.0;
+}
+
+double heading_drift(std::span<const double> error, double period_s) {
+  const std::size_t aligned = error.size() / 10;
+  double bias = 0.0;
+  double n = 0.0;
+  for (std::size_t i = 0; i < aligned; ++i) {
+    if (!std::isfinite(error[i])) continue;
+    bias += error[i];
+    n += 1.0;
+  }
+  if (n == 0.0) return kMissing;
+  bias /= n;
+  double angle = 0.0;
+  for (std::size_t i = aligned; i < error.size(); ++i) {
+    if (std::isfinite(error[i])) angle += (error[i] - bias) * period_s;
+  }
+  return std::abs(angle);
+}
+
+}  // namespace
+
+std::vector<double> means_over(std::span<const double> error, std::size_t count) {
+  std::vector<double> means;
+  for (std::size_t from = 0; from + count <= error.size(); from += count) {
+    double sum = 0.0;
+    std::size_t n = 0;
+    for (std::size_t i = from; i < from + count; ++i) {
+      if (!std::isfinite(error[i])) continue;
+      sum += error[i];
+      ++n;
+    }
+    means.push_back(2 * n >= count && n > 0 ? sum / static_cast<double>(n) : kMissing);
+  }
+  return means;
+}
+
+double allan_deviation(std::span<const double> error, std::size_t count) {
+  if (count == 0 || error.size() < 3 * count) return kMissing;
+  // Running sums, above the first value there is, and numbers of values.
+  std::vector<double> sum(error.size() + 1, 0.0);
+  std::vector<double> there(error.size() + 1, 0.0);
+  const auto first = std::find_if(error.begin(), error.end(), [](double v) { return std::isfinite(v); });
+  const double offset = first == error.end() ? 0.0 : *first;
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    const bool finite = std::isfinite(error[i]);
+    sum[i + 1] = sum[i] + (finite ? error[i] - offset : 0.0);
+    there[i + 1] = there[i] + (finite ? 1.0 : 0.0);
+  }
+  double square = 0.0;
+  double n = 0.0;
+  const double least = 0.5 * static_cast<double>(count);
+  for (std::size_t i = 0; i + 2 * count < sum.size(); ++i) {
+    const double one = there[i + count] - there[i];
+    const double other = there[i + 2 * count] - there[i + count];
+    if (one < least || other < least) continue;
+    const double d = (sum[i + 2 * count] - sum[i + count]) / other - (sum[i + count] - sum[i]) / one;
+    square += d * d;
+    n += 1.0;
+  }
+  if (n == 0.0) return kMissing;
+  return std::sqrt(0.5 * square / n);
+}
+
+std::map<std::string, double> error_figures(std::span<const double> error, double period_s) {
+  std::map<std::string, double> figures;
+  figures["residual_rms_radps"] = rms_about_mean(error);
+  for (const double tau : {0.1, 1.0, 10.0, 100.0}) {
+    const auto count = static_cast<std::size_t>(std::floor(tau / period_s + 0.5));
+    if (count < 1 || error.size() < 10 * count) continue;
+    std::string name = std::to_string(tau);
+    name.erase(name.find_last_not_of('0') + 1);
+    if (name.ends_with('.')) name.pop_back();
+    name += "s_radps";
+    figures["rms_" + name] = rms_about_mean(means_over(error, count));
+    figures["adev_" + name] = allan_deviation(error, count);
+  }
+  figures["heading_drift_rad"] = heading_drift(error, period_s);
+  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
+  const bool long_enough = error.size() >= 20 * second;
+  figures["whiteness"] = long_enough ? lag_one(means_over(error, second)) : lag_one(error);
+  return figures;
+}
+
+std::map<std::string, double> pooled(const std::vector<std::map<std::string, double>>& figures,
+                                     const std::vector<double>& weights) {
+  std::map<std::string, double> sum;
+  std::map<std::string, double> weight;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    for (const auto& [name, value] : figures[i]) {
+      if (!std::isfinite(value)) continue;
+      sum[name] += weights[i] * (name == "whiteness" ? value : value * value);
+      weight[name] += weights[i];
+    }
+  }
+  for (auto& [name, value] : sum) {
+    value /= weight[name];
+    if (name != "whiteness") value = std::sqrt(value);
+  }
+  return sum;
+}
+
+}  // namespace ifog

@@ -1,0 +1,264 @@
+#include "filters/diagnosis/record/ramp.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+constexpr int kParts = 4;          // held out in turn
+constexpr std::size_t kTurns = 4;  // pieces a part is made of
+
+struct Sums {
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd moment;
+  double square = 0.0;
+  double samples = 0.0;
+
+  explicit Sums(Eigen::Index knots)
+      : gram(Eigen::MatrixXd::Zero(knots, knots)), moment(Eigen::VectorXd::Zero(knots)) {}
+  Sums& operator+=(const Sums& other) {
+    gram += other.gram;
+    moment += other.moment;
+    square += other.square;
+    samples += other.samples;
+    return *this;
+  }
+};
+
+// Weights of the two knots a position lies between; the first knot is the table's zero and has no column.
+struct Hats {
+  std::array<std::pair<Eigen::Index, double>, 4> entry{};
+  std::size_t count = 0;
+  void add(double position, Eigen::Index knots, double sign) {
+    const auto low = static_cast<Eigen::Index>(std::floor(position));
+    const double share = position - std::floor(position);
+    if (low > 0) entry[count++] = {low - 1, sign * (1.0 - share)};
+    if (low < knots) entry[count++] = {low, sign * share};
+  }
+};
+
+double unwrapped_position(double value, double period, Eigen::Index knots) {
+  value -= period * std::floor(value / period);
+  return value / period * static_cast<double>(knots);
+}
+
+// Calls use(part, hats over dt, error less its slow part) for every sample that has a predecessor.
+template <class Use>
+void each_sample(const Record& record, std::span<const double> ramp, double period, Eigen::Index knots,
+                 Use&& use) {
+  const std::size_t n = record.time_s.size();
+  // Slow drift would only add noise; a mean over a few hundred samples takes it out and leaves the ramp's
+  // harmonics.
+  constexpr double kForget = 1.0 / 512.0;
+  double slow = 0.0;
+  bool started = false;
+  for (std::size_t i = 1; i < n; ++i) {
+    double error = record.rate_radps[i];
+    if (!record.reference_radps.empty()) error -= record.reference_radps[i];
+    if (!std::isfinite(error) || !std::isfinite(ramp[i]) || !std::isfinite(ramp[i - 1])) continue;
+    if (!started) {
+      const std::size_t few = std::min<std::size_t>(n, 512);
+      double sum = 0.0;
+      double count = 0.0;
+      for (std::size_t k = 0; k < few; ++k) {
+        double e = record.rate_radps[k];
+        if (!record.reference_radps.empty()) e -= record.reference_radps[k];
+        if (!std::isfinite(e)) continue;
+        sum += e;
+        count += 1.0;
+      }
+      slow = sum / std::max(count, 1.0);
+      started = true;
+    }
+    Hats hats;
+    hats.add(unwrapped_position(ramp[i], period, knots), knots, 1.0);
+    hats.add(unwrapped_position(ramp[i - 1], period, knots), knots, -1.0);
+    const double dt = record.time_s[i] - record.time_s[i - 1];
+    for (std::size_t k = 0; k < hats.count; ++k) hats.entry[k].second /= dt;
+    const auto part = static_cast<int>(i * kTurns * kParts / n) % kParts;
+    use(i, part, hats, error - slow);
+    slow += kForget * (error - slow);
+  }
+}
+
+// Probability of a chi-square this large (Wilson and Hilferty 1931).
+double chi_square_tail(double value, double degrees) {
+  const double z =
+      (std::cbrt(value / degrees) - (1.0 - 2.0 / (9.0 * degrees))) / std::sqrt(2.0 / (9.0 * degrees));
+  return 0.5 * std::erfc(z / std::sqrt(2.0));
+}
+
+Eigen::VectorXd solved(const Sums& sums) {
+  const double ridge = 1e-9 * sums.gram.trace() / static_cast<double>(sums.gram.rows());
+  Eigen::MatrixXd gram = sums.gram;
+  gram.diagonal().array() += ridge;
+  return gram.ldlt().solve(sums.moment);
+}
+
+double explained(const Sums& sums, const Eigen::VectorXd& table) {
+  return 2.0 * table.dot(sums.moment) - table.dot(sums.gram * table);
+}
+
+std::span<const double> channel_of(const Record& record, const std::string& name) {
+  for (const RecordChannel& channel : record.channels) {
+    if (channel.name == name) return channel.values;
+  }
+  return {};
+}
+
+}  // namespace
+
+double wrap_period(std::span<const double> values) {
+  double low = 1e300;
+  double high = -1e300;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  if (!(high > 16.0) || low < 0.0) return 0.0;
+  const double period = std::exp2(std::ceil(std::log2(high + 0.5)));
+  if (high < 0.9 * period || low > 0.1 * period) return 0.0;
+  std::size_t jumps = 0;
+  double raw = 0.0;
+  double wrapped = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double d = values[i] - values[i - 1];
+    if (!std::isfinite(d)) continue;
+    const double w = d - period * std::round(d / period);
+    jumps += std::abs(d) > 0.5 * period;
+    raw += d * d;
+    wrapped += w * w;
+  }
+  return jumps >= 3 && wrapped < 0.9 * raw ? period : 0.0;
+}
+
+std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
+                                double significance) {
+  double period = 0.0;
+  for (const Record& record : records) period = std::max(period, wrap_period(channel_of(record, channel)));
+  if (!(period > 0.0)) return std::nullopt;
+
+  // Enough knots for the table's shape and no more, by the Bayesian information criterion.
+  std::vector<Sums> best;
+  double best_score = -1e300;
+  for (const Eigen::Index knots : {Eigen::Index{8}, Eigen::Index{16}, Eigen::Index{32}, Eigen::Index{64}}) {
+    std::vector<Sums> parts(kParts, Sums(knots));
+    for (const Record& record : records) {
+      each_sample(record, channel_of(record, channel), period, knots,
+                  [&](std::size_t, int part, const Hats& hats, double e) {
+                    Sums& sums = parts[static_cast<std::size_t>(part)];
+                    for (std::size_t a = 0; a < hats.count; ++a) {
+                      sums.moment[hats.entry[a].first] += hats.entry[a].second * e;
+                      for (std::size_t b = 0; b < hats.count; ++b) {
+                        sums.gram(hats.entry[a].first, hats.entry[b].first) +=
+                            hats.entry[a].second * hats.entry[b].second;
+                      }
+                    }
+                    sums.square += e * e;
+                    sums.samples += 1.0;
+                  });
+    }
+    Sums all(knots);
+    for (const Sums& sums : parts) all += sums;
+    if (all.samples < 20.0 * static_cast<double>(knots)) break;
+    const double left = all.square - explained(all, solved(all));
+    const double score =
+        -all.samples * std::log(left / all.square) - static_cast<double>(knots) * std::log(all.samples);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = std::move(parts);
+  }
+  if (best.empty()) return std::nullopt;
+
+  const Eigen::Index knots = best.front().gram.rows();
+  Sums all(knots);
+  for (const Sums& sums : best) all += sums;
+  const Eigen::VectorXd table = solved(all);
+  std::array<Eigen::VectorXd, kParts> without;
+  double held_out_gain = 0.0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    Sums others(knots);
+    for (std::size_t k = 0; k < kParts; ++k) {
+      if (k != part) others += best[k];
+    }
+    without[part] = solved(others);
+    held_out_gain += explained(best[part], without[part]);
+  }
+  RampFit fit;
+  fit.ratio = -all.samples * std::log(std::max(1e-12, 1.0 - explained(all, table) / all.square));
+  fit.p_value = chi_square_tail(fit.ratio, static_cast<double>(knots));
+  if (fit.p_value > significance || held_out_gain <= 0.0) return std::nullopt;
+
+  fit.effect.form = "lookup";
+  fit.effect.channel = channel;
+  fit.effect.period = period;
+  fit.effect.angle = true;
+  double square = 0.0;
+  for (Eigen::Index k = 0; k <= knots; ++k) {
+    fit.effect.table_x.push_back(period * static_cast<double>(k) / static_cast<double>(knots));
+    fit.effect.table_y.push_back(k == 0 ? 0.0 : table[k - 1]);
+  }
+  // A constant angle has no rate: the table is stored about its mean, which keeps a reload's jump small.
+  double mean = 0.0;
+  for (const double y : fit.effect.table_y) mean += y / static_cast<double>(knots + 1);
+  for (double& y : fit.effect.table_y) {
+    y -= mean;
+    square += y * y / static_cast<double>(knots + 1);
+  }
+  const double variance = (all.square - explained(all, table)) / all.samples;
+  const Eigen::MatrixXd covariance =
+      variance * all.gram.ldlt().solve(Eigen::MatrixXd::Identity(knots, knots));
+  const double rms = std::sqrt(square);
+  fit.effect.parameters = {{"angle_rms", rms, std::sqrt(covariance.diagonal().mean()), "rad"}};
+  fit.effect.meaning = meaning_of(fit.effect);
+
+  for (const Record& record : records) {
+    std::vector<double> correction(record.time_s.size(), 0.0);
+    std::vector<double> held_out = correction;
+    each_sample(record, channel_of(record, channel), period, knots,
+                [&](std::size_t i, int part, const Hats& hats, double) {
+                  for (std::size_t a = 0; a < hats.count; ++a) {
+                    correction[i] += hats.entry[a].second * table[hats.entry[a].first];
+                    held_out[i] +=
+                        hats.entry[a].second * without[static_cast<std::size_t>(part)][hats.entry[a].first];
+                  }
+                });
+    fit.correction.push_back(std::move(correction));
+    fit.held_out.push_back(std::move(held_out));
+  }
+  return fit;
+}
+
+WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance) {
+  WithoutRamps parts;
+  parts.clean = records;
+  if (records.empty()) return parts;
+  for (const RecordChannel& channel : records.front().channels) {
+    const auto wraps = [&](const Record& record) {
+      return wrap_period(channel_of(record, channel.name)) > 0.0;
+    };
+    if (!std::any_of(records.begin(), records.end(), wraps)) continue;
+    for (Record& record : parts.clean) {
+      std::erase_if(record.channels, [&](const RecordChannel& other) { return other.name == channel.name; });
+    }
+    if (auto ramp = fit_ramp(records, channel.name, significance)) parts.ramps.push_back(std::move(*ramp));
+  }
+  if (parts.ramps.empty()) return parts;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    std::vector<double> rate(records[r].rate_radps.begin(), records[r].rate_radps.end());
+    for (const RampFit& ramp : parts.ramps) {
+      for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
+    }
+    parts.rates.push_back(std::move(rate));
+  }
+  for (std::size_t r = 0; r < records.size(); ++r) parts.clean[r].rate_radps = parts.rates[r];
+  return parts;
+}
+
+}  // namespace ifog

@@ -1,0 +1,305 @@
+#include "filters/diagnosis/record/reconstruct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ifog {
+namespace {
+
+// Readings that repeat more often than this come in steps coarser than the channel's changes.
+constexpr double kRepeats = 0.6;
+// Readings, or means of some, that the smoothness is found from.
+constexpr std::size_t kMostReadings = 4096;
+// Log-likelihood by which a smooth motion must beat a random walk, whose jumps a spline would blur.
+constexpr double kSmoother = 5.0;
+constexpr double kScatter = 6.0;
+// The channel must vary by this many times its reading noise.
+constexpr double kAboveNoise = 3.0;
+
+struct Reading {
+  double step;  // of the fine grid, fractional between two steps
+  double value;
+};
+
+double change_of(std::span<const double> readings) {
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    if (readings[i] != readings[i - 1]) changes.push_back(std::abs(readings[i] - readings[i - 1]));
+  }
+  if (changes.empty()) return 0.0;
+  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+  std::nth_element(changes.begin(), middle, changes.end());
+  return *middle;
+}
+
+bool is_coarse(std::span<const double> readings) {
+  std::size_t repeats = 0;
+  for (std::size_t i = 1; i < readings.size(); ++i) repeats += readings[i] == readings[i - 1] ? 1 : 0;
+  return static_cast<double>(repeats) > kRepeats * static_cast<double>(readings.size());
+}
+
+// Where a coarse reading changes by one step the channel passes the middle; a jump over several steps is one.
+std::vector<Reading> crossings(std::span<const double> readings, double step) {
+  std::vector<Reading> found;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const double change = readings[i] - readings[i - 1];
+    if (change == 0.0) continue;
+    const auto at = static_cast<double>(i);
+    if (std::abs(change) < 1.5 * step) {
+      found.push_back({at - 0.5, 0.5 * (readings[i] + readings[i - 1])});
+    } else {
+      if (found.empty() || found.back().step < at - 1.0) found.push_back({at - 1.0, readings[i - 1]});
+      found.push_back({at, readings[i]});
+    }
+  }
+  return found;
+}
+
+// Level and slope of an integrated random walk; covariances relative to the variance of a reading.
+struct State {
+  double level = 0.0, slope = 0.0;
+  double pll = 0.0, pls = 0.0, pss = 0.0;
+};
+
+void predict(State& s, double d, double drive) {
+  s.level += d * s.slope;
+  const double pll = s.pll + d * (2.0 * s.pls + d * s.pss) + drive * d * d * d / 3.0;
+  const double pls = s.pls + d * s.pss + drive * d * d / 2.0;
+  s.pll = pll;
+  s.pls = pls;
+  s.pss += drive * d;
+}
+
+// Innovation and its variance; the state takes the reading in.
+std::pair<double, double> update(State& s, double value) {
+  const double variance = s.pll + 1.0;
+  const double innovation = value - s.level;
+  const double gain_level = s.pll / variance;
+  const double gain_slope = s.pls / variance;
+  s.level += gain_level * innovation;
+  s.slope += gain_slope * innovation;
+  s.pss -= gain_slope * s.pls;
+  s.pls -= gain_level * s.pls;
+  s.pll -= gain_level * s.pll;
+  return {innovation, variance};
+}
+
+// Through the first two readings: what is known after them whatever was before.
+State started(const Reading& a, const Reading& b, double drive) {
+  const double d = b.step - a.step;
+  State s;
+  s.level = b.value;
+  s.slope = (b.value - a.value) / d;
+  s.pll = 1.0;
+  s.pls = 1.0 / d;
+  s.pss = 2.0 / (d * d) + drive * d / 3.0;
+  return s;
+}
+
+struct Likelihood {
+  double square = 0.0, determinant = 0.0, count = 0.0;
+  [[nodiscard]] double value() const {
+    return -0.5 * (count * std::log(std::max(square, 1e-300) / count) + determinant);
+  }
+};
+
+// Both explain the readings after the second, so that their likelihoods compare.
+enum class Motion { kSmooth, kWalk };
+
+double likelihood(std::span<const Reading> readings, Motion motion, double drive) {
+  Likelihood sum;
+  State s = started(readings[0], readings[1], drive);
+  if (motion == Motion::kWalk) s = {readings[1].value, 0.0, 1.0, 0.0, 0.0};
+  for (std::size_t i = 2; i < readings.size(); ++i) {
+    const double d = readings[i].step - readings[i - 1].step;
+    if (motion == Motion::kSmooth) {
+      predict(s, d, drive);
+    } else {
+      s.pll += drive * d;
+    }
+    const auto [innovation, variance] = update(s, readings[i].value);
+    sum.square += innovation * innovation / variance;
+    sum.determinant += std::log(variance);
+    sum.count += 1.0;
+  }
+  return sum.value();
+}
+
+// Means of so many readings that few enough are left. All of the record is used: the few kinks in it are what
+// the spline must be able to follow.
+std::vector<Reading> thinned(const std::vector<Reading>& readings) {
+  const std::size_t share = (readings.size() + kMostReadings - 1) / kMostReadings;
+  if (share < 2) return readings;
+  std::vector<Reading> means;
+  for (std::size_t i = 0; i + share <= readings.size(); i += share) {
+    Reading mean{0.0, 0.0};
+    for (std::size_t j = i; j < i + share; ++j) {
+      mean.step += readings[j].step / static_cast<double>(share);
+      mean.value += readings[j].value / static_cast<double>(share);
+    }
+    means.push_back(mean);
+  }
+  return means;
+}
+
+struct Drive {
+  double drive, likelihood;
+};
+
+// Of the slope's, or the level's, random walk over the variance of a reading, a step: over the decades, then
+// within one.
+Drive best_drive(std::span<const Reading> readings, Motion motion) {
+  double best = 0.0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int decade = -16; decade <= 4; ++decade) {
+    const double value = likelihood(readings, motion, std::pow(10.0, decade));
+    if (value > most) {
+      most = value;
+      best = decade;
+    }
+  }
+  for (const double step : {0.5, 0.25, 0.125}) {
+    for (const double power : {best - step, best + step}) {
+      const double value = likelihood(readings, motion, std::pow(10.0, power));
+      if (value > most) {
+        most = value;
+        best = power;
+      }
+    }
+  }
+  return {std::pow(10.0, best), most};
+}
+
+// Rauch-Tung-Striebel; levels and slopes at the readings.
+std::vector<State> smoothed(std::span<const Reading> readings, double drive) {
+  std::vector<State> states(readings.size());
+  states[1] = started(readings[0], readings[1], drive);
+  for (std::size_t i = 2; i < readings.size(); ++i) {
+    states[i] = states[i - 1];
+    predict(states[i], readings[i].step - readings[i - 1].step, drive);
+    update(states[i], readings[i].value);
+  }
+  for (std::size_t i = readings.size() - 1; i-- > 1;) {
+    State ahead = states[i];
+    const double d = readings[i + 1].step - readings[i].step;
+    predict(ahead, d, drive);
+    State& s = states[i];
+    const double a = s.pll + d * s.pls;
+    const double b = s.pls + d * s.pss;
+    const double determinant = ahead.pll * ahead.pss - ahead.pls * ahead.pls;
+    const double level = states[i + 1].level - ahead.level;
+    const double slope = states[i + 1].slope - ahead.slope;
+    const double u = (ahead.pss * level - ahead.pls * slope) / determinant;
+    const double v = (ahead.pll * slope - ahead.pls * level) / determinant;
+    s.level += a * u + s.pls * v;
+    s.slope += b * u + s.pss * v;
+  }
+  const double d = readings[1].step - readings[0].step;
+  states[0] = states[1];
+  states[0].level -= d * states[1].slope;
+  return states;
+}
+
+// Between two readings the spline is the cubic through levels and slopes.
+double between(const Reading& from, const State& a, const Reading& to, const State& b, double step) {
+  const double d = to.step - from.step;
+  const double u = (step - from.step) / d;
+  const double rest = 1.0 - u;
+  return a.level * (1.0 + 2.0 * u) * rest * rest + b.level * u * u * (3.0 - 2.0 * u) +
+         d * u * rest * (a.slope * rest - b.slope * u);
+}
+
+}  // namespace
+
+Reconstruction reconstructed(std::span<const double> readings) {
+  Reconstruction as_read{{readings.begin(), readings.end()}, false};
+  const bool coarse = is_coarse(readings);
+  const double step = coarse ? change_of(readings) : 0.0;
+  std::vector<Reading> used;
+  if (coarse) {
+    used = crossings(readings, step);
+  } else {
+    for (std::size_t i = 0; i < readings.size(); ++i) used.push_back({static_cast<double>(i), readings[i]});
+  }
+  if (used.size() < 8) return as_read;
+  const std::vector<Reading> few = thinned(used);
+  const Drive smooth = best_drive(few, Motion::kSmooth);
+  if (smooth.likelihood < best_drive(few, Motion::kWalk).likelihood + kSmoother) return as_read;
+  // The variance of a mean of readings is that share of a reading's.
+  const double share = static_cast<double>(few.size()) / static_cast<double>(used.size());
+  const std::vector<State> states = smoothed(used, smooth.drive * share);
+  Reconstruction spline{std::vector<double>(readings.size()), true};
+  std::vector<double>& result = spline.values;
+  std::size_t i = 0;
+  double mean = 0.0;
+  double noise = 0.0;
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const auto at = static_cast<double>(k);
+    while (i + 2 < used.size() && used[i + 1].step <= at) ++i;
+    double value = 0.0;
+    if (at < used.front().step) {
+      value = states.front().level - (used.front().step - at) * states.front().slope;
+    } else if (at > used.back().step) {
+      value = states.back().level + (at - used.back().step) * states.back().slope;
+    } else {
+      value = between(used[i], states[i], used[i + 1], states[i + 1], at);
+    }
+    if (coarse) value = std::clamp(value, readings[k] - 0.5 * step, readings[k] + 0.5 * step);
+    result[k] = value;
+    mean += value / static_cast<double>(readings.size());
+    noise += (readings[k] - value) * (readings[k] - value);
+  }
+  // What was taken away has to be reading noise and nothing else.
+  std::vector<double> taken(readings.begin(), readings.end());
+  for (std::size_t k = 0; k < taken.size(); ++k) taken[k] -= result[k];
+  if (!coarse && !stands_still(taken)) return as_read;
+  double signal = 0.0;
+  for (const double value : result) signal += (value - mean) * (value - mean);
+  return signal > kAboveNoise * kAboveNoise * noise ? spline : as_read;
+}
+
+bool stands_still(std::span<const double> readings) {
+  const auto variance = [](std::span<const double> values) {
+    double mean = 0.0;
+    for (const double v : values) mean += v / static_cast<double>(values.size());
+    double sum = 0.0;
+    for (const double v : values) sum += (v - mean) * (v - mean);
+    return sum / static_cast<double>(values.size());
+  };
+  std::vector<double> means(readings.begin(), readings.end());
+  const double white = variance(means);
+  for (double length = 4.0; means.size() >= 64; length *= 4.0) {
+    const std::size_t n = means.size() / 4;
+    for (std::size_t i = 0; i < n; ++i) {
+      means[i] = 0.25 * (means[4 * i] + means[4 * i + 1] + means[4 * i + 2] + means[4 * i + 3]);
+    }
+    means.resize(n);
+    const double excess = variance(means) * length / std::max(white, 1e-300) - 1.0;
+    if (excess > kScatter * std::sqrt(2.0 / static_cast<double>(n))) return false;
+  }
+  return true;
+}
+
+BlockData with_reconstructed_channels(const BlockData& data) {
+  BlockData clean = data;
+  const BlockGrid& grid = data.grid;
+  for (std::size_t c = 0; c < clean.channels.size(); ++c) {
+    FineChannel& channel = clean.channels[c];
+    if (static_cast<std::ptrdiff_t>(c) == data.reference || !channel.varies || channel.rotates) continue;
+    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+      const std::size_t from = grid.starts[r] * grid.fine;
+      const std::size_t steps = grid.starts[r + 1] * grid.fine - from;
+      const std::span<const double> readings =
+          std::span<const double>(data.channels[c].values).subspan(from, steps);
+      const Reconstruction found = reconstructed(readings);
+      std::copy(found.values.begin(), found.values.end(),
+                channel.values.begin() + static_cast<std::ptrdiff_t>(from));
+      channel.smooth = found.smooth && (r == 0 || channel.smooth);
+      channel.still = stands_still(readings) && (r == 0 || channel.still);
+    }
+  }
+  return clean;
+}
+
+}  // namespace ifog

@@ -1,0 +1,14 @@
+// Columns that a diagnosis cannot use, so that nobody takes their silence for a finding.
+#pragma once
+
+#include <string>
+
+#include "filters/diagnosis/record/blocks.h"
+
+namespace ifog {
+
+// One sentence naming the channels that are not in every record, have no value, or never change; empty when
+// all are of use.
+std::string unused_channels(const std::vector<Record>& records, const BlockData& data);
+
+}  // namespace ifog

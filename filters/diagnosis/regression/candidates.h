@@ -1,0 +1,51 @@
+// What the diagnosis tries: every form on every channel, with coarse grids of time constants that are refined
+// for those that do well.
+#pragma once
+
+#include <limits>
+
+#include "filters/diagnosis/regression/whitening.h"
+
+namespace ifog {
+
+struct Candidate {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  Form form = Form::kLinear;
+  std::size_t channel = kNone;
+  Form with_form = Form::kLinear;  // product
+  std::size_t with_channel = kNone;
+  double time_constant_s = 0.0;  // rate, second_rate, lagged, band_power, warm_up
+  double second_time_constant_s = 0.0;
+  double time_s = 0.0;        // step: block time in its record
+  std::size_t record = 0;     // step, line: where it is
+  double frequency_hz = 0.0;  // line
+
+  [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
+  [[nodiscard]] bool searched() const { return time_constant_s > 0.0; }
+  [[nodiscard]] bool same_shape(const Candidate& other) const;  // but for time constants
+};
+
+// Time constants a form is tried with: from a few samples to an hour, and never longer than the record can
+// show.
+std::vector<double> time_constants(const BlockGrid& grid, Form form);
+
+// lookup is not among them: a table of a channel has a coefficient a knot, and polynomials to the cubic say
+// what a few knots would (the feedback ramp's table, periodic and dense, is fitted in ramp.h). Neither are
+// the forms that have nothing to subtract: outliers, noise_change and quantisation are described by
+// unexplained.h, and earth_rate is the same regressor as acceleration, see diagnose.cpp.
+std::vector<Candidate> library(const BlockData& data);
+
+// Products of a channel with the others, worth trying once the channel has an effect of its own: the effect's
+// size may depend on a second channel.
+std::vector<Candidate> products_of(const BlockData& data, std::size_t channel);
+
+// Regressors: one column, or two (cosine, sine) for a line. Unit: that of the form's value.
+Columns regressors(const BlockData& data, const Candidate& candidate);
+
+// Preference in units of twice the log-likelihood: of two that fit alike the plainer one is taken.
+double complexity(const Candidate& candidate);
+
+// With names, references and units, coefficients still zero.
+Effect effect_of(const BlockData& data, const Candidate& candidate);
+
+}  // namespace ifog

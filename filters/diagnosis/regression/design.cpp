@@ -1,0 +1,76 @@
+#include "filters/diagnosis/regression/design.h"
+
+#include <algorithm>
+
+namespace ifog {
+
+Columns constants(const BlockGrid& grid) {
+  const auto records = static_cast<Eigen::Index>(grid.starts.size()) - 1;
+  Columns columns = Columns::Zero(static_cast<Eigen::Index>(grid.size()), records);
+  for (Eigen::Index r = 0; r < records; ++r) {
+    const auto from = static_cast<Eigen::Index>(grid.starts[static_cast<std::size_t>(r)]);
+    const auto to = static_cast<Eigen::Index>(grid.starts[static_cast<std::size_t>(r) + 1]);
+    columns.col(r).segment(from, to - from).setOnes();
+  }
+  return columns;
+}
+
+Columns design(const BlockData& data, const std::vector<Candidate>& effects) {
+  const Columns constant = constants(data.grid);
+  Eigen::Index width = 1 + constant.cols();
+  for (const Candidate& effect : effects) width += effect.width();
+  Columns columns(constant.rows(), width);
+  columns.col(0) = data.grid.error;
+  columns.middleCols(1, constant.cols()) = constant;
+  Eigen::Index at = 1 + constant.cols();
+  for (const Candidate& effect : effects) {
+    const Columns mine = regressors(data, effect);
+    columns.middleCols(at, mine.cols()) = mine;
+    at += mine.cols();
+  }
+  return columns;
+}
+
+Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at) {
+  auto column = static_cast<Eigen::Index>(grid.starts.size());
+  for (std::size_t i = 0; i < at; ++i) column += effects[i].width();
+  return column;
+}
+
+Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured) {
+  return measured - columns * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns).solve(measured);
+}
+
+std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
+  std::vector<int> fold(grid.size());
+  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+    const std::size_t n = grid.starts[r + 1] - grid.starts[r];
+    for (std::size_t b = 0; b < n; ++b) {
+      const std::size_t piece = b * turns * static_cast<std::size_t>(folds) / n;
+      fold[grid.starts[r] + b] = static_cast<int>(piece) % folds;
+    }
+  }
+  return fold;
+}
+
+Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
+                      Eigen::MatrixXd* covariance) {
+  Columns white = columns;
+  const Whitening filter(grid, shape);
+  filter.apply(white);
+  const Eigen::Index p = columns.cols() - 1;
+  const Eigen::MatrixXd gram = white.transpose() * white;
+  const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd a = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(a);
+  const Eigen::VectorXd scaled = factor.solve(scale.asDiagonal() * gram.col(0).tail(p));
+  if (covariance) {
+    const double left = std::max(gram(0, 0) - scaled.dot(scale.asDiagonal() * gram.col(0).tail(p)), 0.0);
+    const double variance = left / std::max(1.0, static_cast<double>(grid.used()) - static_cast<double>(p));
+    *covariance =
+        variance * (scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) * scale.asDiagonal());
+  }
+  return scale.asDiagonal() * scaled;
+}
+
+}  // namespace ifog

@@ -1,0 +1,31 @@
+// The regression itself: which columns there are, which blocks stand together, and generalised least squares.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/regression/candidates.h"
+
+namespace ifog {
+
+// One constant a record.
+Columns constants(const BlockGrid& grid);
+
+// Measurement, constants, and the regressors of the effects.
+Columns design(const BlockData& data, const std::vector<Candidate>& effects);
+
+// Where among them the first column of effect `at` is.
+Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at);
+
+// What a plain least-squares fit of the columns leaves of the measured.
+Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured);
+
+// Which of `folds` each block belongs to: short contiguous pieces in turn, so that every fold sees the whole
+// record.
+std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);
+
+// Coefficients of the columns after the first by generalised least squares; their covariance too, when asked
+// for.
+Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
+                      Eigen::MatrixXd* covariance = nullptr);
+
+}  // namespace ifog

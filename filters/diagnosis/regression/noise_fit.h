@@ -1,0 +1,33 @@
+// Maximum likelihood of the noise model, given regressors: the likelihood of the filter's innovations with
+// the white variance and the coefficients of the regressors concentrated out.
+#pragma once
+
+#include "filters/diagnosis/regression/whitening.h"
+
+namespace ifog {
+
+// What is left of the first column of whitened data after least squares on the others.
+struct WhitenedFit {
+  double log_likelihood = 0.0;   // up to a constant that depends on the number of blocks alone
+  double white_variance = 0.0;   // of a block mean, in the square of the first column's unit
+  double residual_square = 0.0;  // sum of squared innovations
+};
+
+// columns: measurement, then regressors, not whitened.
+WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns);
+
+struct NoiseFit {
+  NoiseShape shape;
+  double log_likelihood = 0.0;
+  double white_variance = 0.0;
+};
+
+// Searches walk and flicker, both down to zero, from the given start; a Gauss-Markov process of its own is
+// kept as it is in `start`.
+NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start,
+                   double precision = 1.05);
+
+// From nothing known: coarse grid, then fit_noise; then whether a Gauss-Markov process is there as well.
+NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns);
+
+}  // namespace ifog

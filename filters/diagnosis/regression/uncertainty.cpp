@@ -1,0 +1,210 @@
+#include "filters/diagnosis/regression/uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "filters/diagnosis/search/search.h"
+
+namespace ifog {
+namespace {
+
+// Noise parameters are tried from where they change nothing (their part in the mean of the record a
+// hundredth of the white noise's) to where nothing white is left, evenly in the logarithm.
+constexpr double kNegligible = 0.03;
+constexpr double kMost = 1e4;
+constexpr double kCoarse = 6.0;    // factor between the values of the first grid
+constexpr double kFarBelow = 8.0;  // log-likelihood below the best at which a value no longer counts
+constexpr int kFine = 9;           // values a parameter of the second grid
+// Before looking at the data a time constant is known to about this, natural logarithm: the search's range.
+constexpr double kLogRange = 2.0;
+constexpr double kLogStep = 0.05;
+
+struct Solved {
+  double log_likelihood = -1e300;  // restricted, the white variance concentrated out
+  double white_variance = 0.0;
+  Eigen::VectorXd values;
+  Eigen::MatrixXd covariance;
+};
+
+// The last columns' values are known beforehand to `known` (standard deviations; infinite where nothing is).
+Solved solve_at(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& known,
+                const NoiseShape& shape, double white_guess) {
+  Columns white = columns;
+  const Whitening filter(grid, shape);
+  filter.apply(white);
+  const Eigen::Index p = columns.cols() - 1;
+  Eigen::MatrixXd gram = white.transpose() * white;
+  const double innovation = white_guess * filter.innovation_variance();
+  for (Eigen::Index i = 0; i < p; ++i) {
+    if (std::isfinite(known[i])) gram(1 + i, 1 + i) += innovation / (known[i] * known[i]);
+  }
+  const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd a = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
+  const Eigen::VectorXd b = scale.asDiagonal() * gram.col(0).tail(p);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(a);
+  const Eigen::VectorXd solution = factor.solve(b);
+  const auto n = static_cast<double>(grid.used());
+  const double free = std::max(1.0, n - static_cast<double>(p));
+  const double square = std::max(gram(0, 0) - b.dot(solution), 1e-12 * gram(0, 0) + 1e-300);
+  Solved solved;
+  solved.values = scale.asDiagonal() * solution;
+  solved.covariance =
+      square / free *
+      (scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) * scale.asDiagonal());
+  solved.white_variance = square / free / filter.innovation_variance();
+  double log_determinant = -2.0 * scale.array().log().sum();
+  for (const double d : factor.vectorD()) log_determinant += std::log(std::max(d, 1e-15));
+  solved.log_likelihood = -0.5 * free * std::log(square) - 0.5 * log_determinant;
+  return solved;
+}
+
+std::vector<double> logarithmic(double low, double high, int count) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
+  const double step = count > 1 ? std::log(high / low) / (count - 1) : 0.0;
+  for (int i = 0; i < count; ++i) values.push_back(low * std::exp(step * i));
+  return values;
+}
+
+struct Tried {
+  NoiseShape shape;
+  Solved solved;
+};
+
+template <class Evaluate>
+std::vector<Tried> try_all(const NoiseShape& base, const std::vector<double>& walks,
+                           const std::vector<double>& flickers, Evaluate&& evaluate) {
+  std::vector<Tried> tried;
+  for (const double walk : walks) {
+    for (const double flicker : flickers) {
+      NoiseShape shape = base;
+      shape.walk = walk;
+      shape.flicker = flicker;
+      tried.push_back({shape, evaluate(shape)});
+    }
+  }
+  return tried;
+}
+
+double best_of(const std::vector<Tried>& tried) {
+  double best = -1e300;
+  for (const Tried& each : tried) best = std::max(best, each.solved.log_likelihood);
+  return best;
+}
+
+// The values of one parameter that count, one step of the grid beyond them on either side.
+std::pair<double, double> span_of(const std::vector<Tried>& tried, double NoiseShape::*parameter, double step,
+                                  const std::pair<double, double>& limits) {
+  const double least = best_of(tried) - kFarBelow;
+  double low = 1e300;
+  double high = 0.0;
+  for (const Tried& each : tried) {
+    if (each.solved.log_likelihood < least) continue;
+    low = std::min(low, each.shape.*parameter);
+    high = std::max(high, each.shape.*parameter);
+  }
+  return {std::max(low / step, limits.first), std::min(high * step, limits.second)};
+}
+
+}  // namespace
+
+Columns searched_columns(const BlockData& data, const std::vector<Candidate>& effects,
+                         const Eigen::VectorXd& coefficients, Eigen::Index nuisances,
+                         std::vector<std::size_t>* of) {
+  std::vector<Eigen::VectorXd> found;
+  Eigen::Index at = nuisances;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const Candidate& effect = effects[i];
+    const bool line = effect.form == Form::kLine;
+    if (line) {
+      const BlockGrid& grid = data.grid;
+      const Columns mine = regressors(data, effect);
+      Eigen::VectorXd column(mine.rows());
+      for (Eigen::Index b = 0; b < mine.rows(); ++b) {
+        column[b] = 2.0 * std::numbers::pi * grid.time_s[static_cast<std::size_t>(b)] *
+                    (coefficients[at + 1] * mine(b, 0) - coefficients[at] * mine(b, 1));
+      }
+      found.push_back(std::move(column));
+    } else if (effect.searched()) {
+      Candidate less = effect;
+      Candidate more = effect;
+      less.time_constant_s *= std::exp(-kLogStep);
+      more.time_constant_s *= std::exp(kLogStep);
+      found.push_back(coefficients[at] / (2.0 * kLogStep) *
+                      (regressors(data, more).col(0) - regressors(data, less).col(0)));
+    }
+    if (of && (line || effect.searched())) of->push_back(i);
+    at += line ? 2 : 1;
+  }
+  Columns columns(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(found.size()));
+  for (std::size_t j = 0; j < found.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = found[j];
+  return columns;
+}
+
+JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
+                   const Eigen::VectorXd& coefficients, const NoiseFit& best) {
+  const BlockGrid& grid = data.grid;
+  JointFit fit;
+  const Columns base = design(data, effects);
+  const auto records = static_cast<Eigen::Index>(grid.starts.size()) - 1;
+  const Columns more = searched_columns(data, effects, coefficients, records, &fit.searched);
+  Columns columns(base.rows(), base.cols() + more.cols());
+  columns << base, more;
+  const Eigen::Index p = columns.cols() - 1;
+  Eigen::VectorXd known = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
+  for (std::size_t j = 0; j < fit.searched.size(); ++j) {
+    if (effects[fit.searched[j]].form != Form::kLine) {
+      known[p - static_cast<Eigen::Index>(fit.searched.size() - j)] = kLogRange;
+    }
+  }
+  const auto evaluate = [&](const NoiseShape& shape) {
+    return solve_at(grid, columns, known, shape, best.white_variance);
+  };
+
+  std::vector<Tried> tried;
+  if (grid.dwells) {
+    tried.push_back({best.shape, evaluate(best.shape)});
+  } else {
+    const auto n = static_cast<double>(grid.used());
+    const std::pair<double, double> walks{kNegligible / (n * n), kMost};
+    const std::pair<double, double> flickers{kNegligible / n, kMost};
+    const auto coarse = [](const std::pair<double, double>& limits) {
+      const int count =
+          1 + static_cast<int>(std::ceil(std::log(limits.second / limits.first) / std::log(kCoarse)));
+      return logarithmic(limits.first, limits.second, count);
+    };
+    tried = try_all(best.shape, coarse(walks), coarse(flickers), evaluate);
+    // A record that tells its noise well leaves one point of a coarse grid.
+    for (int round = 0; round < 2; ++round) {
+      const double factor = round == 0 ? kCoarse : 1.5;
+      const auto walk = span_of(tried, &NoiseShape::walk, factor, walks);
+      const auto flicker = span_of(tried, &NoiseShape::flicker, factor, flickers);
+      tried = try_all(best.shape, logarithmic(walk.first, walk.second, kFine),
+                      logarithmic(flicker.first, flicker.second, kFine), evaluate);
+    }
+  }
+
+  const double top = best_of(tried);
+  double sum = 0.0;
+  for (const Tried& each : tried) sum += std::exp(each.solved.log_likelihood - top);
+  fit.values = Eigen::VectorXd::Zero(p);
+  for (const Tried& each : tried) {
+    const double weight = std::exp(each.solved.log_likelihood - top) / sum;
+    const double white = each.solved.white_variance;
+    fit.noise.parts.push_back({weight, white * grid.block_s, each.shape.walk * white / grid.block_s,
+                               each.shape.flicker * white, each.shape.markov * white, each.shape.markov_s});
+    fit.values += weight * each.solved.values;
+  }
+  for (const double blocks : flicker_bank(grid)) fit.noise.flicker_s.push_back(blocks * grid.block_s);
+  fit.covariance = Eigen::MatrixXd::Zero(p, p);
+  for (const Tried& each : tried) {
+    const double weight = std::exp(each.solved.log_likelihood - top) / sum;
+    const Eigen::VectorXd away = each.solved.values - fit.values;
+    fit.covariance += weight * (each.solved.covariance + away * away.transpose());
+  }
+  return fit;
+}
+
+}  // namespace ifog

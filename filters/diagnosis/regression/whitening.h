@@ -1,0 +1,62 @@
+// The noise model of block means and its Kalman filter, in steady state: white noise, a random walk, and
+// flicker as a bank of Gauss-Markov processes of equal variance whose time constants are a factor apart.
+//
+// The filter turns a series into its innovations. It is linear, so the same filter whitens the measurement
+// and every regressor, and ordinary least squares on what comes out is generalised least squares on what went
+// in. An unknown constant is a regressor like any other; that is exactly diffuse and needs no start-up case.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <vector>
+
+#include "filters/diagnosis/record/blocks.h"
+
+namespace ifog {
+
+using Columns =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // block by block in memory
+
+// Relative to the white variance of a block mean, which likelihoods concentrate out.
+struct NoiseShape {
+  double walk = 0.0;      // variance of the random walk's step from block to block
+  double flicker = 0.0;   // variance of each process of the bank
+  double markov = 0.0;    // variance of one Gauss-Markov process of its own
+  double markov_s = 0.0;  // its correlation time
+};
+
+inline constexpr double kFlickerSpacing =
+    8.0;  // factor between time constants; ripple of the sum below 0.3 dB
+
+class Whitening {
+ public:
+  Whitening(const BlockGrid& grid, const NoiseShape& shape);
+
+  // Innovations of every column, in place: starts anew at each record, predicts across blocks that are not
+  // valid and leaves zero there.
+  void apply(Columns& columns) const;
+
+  // Variance of the innovations over the white variance, at least 1.
+  [[nodiscard]] double innovation_variance() const { return innovation_variance_; }
+  [[nodiscard]] std::size_t states() const { return factor_.size(); }
+
+ private:
+  template <int Width>
+  void apply_some(Columns& columns, Eigen::Index first) const;
+
+  const BlockGrid& grid_;
+  std::vector<double> factor_, gain_;  // by state: x+ = factor (x) + gain e
+  double innovation_variance_ = 1.0;
+};
+
+// What the filter makes of a step at the start of the record, block by block to its end. A steady filter
+// answers a step the same way wherever it is.
+Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, std::size_t record);
+
+// Time constants of the bank, in blocks.
+std::vector<double> flicker_bank(const BlockGrid& grid);
+
+// The same in IEEE Std 952 coefficients. `white` is the variance of a block mean, (rad/s)^2.
+NoiseTerms noise_terms(const NoiseShape& shape, double white, double block_s);
+
+}  // namespace ifog

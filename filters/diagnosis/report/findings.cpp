@@ -1,0 +1,201 @@
+#include "filters/diagnosis/report/findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/report/separate.h"
+#include "filters/diagnosis/search/fit_to_readings.h"
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+// The joint fit is linear in the logarithm of a time constant: further it is not to be trusted.
+constexpr double kFarthest = 0.3;
+
+std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
+  std::vector<double> used;
+  for (std::size_t b = 0; b < grid.size(); ++b) {
+    if (grid.valid[b]) used.push_back(values[static_cast<Eigen::Index>(b)]);
+  }
+  return used;
+}
+
+bool is_searched(const ModelParameter& parameter, const std::string& form) {
+  return form == "line" ? parameter.name == "frequency_hz"
+                        : parameter.name == time_constant_name(form_named(form).value_or(Form::kRate));
+}
+
+}  // namespace
+
+std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
+                                   const NoiseShape& shape, const std::string& axis,
+                                   const Eigen::VectorXd* beside) {
+  Columns columns = design(data, candidates);
+  if (beside) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) = *beside;
+  }
+  const Eigen::VectorXd c = solve(data.grid, shape, columns);
+  Eigen::Index at = static_cast<Eigen::Index>(data.grid.starts.size()) - 1;
+  std::vector<Effect> effects;
+  for (const Candidate& candidate : candidates) {
+    effects.push_back(effect_of(data, candidate));
+    effects.back().axis = axis;
+    for (Eigen::Index j = 0; j < candidate.width(); ++j)
+      effects.back().parameters[static_cast<std::size_t>(j)].value = c[at + j];
+    at += candidate.width();
+  }
+  return effects;
+}
+
+JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& found) {
+  JointFit joint = joint_fit(clean, found.clean, found.clean_coefficients, found.noise);
+  const Eigen::Index linear = found.coefficients.size();
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) found.chosen[i].candidate = found.clean[i];
+  for (std::size_t j = 0; j < joint.searched.size(); ++j) {
+    Candidate& candidate = found.chosen[joint.searched[j]].candidate;
+    const double moved = joint.values[linear + static_cast<Eigen::Index>(j)];
+    if (candidate.form == Form::kLine)
+      candidate.frequency_hz += moved;
+    else
+      candidate.time_constant_s *= std::exp(std::clamp(moved, -kFarthest, kFarthest));
+  }
+  found.coefficients = joint.values.head(linear);
+  found.covariance = joint.covariance.topLeftCorner(linear, linear);
+  const SearchResult own = found;
+  fit_to_readings(data, clean, found);
+  const Eigen::VectorXd shift = found.coefficients - own.coefficients;
+  joint.values.head(linear) = found.coefficients;
+  joint.covariance.diagonal().head(linear) += shift.cwiseAbs2();
+  for (std::size_t j = 0; j < joint.searched.size(); ++j) {
+    const std::size_t i = joint.searched[j];
+    if (found.chosen[i].candidate.form == Form::kLine) continue;
+    const double moved =
+        std::log(found.chosen[i].candidate.time_constant_s / own.chosen[i].candidate.time_constant_s);
+    const Eigen::Index row = linear + static_cast<Eigen::Index>(j);
+    joint.covariance(row, row) += moved * moved;
+  }
+  found.covariance = joint.covariance.topLeftCorner(linear, linear);
+  return joint;
+}
+
+Findings findings_of(const BlockData& data, const BlockData& clean, const SearchResult& found,
+                     const JointFit& joint, const std::string& axis) {
+  const BlockGrid& grid = data.grid;
+  Findings findings;
+  std::vector<Candidate> candidates;
+  for (const Chosen& chosen : found.chosen) candidates.push_back(chosen.candidate);
+  const Columns columns = design(data, candidates);
+  const double total = variance_of(used_values(grid, grid.error));
+  Eigen::Index at = static_cast<Eigen::Index>(grid.starts.size()) - 1;
+  Eigen::Index searched = found.coefficients.size();
+  for (const Chosen& chosen : found.chosen) {
+    FoundEffect effect;
+    effect.effect = effect_of(data, chosen.candidate);
+    effect.effect.axis = axis;
+    effect.p_value = chosen.p_value;
+    effect.likelihood_ratio = chosen.likelihood_ratio;
+    Eigen::VectorXd part = Eigen::VectorXd::Zero(columns.rows());
+    for (Eigen::Index j = 0; j < chosen.candidate.width(); ++j) {
+      ModelParameter& parameter = effect.effect.parameters[static_cast<std::size_t>(j)];
+      parameter.value = joint.values[at + j];
+      parameter.std_error = std::sqrt(joint.covariance(at + j, at + j));
+      part += columns.col(1 + at + j) * parameter.value;
+    }
+    if (chosen.candidate.searched() || chosen.candidate.form == Form::kLine) {
+      const double sigma = std::sqrt(joint.covariance(searched, searched));
+      ++searched;
+      for (ModelParameter& parameter : effect.effect.parameters) {
+        if (is_searched(parameter, effect.effect.form))
+          parameter.std_error = sigma * (chosen.candidate.form == Form::kLine ? 1.0 : parameter.value);
+      }
+    }
+    const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
+    effect.variance_explained = std::min(1.0, share);
+    findings.parts.push_back(std::move(part));
+    at += chosen.candidate.width();
+    findings.effects.push_back(std::move(effect));
+  }
+
+  for (const Alternative& alternative : found.alternatives) {
+    std::vector<Candidate> instead = found.clean;
+    instead[alternative.of] = alternative.candidate;
+    OtherExplanation other{fitted_effects(clean, instead, found.noise.shape, axis),
+                           std::exp(-0.5 * std::max(0.0, alternative.loss)),
+                           {}};
+    Indistinguishable pair;
+    pair.effects = {findings.effects[alternative.of].effect, other.effects[alternative.of]};
+    pair.correlation = alternative.correlation;
+    pair.separate_by = capture_that_separates(data, candidates[alternative.of], alternative.candidate);
+    findings.pairs.push_back(std::move(pair));
+    if (alternative.loss < kNoRival) findings.others.push_back(std::move(other));
+  }
+  // On one heading the Earth's rate turning into a tilting axis is the same regressor: no data of it can
+  // tell.
+  for (const FoundEffect& each : findings.effects) {
+    const Effect& effect = each.effect;
+    if (effect.form != "linear" || kind_of(effect.channel) != ChannelKind::kAcceleration) continue;
+    Indistinguishable pair;
+    pair.effects = {effect, effect};
+    pair.effects[1].form = "earth_rate";
+    pair.correlation = 1.0;
+    pair.separate_by =
+        "the same capture with the heading reversed: the Earth's rate changes sign, g-sensitivity does not";
+    findings.pairs.push_back(std::move(pair));
+  }
+  return findings;
+}
+
+std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
+                                  Eigen::Index nuisances, std::size_t jointly) {
+  struct Row {
+    Eigen::Index column = -1;  // of the joint fit
+    double scale = 1.0;        // parameter over that column's unit
+    double alone = 0.0;        // variance of a parameter that is not in it
+  };
+  std::vector<Row> rows;
+  Eigen::Index at = nuisances;
+  Eigen::Index searched = joint.values.size() - static_cast<Eigen::Index>(joint.searched.size());
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const Effect& effect = effects[i].effect;
+    const std::size_t width = effect.form == "line" ? 2 : 1;
+    for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
+      const ModelParameter& parameter = effect.parameters[j];
+      Row row;
+      row.alone = parameter.std_error * parameter.std_error;
+      if (i < jointly && j < width) row.column = at++;
+      if (i < jointly && j >= width && is_searched(parameter, effect.form)) {
+        row.column = searched++;
+        row.scale = effect.form == "line" ? 1.0 : parameter.value;
+      }
+      rows.push_back(row);
+    }
+  }
+  const std::size_t n = rows.size();
+  std::vector<double> covariance(n * n, 0.0);
+  for (std::size_t a = 0; a < n; ++a) {
+    covariance[a * n + a] = rows[a].alone;
+    for (std::size_t b = 0; b < n; ++b) {
+      if (rows[a].column < 0 || rows[b].column < 0) continue;
+      covariance[a * n + b] =
+          rows[a].scale * rows[b].scale * joint.covariance(rows[a].column, rows[b].column);
+    }
+  }
+  return covariance;
+}
+
+std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
+  std::vector<ChannelRange> ranges;
+  for (const FineChannel& channel : data.channels) {
+    const auto uses = [&](const FoundEffect& found) {
+      return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
+    };
+    if (std::any_of(effects.begin(), effects.end(), uses))
+      ranges.push_back({channel.name, channel.low, channel.high});
+  }
+  return ranges;
+}
+
+}  // namespace ifog

@@ -1,0 +1,44 @@
+// The search's result as a report tells it: effects with parameters and their errors, the covariance, the
+// ranges they were fitted on, and what each cannot be told from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/regression/uncertainty.h"
+#include "filters/diagnosis/residual/record_lines.h"
+#include "filters/diagnosis/search/search.h"
+
+namespace ifog {
+
+struct Findings {
+  std::vector<FoundEffect> effects;      // as in `chosen`
+  std::vector<Eigen::VectorXd> parts;    // rad/s by block, of each
+  std::vector<Indistinguishable> pairs;  // of them
+  std::vector<OtherExplanation> others;  // with the effects' parameters fitted anew
+};
+
+// Another explanation that loses more than this, twice the log-likelihood, weighs less than 1 %.
+inline constexpr double kNoRival = 9.2;
+
+// All effects fitted by generalised least squares, at the time constants they have; `beside`: one more
+// regressor in the fit.
+std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
+                                   const NoiseShape& shape, const std::string& axis,
+                                   const Eigen::VectorXd* beside = nullptr);
+
+// Coefficients, time constants and their errors from `joint`. clean: the reconstructed channels.
+Findings findings_of(const BlockData& data, const BlockData& clean, const SearchResult& found,
+                     const JointFit& joint, const std::string& axis);
+
+// Row-major, of all parameters of all effects; the first ones are those of `joint`, the others stand alone.
+std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
+                                  Eigen::Index nuisances, std::size_t jointly);
+
+std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects);
+
+// The joint fit of what the search chose, put into `found` and brought to the readings the daemon will have.
+// By how far that moves a coefficient or a time constant from the effect's own counts as an error of it.
+JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& found);
+
+}  // namespace ifog

@@ -1,0 +1,228 @@
+#include "filters/diagnosis/report/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include "filters/diagnosis/regression/uncertainty.h"
+#include "filters/diagnosis/residual/hysteresis.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kSteps = 4000.0;  // of a capture, for the noise
+
+// Variance that a first-order process with the given factor and drive brings into the sum of weight times
+// value. A random walk (factor 1) starts anywhere: the weights sum to zero.
+double brought_by(const std::vector<double>& weight, double factor, double drive) {
+  double variance = 0.0;
+  double ahead = 0.0;
+  for (std::size_t k = weight.size(); k-- > 0;) {
+    ahead = weight[k] + factor * ahead;
+    const double start = k == 0 ? (factor < 1.0 ? drive / (1.0 - factor * factor) : 0.0) : drive;
+    variance += start * ahead * ahead;
+  }
+  return variance;
+}
+
+struct Weights {
+  std::vector<double> of_step;  // s: the heading error is their sum with the rate's error
+  double step_s;
+};
+
+// Sums to zero: what stays the same is aligned out.
+Weights heading_weights(double aligned_s, double after_s, double step_s, std::size_t most) {
+  const auto aligned = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(aligned_s / step_s)));
+  auto moving = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(after_s / step_s)));
+  moving = std::min(moving, most > aligned ? most - aligned : 1);
+  Weights weights{std::vector<double>(aligned + moving, step_s), step_s};
+  for (std::size_t k = 0; k < aligned; ++k)
+    weights.of_step[k] = -step_s * static_cast<double>(moving) / static_cast<double>(aligned);
+  return weights;
+}
+
+double along(const Weights& weights, const Eigen::VectorXd& column) {
+  double sum = 0.0;
+  const auto n = std::min(weights.of_step.size(), static_cast<std::size_t>(column.size()));
+  for (std::size_t k = 0; k < n; ++k) sum += weights.of_step[k] * column[static_cast<Eigen::Index>(k)];
+  return sum;
+}
+
+// Nothing when the capture lacks a channel of it.
+std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect) {
+  const std::optional<Form> form = form_named(effect.form);
+  if (!form || *form == Form::kLookup || describes_noise(*form)) return std::nullopt;
+  Candidate candidate;
+  candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
+  const auto index = [&](const std::string& name) {
+    for (std::size_t i = 0; i < data.channels.size(); ++i) {
+      if (data.channels[i].name == name) return i;
+    }
+    return Candidate::kNone;
+  };
+  if (has_channel(*form)) {
+    candidate.channel = index(effect.channel);
+    if (candidate.channel == Candidate::kNone) return std::nullopt;
+  }
+  if (*form == Form::kProduct) {
+    candidate.with_form = form_named(effect.with_form).value_or(Form::kLinear);
+    candidate.with_channel = index(effect.with_channel);
+    if (candidate.with_channel == Candidate::kNone) return std::nullopt;
+  }
+  candidate.time_constant_s = parameter(effect, time_constant_name(*form));
+  candidate.second_time_constant_s = parameter(effect, "second_lag_s");
+  candidate.frequency_hz = parameter(effect, "frequency_hz");
+  return candidate;
+}
+
+// A capture as the correction sees it: channels held at the edge of what they were fitted on.
+BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges) {
+  for (FineChannel& channel : data.channels) {
+    for (const ChannelRange& range : ranges) {
+      if (range.channel != channel.name) continue;
+      for (double& value : channel.values) value = std::clamp(value, range.low, range.high);
+    }
+  }
+  return data;
+}
+
+// One set of effects on one capture: what they are there, and how that changes with each parameter.
+struct Effects {
+  Columns gradient;          // by parameter, in the order of the model's covariance; zero where not corrected
+  Eigen::VectorXd total;     // rad/s, of those corrected, with the channels as they are
+  Eigen::VectorXd left;      // of that, beyond the correction
+  Eigen::VectorXd going_on;  // not corrected, but there
+  std::vector<Effect> lines;  // not corrected, phase unknown
+};
+
+Effects effects_on(const BlockData& next, const BlockData& held, const std::vector<Effect>& effects) {
+  const auto n = static_cast<Eigen::Index>(next.grid.size());
+  std::size_t parameters = 0;
+  for (const Effect& effect : effects) parameters += effect.parameters.size();
+  Effects on{Columns::Zero(n, static_cast<Eigen::Index>(parameters)),
+             Eigen::VectorXd::Zero(n),
+             Eigen::VectorXd::Zero(n),
+             Eigen::VectorXd::Zero(n),
+             {}};
+  Eigen::Index row = 0;
+  for (const Effect& effect : effects) {
+    const Eigen::Index at = row;
+    row += static_cast<Eigen::Index>(effect.parameters.size());
+    if (effect.form == "line") {
+      on.lines.push_back(effect);
+      continue;
+    }
+    const std::optional<Candidate> candidate = candidate_of(next, effect);
+    if (!candidate || candidate->form == Form::kStep || effect.parameters.empty()) continue;
+    const double coefficient = effect.parameters[0].value;
+    const Eigen::VectorXd column = regressors(next, *candidate).col(0);
+    if (candidate->form == Form::kRateRamp) {
+      on.going_on += coefficient * column;
+      continue;
+    }
+    on.gradient.col(at) = column;
+    on.total += coefficient * column;
+    on.left += coefficient * (column - regressors(held, *candidate).col(0));
+    if (!candidate->searched()) continue;
+    const Columns by_logarithm =
+        searched_columns(next, {*candidate}, Eigen::VectorXd::Constant(1, coefficient), 0);
+    for (std::size_t j = 1; j < effect.parameters.size(); ++j) {
+      if (effect.parameters[j].name == time_constant_name(candidate->form))
+        on.gradient.col(at + static_cast<Eigen::Index>(j)) = by_logarithm.col(0) / candidate->time_constant_s;
+    }
+  }
+  return on;
+}
+
+void add_loop(const BlockData& data, const Hysteresis& known, Eigen::VectorXd& to) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.channels[c].name == known.channel)
+      to += known.coefficient * hysteresis_loop(data, c, known.half_width);
+  }
+}
+
+// Mean square over the phase of a line of this frequency and amplitude.
+double line_square(const Weights& weights, const Effect& line) {
+  const double turn = 2.0 * std::numbers::pi * parameter(line, "frequency_hz") * weights.step_s;
+  const double half = 0.5 * turn;
+  const double kept = half < 1e-9 ? 1.0 : std::sin(half) / half;
+  std::complex<double> sum = 0.0;
+  for (std::size_t k = 0; k < weights.of_step.size(); ++k)
+    sum += weights.of_step[k] * std::polar(1.0, turn * static_cast<double>(k));
+  const double square = std::pow(parameter(line, "cosine"), 2) + std::pow(parameter(line, "sine"), 2);
+  return 0.5 * square * kept * kept * std::norm(sum);
+}
+
+}  // namespace
+
+double heading_variance(const NoiseBelief& belief, double aligned_s, double after_s) {
+  const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
+  const double step = aligned_s / steps;
+  const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
+  double square = 0.0;
+  for (const double w : weight) square += w * w;
+  double walk = 0.0;
+  double flicker = 0.0;
+  double variance = 0.0;
+  for (const NoiseBelief::Part& part : belief.parts) {
+    variance += part.weight * part.white / step * square;
+    walk += part.weight * part.walk;
+    flicker += part.weight * part.flicker;
+    if (part.markov > 0.0) {
+      const double f = std::exp(-step / part.markov_s);
+      variance += part.weight * brought_by(weight, f, part.markov * (1.0 - f * f));
+    }
+  }
+  if (walk > 0.0) variance += brought_by(weight, 1.0, walk * step);
+  if (flicker > 0.0) {
+    for (const double tau : belief.flicker_s) {
+      const double f = std::exp(-step / tau);
+      variance += brought_by(weight, f, flicker * (1.0 - f * f));
+    }
+  }
+  return variance;
+}
+
+HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
+                                  const std::vector<double>& after_s) {
+  HeadingPrediction prediction;
+  prediction.aligned_s = aligned_s;
+  prediction.after_s = after_s;
+  std::vector<Effect> mine;
+  for (const FoundEffect& found : diagnosis.effects) mine.push_back(found.effect);
+  const BlockData data = cut_to_blocks({next});
+  const BlockData held = held_in_range(data, diagnosis.ranges);
+  Effects on = effects_on(data, held, mine);
+  if (diagnosis.hysteresis) add_loop(data, *diagnosis.hysteresis, on.left);
+  std::vector<Effects> others;
+  double all = 1.0;
+  for (const OtherExplanation& other : diagnosis.others) {
+    others.push_back(effects_on(data, held, other.effects));
+    if (other.hysteresis) add_loop(data, *other.hysteresis, others.back().going_on);
+    all += other.weight;
+  }
+  const auto n = static_cast<Eigen::Index>(on.gradient.cols());
+  const bool with_covariance = n > 0 && diagnosis.covariance.size() == static_cast<std::size_t>(n * n);
+  for (const double horizon : after_s) {
+    const Weights weights = heading_weights(aligned_s, horizon, data.grid.block_s, data.grid.size());
+    double square = heading_variance(diagnosis.belief, aligned_s, horizon);
+    if (with_covariance) {
+      Eigen::VectorXd g(n);
+      for (Eigen::Index j = 0; j < n; ++j) g[j] = along(weights, on.gradient.col(j));
+      const Eigen::Map<const Columns> covariance(diagnosis.covariance.data(), n, n);
+      square += std::max(0.0, g.dot(covariance * g));
+    }
+    square += std::pow(along(weights, on.left), 2) + std::pow(along(weights, on.going_on), 2);
+    for (const Effect& line : on.lines) square += line_square(weights, line);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const double apart = along(weights, others[i].total + others[i].going_on - on.total - on.going_on);
+      square += diagnosis.others[i].weight / all * apart * apart;
+    }
+    prediction.sigma_rad.push_back(std::sqrt(square));
+  }
+  return prediction;
+}
+
+}  // namespace ifog

@@ -1,0 +1,76 @@
+#include "filters/diagnosis/report/series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/residual/lines.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kSeriesPoints = 4000;
+
+double mean_of_block(const BlockGrid& grid, const std::vector<double>& error, std::size_t block) {
+  const double samples = grid.block_s / grid.sample_s;
+  const auto from = static_cast<std::size_t>(std::lround(static_cast<double>(block) * samples));
+  const auto to = static_cast<std::size_t>(std::lround(static_cast<double>(block + 1) * samples));
+  double sum = 0.0;
+  double n = 0.0;
+  for (std::size_t i = from; i < std::min(to, error.size()); ++i) {
+    if (!std::isfinite(error[i])) continue;
+    sum += error[i];
+    n += 1.0;
+  }
+  return n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
+                          const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
+                          const std::vector<Eigen::VectorXd>& parts) {
+  DiagnosisSeries series;
+  const BlockGrid& grid = data.grid;
+  const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
+  series.contribution_radps.resize(parts.size());
+  series.channel.resize(parts.size());
+  double offset = 0.0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Effect& effect = effects[i].effect;
+    series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));
+  }
+  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; b += stride) {
+      const auto row = static_cast<Eigen::Index>(b);
+      series.time_s.push_back(offset + grid.time_s[b]);
+      series.before_radps.push_back(mean_of_block(grid, errors[r].before, b - grid.starts[r]));
+      series.after_radps.push_back(mean_of_block(grid, errors[r].after, b - grid.starts[r]));
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        series.contribution_radps[i].push_back(parts[i][row]);
+        const std::size_t channel = chosen[i].candidate.channel;
+        if (channel != Candidate::kNone)
+          series.channel[i].push_back(data.channels[channel].values[b * grid.fine]);
+      }
+    }
+    offset = series.time_s.back();
+  }
+  const EvenError& first = errors.front();
+  const Spectrum before = averaged_spectrum(first.before, grid.sample_s);
+  const Spectrum after = averaged_spectrum(first.after, grid.sample_s);
+  series.frequency_hz = before.frequency_hz;
+  for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
+  for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));
+  for (double m = 1.0; m * 4.0 < static_cast<double>(first.before.size()); m *= 1.5) {
+    const auto count = static_cast<std::size_t>(m);
+    const double tau = static_cast<double>(count) * grid.sample_s;
+    if (!series.tau_s.empty() && tau <= series.tau_s.back()) continue;
+    series.tau_s.push_back(tau);
+    series.before_adev_radps.push_back(allan_deviation(first.before, count));
+    series.after_adev_radps.push_back(allan_deviation(first.held_out, count));
+  }
+  return series;
+}
+
+}  // namespace ifog

@@ -1,0 +1,16 @@
+// What a report draws of a diagnosis.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/search/search.h"
+
+namespace ifog {
+
+// parts: rad/s by block, of each chosen effect; effects: those and others after them.
+DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
+                          const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
+                          const std::vector<Eigen::VectorXd>& parts);
+
+}  // namespace ifog

@@ -1,0 +1,235 @@
+#include "filters/diagnosis/residual/lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+namespace ifog {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kFirstBin = 16.0;  // below, slow noise and a line look alike
+constexpr double kBand = 0.15;      // noise is taken from +-15 % of the frequency, and at least
+constexpr std::size_t kLeastBins = 25;
+
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (const double v : values) {
+    if (std::isfinite(v)) {
+      sum += v;
+      ++n;
+    }
+  }
+  return n ? sum / static_cast<double>(n) : 0.0;
+}
+
+// Power of bins 0 … n/2, not scaled. The length is cut to a product of small primes for the transform's sake.
+std::vector<double> periodogram(std::span<const double> error, std::size_t& length) {
+  length = error.size();
+  while (length > 16) {
+    std::size_t rest = length;
+    for (const std::size_t prime : {2U, 3U, 5U}) {
+      while (rest % prime == 0) rest /= prime;
+    }
+    if (rest == 1) break;
+    --length;
+  }
+  const double mean = mean_of(error);
+  std::vector<double> values(length);
+  for (std::size_t i = 0; i < length; ++i) values[i] = std::isfinite(error[i]) ? error[i] - mean : 0.0;
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<Complex> bins;
+  fft.fwd(bins, values);
+  std::vector<double> power(bins.size());
+  for (std::size_t k = 0; k < bins.size(); ++k) power[k] = std::norm(bins[k]);
+  return power;
+}
+
+// Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
+// frequencies.
+std::vector<double> noise_floor(const std::vector<double>& power) {
+  std::vector<double> floor(power.size(), 0.0);
+  std::vector<std::size_t> at;
+  std::vector<double> value;
+  std::size_t k = 1;
+  std::vector<double> window;
+  while (k < power.size()) {
+    const std::size_t half = std::max(kLeastBins, static_cast<std::size_t>(kBand * static_cast<double>(k)));
+    const std::size_t low = k > half ? k - half : 1;
+    const std::size_t high = std::min(power.size(), k + half + 1);
+    const std::size_t stride = std::max<std::size_t>(1, (high - low) / 2000);
+    window.clear();
+    for (std::size_t i = low; i < high; i += stride) window.push_back(power[i]);
+    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
+    std::nth_element(window.begin(), middle, window.end());
+    at.push_back(k);
+    value.push_back(*middle / std::numbers::ln2);
+    k += std::max<std::size_t>(1, k / 50);
+  }
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < power.size(); ++i) {
+    while (j + 1 < at.size() && at[j + 1] <= i) ++j;
+    const double next = j + 1 < at.size() ? value[j + 1] : value[j];
+    const double span = j + 1 < at.size() ? static_cast<double>(at[j + 1] - at[j]) : 1.0;
+    const double share = i > at[j] ? std::min(1.0, static_cast<double>(i - at[j]) / span) : 0.0;
+    floor[i] = std::max(value[j] + share * (next - value[j]), 1e-300);
+  }
+  return floor;
+}
+
+// Noise power right beside a peak. On a resonance it is far above the noise of the wider band, and every
+// ripple of the resonance would pass for a line against that.
+double noise_beside(const std::vector<double>& power, std::size_t k) {
+  constexpr std::size_t kNear = 4;
+  constexpr std::size_t kFar = 40;
+  std::vector<double> window;
+  for (std::size_t d = kNear; d <= kFar; ++d) {
+    if (k > d) window.push_back(power[k - d]);
+    if (k + d < power.size()) window.push_back(power[k + d]);
+  }
+  const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
+  std::nth_element(window.begin(), middle, window.end());
+  return *middle / std::numbers::ln2;
+}
+
+// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces.
+std::vector<Complex> demodulate(std::span<const double> error, double mean, double cycles_per_sample,
+                                std::size_t pieces) {
+  std::vector<Complex> sums(pieces, Complex(0.0, 0.0));
+  for (std::size_t p = 0; p < pieces; ++p) {
+    const std::size_t from = p * error.size() / pieces;
+    const std::size_t to = (p + 1) * error.size() / pieces;
+    const double start = cycles_per_sample * static_cast<double>(from);
+    Complex carrier = std::polar(1.0, -2.0 * std::numbers::pi * (start - std::floor(start)));
+    const Complex turn = std::polar(1.0, -2.0 * std::numbers::pi * cycles_per_sample);
+    for (std::size_t i = from; i < to; ++i, carrier *= turn) {
+      if (std::isfinite(error[i])) sums[p] += (error[i] - mean) * carrier;
+    }
+  }
+  return sums;
+}
+
+Complex shifted(const std::vector<Complex>& sums, double cycles_per_piece, std::size_t from, std::size_t to) {
+  Complex total(0.0, 0.0);
+  for (std::size_t p = from; p < to; ++p) {
+    total += sums[p] *
+             std::polar(1.0, -2.0 * std::numbers::pi * cycles_per_piece * (static_cast<double>(p) + 0.5));
+  }
+  return total;
+}
+
+SpectralLine refine(std::span<const double> error, double mean, double start_s, double period_s, double bin,
+                    std::size_t length, double floor, double tries) {
+  constexpr std::size_t kPieces = 256;
+  const auto n = static_cast<double>(error.size());
+  const double f0 = bin / static_cast<double>(length);
+  const std::vector<Complex> sums = demodulate(error, mean, f0, std::min(kPieces, error.size() / 4));
+  const auto pieces = static_cast<double>(sums.size());
+  const auto power = [&](double offset_bins) {
+    return std::norm(shifted(sums, offset_bins / pieces, 0, sums.size()));
+  };
+  double low = -1.0;
+  double high = 1.0;
+  constexpr double kGolden = 0.6180339887498949;
+  while (high - low > 1e-4) {
+    const double a = high - kGolden * (high - low);
+    const double b = low + kGolden * (high - low);
+    (power(a) > power(b) ? high : low) = power(a) > power(b) ? b : a;
+  }
+  const double offset = 0.5 * (low + high);
+  const Complex total = shifted(sums, offset / pieces, 0, sums.size());
+
+  SpectralLine line;
+  line.frequency_hz = (f0 + offset / n) / period_s;
+  line.ratio = std::norm(total) / (floor * n / static_cast<double>(length));
+  // Between the bins there are more tries than bins: Rice's count of the maxima of a spectrum.
+  const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
+  line.p_value = std::min(1.0, between * tries * std::exp(-line.ratio));
+  double separate = 0.0;
+  Complex together(0.0, 0.0);
+  for (std::size_t q = 0; q < 4; ++q) {
+    const Complex quarter = shifted(sums, offset / pieces, q * sums.size() / 4, (q + 1) * sums.size() / 4);
+    separate += std::abs(quarter);
+    together += quarter;
+  }
+  line.coherence = separate > 0.0 ? std::norm(together) / (separate * separate) : 0.0;
+  const std::vector<Complex> whole = demodulate(error, mean, line.frequency_hz * period_s, 1);
+  const Complex amplitude =
+      2.0 / n * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
+  line.cosine = amplitude.real();
+  line.sine = -amplitude.imag();
+  line.std_error = std::sqrt(2.0 * floor / static_cast<double>(length) / n);
+  const double size = std::max(std::abs(amplitude), 1e-300);
+  // Cramer-Rao bound of a tone's frequency in white noise (Rife and Boorstyn 1974).
+  line.frequency_std_hz = std::sqrt(6.0) / std::numbers::pi * line.std_error / size / (n * period_s);
+  return line;
+}
+
+}  // namespace
+
+std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
+                                     double significance, std::size_t most) {
+  std::vector<SpectralLine> lines;
+  if (error.size() < 128) return lines;
+  std::size_t length = 0;
+  const std::vector<double> power = periodogram(error, length);
+  const std::vector<double> floor = noise_floor(power);
+  const auto tries = static_cast<double>(power.size());
+  const double least = std::log(tries / significance);
+  std::vector<std::size_t> peaks;
+  for (std::size_t k = static_cast<std::size_t>(kFirstBin); k + 1 < power.size(); ++k) {
+    const double ratio = power[k] / floor[k];
+    if (ratio > 0.6 * least && power[k] >= power[k - 1] && power[k] >= power[k + 1]) peaks.push_back(k);
+  }
+  std::sort(peaks.begin(), peaks.end(),
+            [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
+  std::vector<std::size_t> taken;
+  const double mean = mean_of(error);
+  for (const std::size_t k : peaks) {
+    if (lines.size() >= most) break;
+    const std::size_t close = std::max<std::size_t>(6, k / 100);
+    const bool beside = std::any_of(taken.begin(), taken.end(),
+                                    [&](std::size_t t) { return (t > k ? t - k : k - t) < close; });
+    if (beside) continue;
+    taken.push_back(k);
+    SpectralLine line = refine(error, mean, start_s, period_s, static_cast<double>(k), length,
+                               std::max(floor[k], noise_beside(power, k)), tries);
+    if (line.p_value > significance) continue;
+    std::size_t first = k;
+    std::size_t last = k;
+    while (first > 1 && k - first < close && power[first - 1] > 0.1 * power[k]) --first;
+    while (last + 1 < power.size() && last - k < close && power[last + 1] > 0.1 * power[k]) ++last;
+    line.width_hz = static_cast<double>(last - first + 1) / (static_cast<double>(length) * period_s);
+    lines.push_back(line);
+  }
+  std::sort(lines.begin(), lines.end(),
+            [](const SpectralLine& a, const SpectralLine& b) { return a.ratio > b.ratio; });
+  return lines;
+}
+
+Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points) {
+  Spectrum spectrum;
+  if (error.size() < 64) return spectrum;
+  std::size_t length = 0;
+  const std::vector<double> power = periodogram(error, length);
+  const double scale = 2.0 * period_s / static_cast<double>(length);
+  const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
+  for (std::size_t k = 1; k < power.size();) {
+    const auto next = std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * growth));
+    const std::size_t end = std::min(next, power.size());
+    double sum = 0.0;
+    for (std::size_t i = k; i < end; ++i) sum += power[i];
+    spectrum.frequency_hz.push_back(0.5 * static_cast<double>(k + end - 1) /
+                                    (static_cast<double>(length) * period_s));
+    spectrum.density.push_back(scale * sum / static_cast<double>(end - k));
+    k = end;
+  }
+  return spectrum;
+}
+
+}  // namespace ifog

@@ -1,0 +1,234 @@
+#include "filters/diagnosis/residual/unexplained.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/figures.h"
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 400> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  return line.data();
+}
+
+// Energy of differences within short pieces, so that slow changes of the rate do not count.
+std::vector<double> energies(std::span<const double> left, std::size_t piece) {
+  std::vector<double> found;
+  for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
+    double square = 0.0;
+    double n = 0.0;
+    for (std::size_t i = from + 1; i < from + piece; ++i) {
+      const double d = left[i] - left[i - 1];
+      if (!std::isfinite(d)) continue;
+      square += d * d;
+      n += 1.0;
+    }
+    found.push_back(n > 0.0 ? square / n : 0.0);
+  }
+  return found;
+}
+
+// The level a piece's energy exceeds once in a hundred records of white noise, over the median of all pieces.
+// Mean squares of m differences of neighbours scatter like chi-square of 2/3 m degrees of freedom (Wilson and
+// Hilferty's approximation of its quantiles and its median).
+double burst_level(std::size_t piece, std::size_t pieces) {
+  const double freedom = 2.0 / 3.0 * static_cast<double>(piece - 1);
+  const double chance = 0.01 / static_cast<double>(pieces);
+  // Normal quantile of a small chance, Abramowitz and Stegun 26.2.23.
+  const double t = std::sqrt(-2.0 * std::log(chance));
+  const double z =
+      t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  const double width = 2.0 / (9.0 * freedom);
+  const double level = std::pow(1.0 - width + z * std::sqrt(width), 3);
+  return std::max(6.0, level / std::pow(1.0 - width, 3));
+}
+
+// By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
+std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
+  const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
+  const std::size_t parts = std::max<std::size_t>(1, energy.size() / minute);
+  std::vector<double> over;
+  for (std::size_t p = 0; p < parts; ++p) {
+    const std::size_t from = p * minute;
+    const std::size_t to = p + 1 == parts ? energy.size() : from + minute;
+    const double usual = median({energy.begin() + static_cast<std::ptrdiff_t>(from),
+                                 energy.begin() + static_cast<std::ptrdiff_t>(to)});
+    for (std::size_t i = from; i < to; ++i) over.push_back(usual > 0.0 ? energy[i] / usual : 0.0);
+  }
+  return over;
+}
+
+// Where more than a tenth of the pieces is above the level of white noise, the strongest hundredth counts, if
+// it is far above the rest.
+double heavy_level(std::vector<double> over, double level) {
+  const auto count = static_cast<std::size_t>(
+      std::count_if(over.begin(), over.end(), [&](double value) { return value >= level; }));
+  if (count * 10 < over.size()) return level;
+  const auto at = over.begin() + static_cast<std::ptrdiff_t>(over.size() - over.size() / 100 - 1);
+  std::nth_element(over.begin(), at, over.end());
+  return *at > 5.0 * level ? *at : level;
+}
+
+struct SlowRest {
+  double over_s = 0.0;  // length of the means that show it best; 0: nothing slow
+  double share = 0.0;   // of their variance that neighbours do not see
+};
+
+// Slow is what makes means scatter more than neighbouring means differ (von Neumann's ratio, whose standard
+// deviation for n means of white noise is 1 / sqrt n).
+SlowRest slow_rest(std::span<const double> left, double period_s) {
+  constexpr double kClear = 5.0;
+  SlowRest found;
+  double most = kClear;
+  for (std::size_t count = 1; left.size() / count >= 16; count *= 4) {
+    const std::vector<double> means = means_over(left, count);
+    double square = 0.0;
+    double n = 0.0;
+    for (std::size_t i = 1; i < means.size(); ++i) {
+      const double d = means[i] - means[i - 1];
+      if (!std::isfinite(d)) continue;
+      square += d * d;
+      n += 1.0;
+    }
+    const double all = variance_of(means);
+    if (n < 16.0 || !(square > 0.0)) continue;
+    const double neighbours = 0.5 * square / n;
+    const double sigma = (all / neighbours - 1.0) * std::sqrt(n);
+    if (sigma <= most) continue;
+    most = sigma;
+    found = {static_cast<double>(count) * period_s, 1.0 - neighbours / all};
+  }
+  return found;
+}
+
+}  // namespace
+
+Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
+                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
+                                 const std::vector<SpectralLine>& peaks) {
+  Unexplained found;
+  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
+  const double before = variance_of(means_over(error, second));
+  const double after = variance_of(means_over(left, second));
+  const double white = noise.white_variance * grid.block_s / (static_cast<double>(second) * period_s);
+  found.fraction = before > 0.0 ? std::clamp((after - white) / before, 0.0, 1.0) : 0.0;
+
+  if (!peaks.empty()) {
+    const SpectralLine& peak = peaks.front();
+    found.kind = "line";
+    found.frequency_hz = peak.frequency_hz;
+    found.hint = text(
+        "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
+        "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
+        peak.frequency_hz, peak.width_hz);
+    return found;
+  }
+  const std::size_t piece = std::max<std::size_t>(8, second / 4);
+  const std::vector<double> energy = energies(left, piece);
+  if (energy.size() >= 16) {
+    const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
+    const double level = heavy_level(over, burst_level(piece, energy.size()));
+    std::size_t bursts = 0;
+    std::size_t strongest = 0;
+    const auto time_of = [&](std::size_t i) { return start_s + static_cast<double>(i * piece) * period_s; };
+    for (std::size_t i = 0; i < over.size(); ++i) {
+      if (over[i] < level) continue;
+      ++bursts;
+      if (over[i] > over[strongest]) strongest = i;
+      if (found.times_s.empty() || time_of(i) - found.times_s.back() > 2.0)
+        found.times_s.push_back(time_of(i));
+    }
+    if (bursts > 0 && bursts * 10 < over.size()) {
+      found.kind = "bursts";
+      found.hint = text(
+          "%zu bursts, the first at %.4g s, the strongest at %.5g s: knocks, radio keying or supply dips. "
+          "Log "
+          "an accelerometer and the supply at the sensor's own rate.",
+          found.times_s.size(), found.times_s.front(), time_of(strongest));
+      if (found.times_s.size() > 50) found.times_s.resize(50);
+      return found;
+    }
+    found.times_s.clear();
+    const std::size_t part = energy.size() / 8;
+    double least = 1e300;
+    double most = 0.0;
+    for (std::size_t p = 0; p < 8; ++p) {
+      std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
+                                   energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
+      std::erase(measured, 0.0);  // gaps
+      if (2 * measured.size() < part || measured.empty()) continue;
+      const double typical = median(std::move(measured));
+      least = std::min(least, typical);
+      most = std::max(most, typical);
+    }
+    if (most > 2.0 * least) {
+      found.kind = "changing_variance";
+      found.hint = text(
+          "the noise of single samples changes by a factor of %.2g in the course of the record: vibration, "
+          "light level or electronics. Log vibration, optical power and the supply.",
+          std::sqrt(most / std::max(least, 1e-300)));
+      return found;
+    }
+  }
+  const SlowRest slow = slow_rest(left, period_s);
+  if (slow.over_s > 0.0) {
+    found.kind = "slow";
+    found.hint = text(
+        "slow drift that follows none of the channels given: %.2g %% of what %.3g s means scatter. The "
+        "sensor's "
+        "own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
+        "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
+        "supply.",
+        100.0 * slow.share, slow.over_s);
+  } else if (found.fraction > 0.05) {
+    found.kind = "uncorrelated";
+    found.hint = "correlated with nothing that was logged, and with no pattern of its own";
+  } else {
+    found.kind = "nothing";
+    found.hint = "what stays is white noise";
+  }
+  return found;
+}
+
+void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
+  const std::string unit = unit_of(loop.channel);
+  constexpr double kDegreePerHour = M_PI / 180.0 / 3600.0;
+  found.kind = "hysteresis";
+  found.frequency_hz = 0.0;
+  found.times_s.clear();
+  found.hint = text(
+      "part of the bias depends on which way %s came: a loop %.3g %s wide and %.3g °/h high. No form of the "
+      "model describes it and nothing of it is corrected. Let it run up and down between the same values, "
+      "and look at the mounting of the coil and at its potting.",
+      loop.channel.c_str(), 2.0 * loop.half_width, unit.c_str(),
+      2.0 * loop.half_width * std::abs(loop.coefficient) / kDegreePerHour);
+}
+
+void describe_moving(const MovingLine& line, Unexplained& found) {
+  found.kind = "moving_line";
+  found.frequency_hz = line.frequency_hz;
+  found.times_s.clear();
+  found.hint = text(
+      "a line near %.4g Hz, with its harmonics, whose frequency moves with the rate: %.4g cycles a radian "
+      "turned. That is the closed loop's own doing, most likely the feedback ramp (phase modulator, 2 pi "
+      "reset), and no channel given shows it. Log the feedback ramp at the sensor's own rate.",
+      line.frequency_hz, line.cycles_per_rad);
+}
+
+}  // namespace ifog

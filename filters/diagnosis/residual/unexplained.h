@@ -1,0 +1,21 @@
+// What stays, in words a person can act on.
+#pragma once
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/regression/noise_fit.h"
+#include "filters/diagnosis/residual/lines.h"
+#include "filters/diagnosis/residual/moving_line.h"
+
+namespace ifog {
+
+// error, left: before and after, even steps of period_s, NaN missing, of one record starting at start_s.
+// peaks: spectral peaks of `left` that are no lines of one phase.
+Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
+                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
+                                 const std::vector<SpectralLine>& peaks);
+
+// A line that follows the rotation, or a loop, takes the description's place.
+void describe_moving(const MovingLine& line, Unexplained& found);
+void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
+
+}  // namespace ifog

@@ -1,0 +1,197 @@
+#include "filters/diagnosis/search/scan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/diagnosis/search/effective_tries.h"
+#include "filters/diagnosis/search/search.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kPairsAmong = 40;
+
+std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
+  std::vector<NoiseShape> shapes;
+  const std::vector<double> walks =
+      thorough ? std::vector<double>{1.0, 0.25, 0.05, 0.01, 1e-3, 0.0} : std::vector<double>{1.0, 0.1, 0.0};
+  const std::vector<double> flickers =
+      thorough ? std::vector<double>{1.0, 0.2, 0.0} : std::vector<double>{1.0, 0.0};
+  for (const double w : walks) {
+    for (const double f : flickers) {
+      NoiseShape each = shape;
+      each.walk *= w;
+      each.flicker *= f;
+      if (shape.walk == 0.0 && w != 1.0) continue;
+      if (shape.flicker == 0.0 && f != 1.0) continue;
+      shapes.push_back(each);
+    }
+  }
+  return shapes;
+}
+
+}  // namespace
+
+Scan::Scan(const BlockData& data, std::vector<Candidate> candidates)
+    : data_(data),
+      candidates_(std::move(candidates)),
+      columns_(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(candidates_.size())) {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) fill(i);
+}
+
+void Scan::add(const std::vector<Candidate>& more) {
+  const std::size_t before = candidates_.size();
+  for (const Candidate& candidate : more) {
+    const auto alike = [&](const Candidate& other) { return other.same_shape(candidate); };
+    if (std::none_of(candidates_.begin(), candidates_.end(), alike)) candidates_.push_back(candidate);
+  }
+  columns_.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(candidates_.size()));
+  for (std::size_t i = before; i < candidates_.size(); ++i) fill(i);
+}
+
+// Columns of unit size: units of channels are many decades apart.
+void Scan::fill(std::size_t candidate) {
+  Eigen::VectorXd column = regressors(data_, candidates_[candidate]).col(0);
+  const double size = std::sqrt(column.squaredNorm() / static_cast<double>(column.size()));
+  if (size > 0.0) column /= size;
+  columns_.col(static_cast<Eigen::Index>(candidate)) = column;
+}
+
+Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseShape& shape,
+                              const Columns& candidates) const {
+  const Columns fixed = design(data_, base);
+  Columns all(fixed.rows(), fixed.cols() + candidates.cols());
+  all << fixed, candidates;
+  Whitening(data_.grid, shape).apply(all);
+  const Eigen::MatrixXd others = all.middleCols(1, fixed.cols() - 1);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(others);
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(others.rows(), others.cols());
+  Projected projected;
+  projected.y = all.col(0);
+  projected.y -= q * (q.transpose() * projected.y);
+  projected.columns = all.rightCols(candidates.cols());
+  const Eigen::RowVectorXd before = projected.columns.colwise().squaredNorm();
+  const Eigen::MatrixXd shadow = q.transpose() * projected.columns;
+  projected.columns.noalias() -= q * shadow;
+  // A column that the others make up to rounding says nothing of its own.
+  for (Eigen::Index j = 0; j < candidates.cols(); ++j) {
+    if (projected.columns.col(j).squaredNorm() < 1e-9 * before[j]) projected.columns.col(j).setZero();
+  }
+  projected.square = projected.y.squaredNorm();
+  return projected;
+}
+
+double Scan::independent(const std::vector<Candidate>& base, const NoiseShape& shape) const {
+  return independent_columns(project(base, shape, columns_).columns);
+}
+
+std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough,
+                                const Candidate* compared, const NoiseShape* at) const {
+  std::vector<Scored> scored(candidates_.size());
+  for (std::size_t i = 0; i < candidates_.size(); ++i) scored[i].candidate = candidates_[i];
+  const auto n = static_cast<double>(data_.grid.used());
+  std::vector<NoiseShape> shapes = spread(noise.shape, thorough);
+  if (at) shapes.insert(shapes.begin(), *at);
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    const Projected p = project(base, shapes[s], columns_);
+    const Eigen::VectorXd xy = p.columns.transpose() * p.y;
+    const Eigen::VectorXd xx = p.columns.colwise().squaredNorm();
+    for (std::size_t i = 0; i < scored.size(); ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      if (!(xx[j] > 0.0)) continue;
+      const double left = std::max(p.square - xy[j] * xy[j] / xx[j], 1e-12 * p.square);
+      const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - noise.log_likelihood);
+      if (ratio > scored[i].ratio) {
+        scored[i].ratio = ratio;
+        scored[i].shape = shapes[s];
+      }
+    }
+    if (s == 0 && compared) {
+      const Projected mine = project(base, shapes[s], regressors(data_, *compared));
+      const Eigen::VectorXd dot = p.columns.transpose() * mine.columns.col(0);
+      for (std::size_t i = 0; i < scored.size(); ++i) {
+        const auto j = static_cast<Eigen::Index>(i);
+        scored[i].correlation =
+            dot[j] / std::sqrt(std::max(xx[j] * mine.columns.col(0).squaredNorm(), 1e-300));
+      }
+    }
+  }
+  return scored;
+}
+
+std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseFit& noise) const {
+  const BlockGrid& grid = data_.grid;
+  std::vector<Scored> found;
+  const auto n = static_cast<double>(grid.used());
+  for (const double share : {1.0, 0.05}) {
+    NoiseShape shape = noise.shape;
+    shape.walk *= share;
+    const Projected p = project(base, shape, Columns(static_cast<Eigen::Index>(grid.size()), 0));
+    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+      const auto from = static_cast<Eigen::Index>(grid.starts[r]);
+      const auto length = static_cast<Eigen::Index>(grid.starts[r + 1]) - from;
+      const Eigen::VectorXd h = answer_to_step(grid, shape, r);
+      Eigen::VectorXd energy(length);
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < length; ++k) energy[k] = sum += h[k] * h[k];
+      Scored best;
+      for (Eigen::Index at = 4; at + 4 < length; ++at) {
+        const Eigen::Index rest = length - at;
+        const double xy = h.head(rest).dot(p.y.segment(from + at, rest));
+        // The constant, projected out of the measurement, is not yet out of the step.
+        const double xx =
+            energy[rest - 1] * std::max(0.05, shape.walk > 0.0 ? 1.0 : double(at) / double(length));
+        const double left = std::max(p.square - xy * xy / xx, 1e-12 * p.square);
+        const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - noise.log_likelihood);
+        if (ratio <= best.ratio) continue;
+        best.ratio = ratio;
+        best.shape = shape;
+        best.candidate.form = Form::kStep;
+        best.candidate.record = r;
+        best.candidate.time_s = grid.time_s[static_cast<std::size_t>(from + at)] - 0.5 * grid.block_s;
+      }
+      if (best.ratio > 0.0) found.push_back(best);
+    }
+  }
+  return found;
+}
+
+std::optional<std::pair<Candidate, Candidate>> Scan::best_pair(const std::vector<Candidate>& base,
+                                                               const NoiseFit& noise,
+                                                               const NoiseShape* at) const {
+  std::vector<Scored> scored = score(base, noise, false, nullptr, at);
+  std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
+  if (scored.size() < 2) return std::nullopt;
+  // A masked effect scores low alone, so the best of each shape is kept, not just the best.
+  std::vector<Candidate> kept;
+  for (const Scored& each : scored) {
+    const auto alike = [&](const Candidate& other) { return other.same_shape(each.candidate); };
+    if (std::any_of(kept.begin(), kept.end(), alike)) continue;
+    kept.push_back(each.candidate);
+    if (kept.size() == kPairsAmong) break;
+  }
+  Columns columns(columns_.rows(), static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = regressors(data_, kept[i]).col(0);
+  NoiseShape quieter = noise.shape;
+  quieter.walk *= 0.1;
+  const Projected p = project(base, at ? *at : quieter, columns);
+  const Eigen::MatrixXd gram = p.columns.transpose() * p.columns;
+  const Eigen::VectorXd xy = p.columns.transpose() * p.y;
+  double best = 0.0;
+  std::optional<std::pair<Candidate, Candidate>> pair;
+  for (Eigen::Index i = 0; i < gram.rows(); ++i) {
+    for (Eigen::Index j = i + 1; j < gram.rows(); ++j) {
+      const double det = gram(i, i) * gram(j, j) - gram(i, j) * gram(i, j);
+      if (det <= 1e-4 * gram(i, i) * gram(j, j)) continue;
+      const double gain =
+          (xy[i] * xy[i] * gram(j, j) - 2.0 * xy[i] * xy[j] * gram(i, j) + xy[j] * xy[j] * gram(i, i)) / det;
+      if (gain <= best) continue;
+      best = gain;
+      pair = {kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]};
+    }
+  }
+  return pair;
+}
+
+}  // namespace ifog

@@ -1,0 +1,62 @@
+// Scores of the whole library at once: for a spread of noise models around the present one every column is
+// whitened, the effects already chosen are projected out, and what is left of each column is regressed on
+// what is left of the measurement. The best noise model counts for each candidate separately: the noise
+// fitted without an effect has already swallowed part of it.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "filters/diagnosis/regression/candidates.h"
+#include "filters/diagnosis/regression/noise_fit.h"
+
+namespace ifog {
+
+struct Scored {
+  Candidate candidate;
+  double ratio = 0.0;        // twice the log-likelihood gained
+  NoiseShape shape;          // the noise model at which it gains that
+  double correlation = 0.0;  // with the effect it is compared to, if any
+};
+
+class Scan {
+ public:
+  Scan(const BlockData& data, std::vector<Candidate> candidates);
+
+  [[nodiscard]] std::size_t size() const { return candidates_.size(); }
+
+  // Further candidates; those of a shape that is there already are passed over.
+  void add(const std::vector<Candidate>& more);
+
+  // So many independent tries the library amounts to, beside `base`; see tries.h.
+  [[nodiscard]] double independent(const std::vector<Candidate>& base, const NoiseShape& shape) const;
+
+  // thorough: the full spread of noise models; otherwise a few of them.
+  [[nodiscard]] std::vector<Scored> score(const std::vector<Candidate>& base, const NoiseFit& noise,
+                                          bool thorough, const Candidate* compared = nullptr,
+                                          const NoiseShape* at = nullptr) const;
+
+  // The most likely positions of a step of the rate, one a record at most.
+  [[nodiscard]] std::vector<Scored> steps(const std::vector<Candidate>& base, const NoiseFit& noise) const;
+
+  // The two of the best few dozen that explain most together, at a noise with less walk than `noise` or at
+  // the one given.
+  [[nodiscard]] std::optional<std::pair<Candidate, Candidate>> best_pair(
+      const std::vector<Candidate>& base, const NoiseFit& noise, const NoiseShape* at = nullptr) const;
+
+ private:
+  void fill(std::size_t candidate);
+  struct Projected {
+    Eigen::VectorXd y;
+    Columns columns;
+    double square;
+  };
+  [[nodiscard]] Projected project(const std::vector<Candidate>& base, const NoiseShape& shape,
+                                  const Columns& candidates) const;
+
+  const BlockData& data_;
+  std::vector<Candidate> candidates_;
+  Columns columns_;
+};
+
+}  // namespace ifog

@@ -1,0 +1,334 @@
+#include "filters/diagnosis/search/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/diagnosis/checks/proof.h"
+#include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/search/effective_tries.h"
+#include "filters/diagnosis/search/fit_to_readings.h"
+#include "filters/diagnosis/search/refine.h"
+#include "filters/diagnosis/search/scan.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
+constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
+constexpr double kSecondLag = 16.0;    // and a second time constant of a lag
+constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
+constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
+constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
+constexpr double kDependent = 0.2;        // correlation of two coefficients
+constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
+
+bool is_event(const Candidate& candidate) {
+  return candidate.form == Form::kLine || candidate.form == Form::kStep;
+}
+
+class Loop {
+ public:
+  Loop(const BlockData& data, const SearchOptions& options)
+      : data_(data), options_(options), scan_(data, library(data)), model_(options.given) {}
+
+  SearchResult run() {
+    SearchResult result;
+    noise_ = fit_noise(data_.grid, design(data_, model_));
+    result.noise_without = noise_;
+    count_tries();
+    while (model_.size() < options_.most_effects + options_.given.size()) {
+      if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
+      if (!add_one() && !add_pair()) break;
+      revise();
+    }
+    revise_pairs();
+    drop_what_slow_denies();
+    try_second_lags();
+    finish(result);
+    return result;
+  }
+
+ private:
+  // The chance of a false effect is shared out between channels and steps.
+  void count_tries() {
+    const double level = 20.0;  // near what will be asked for
+    tries_of_channels_ = scan_.independent(model_, noise_.shape) / kShareOfChannels;
+    tries_of_steps_ = independent_steps(data_.grid, noise_.shape, level) / (1.0 - kShareOfChannels);
+    if (data_.grid.dwells) tries_of_channels_ *= kShareOfChannels;
+    least_ratio_ = 1.0;
+    while (kProfiled * tail(least_ratio_, 1) * tries_of_channels_ > options_.significance)
+      least_ratio_ += 0.25;
+  }
+
+  [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
+    const int columns = static_cast<int>(candidate.width());
+    const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
+    return std::min(1.0, kProfiled * tail(ratio, columns) * tries);
+  }
+
+  struct Trial {
+    std::vector<Candidate> model;
+    NoiseFit noise;
+    double score = -1e300;  // twice the log-likelihood less complexity
+  };
+
+  static double penalty(const std::vector<Candidate>& model) {
+    double sum = 0.0;
+    for (const Candidate& candidate : model) sum += complexity(candidate);
+    return sum;
+  }
+
+  Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
+    Trial trial;
+    if (model[at].searched()) refine(data_, start, model, at);
+    trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
+    if (model[at].searched()) refine(data_, trial.noise.shape, model, at);
+    trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
+    trial.score = 2.0 * trial.noise.log_likelihood - penalty(model);
+    trial.model = std::move(model);
+    return trial;
+  }
+
+  // The best of the shortlist, fully fitted, as an addition to `base`.
+  Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough) const {
+    Trial best;
+    std::vector<Scored> scored = scan_.score(base, noise, thorough);
+    if (thorough && !data_.grid.dwells) {
+      for (const Scored& step : scan_.steps(base, noise)) scored.push_back(step);
+    }
+    std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
+      return a.ratio - complexity(a.candidate) > b.ratio - complexity(b.candidate);
+    });
+    std::vector<Candidate> tried;
+    for (const Scored& each : scored) {
+      if (tried.size() >= kShortlist || each.ratio < 0.5 * least_ratio_) break;
+      const auto alike = [&](const Candidate& other) { return other.same_shape(each.candidate); };
+      if (std::any_of(tried.begin(), tried.end(), alike) || std::any_of(base.begin(), base.end(), alike))
+        continue;
+      tried.push_back(each.candidate);
+      std::vector<Candidate> model = base;
+      model.push_back(each.candidate);
+      const Trial trial = refined(model, base.size(), each.shape);
+      if (trial.score > best.score) best = trial;
+    }
+    return best;
+  }
+
+  bool add_one() {
+    Trial best = best_addition(model_, noise_, true);
+    if (best.model.empty()) return false;
+    const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
+    const Candidate& added = best.model.back();
+    if (p_value(added, ratio - complexity(added)) > options_.significance) return false;
+    if (!proven(best)) return false;
+    model_ = best.model;
+    noise_ = best.noise;
+    if (model_.back().channel != Candidate::kNone) offer_products(model_.back().channel);
+    return true;
+  }
+
+  void offer_products(std::size_t channel) {
+    const std::size_t before = scan_.size();
+    scan_.add(products_of(data_, channel));
+    tries_of_channels_ += static_cast<double>(scan_.size() - before) / kShareOfChannels;
+  }
+
+  [[nodiscard]] bool proven(const Trial& trial) const {
+    const Claimed claimed{trial.model, trial.noise};
+    return trial.model.back().form == Form::kStep ? stays(data_, claimed) : predicts(data_, claimed);
+  }
+
+  // Judged when all effects are in: one of two that oppose each other makes the error larger until the other
+  // comes.
+  void drop_what_slow_denies() {
+    for (std::size_t i = options_.given.size(); i < model_.size();) {
+      std::vector<Candidate> rest = model_;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      std::vector<Candidate> ordered = rest;
+      ordered.push_back(model_[i]);
+      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+      if (holds_for_slow(data_, {ordered, noise_}, {rest, without})) {
+        ++i;
+        continue;
+      }
+      model_ = rest;
+      noise_ = without;
+      i = options_.given.size();
+    }
+  }
+
+  // A coil inside a housing follows the thermometer through two time constants. One more parameter has to
+  // earn what it costs after the choice of one lag is made.
+  void try_second_lags() {
+    for (std::size_t i = options_.given.size(); i < model_.size(); ++i) {
+      if (model_[i].form != Form::kLagged) continue;
+      const double before = noise_.log_likelihood;
+      for (const double share : {0.1, 0.5}) {
+        std::vector<Candidate> trial = model_;
+        trial[i].second_time_constant_s = share * trial[i].time_constant_s;
+        for (int round = 0; round < 2; ++round) {
+          refine(data_, noise_.shape, trial, i, &Candidate::second_time_constant_s);
+          refine(data_, noise_.shape, trial, i);
+        }
+        const NoiseFit noise = fit_noise(data_.grid, design(data_, trial), noise_.shape);
+        if (2.0 * (noise.log_likelihood - before) < kSecondLag ||
+            noise.log_likelihood <= noise_.log_likelihood) {
+          continue;
+        }
+        model_ = trial;
+        noise_ = noise;
+      }
+    }
+  }
+
+  // Two effects that hide each other: neither passes alone, or a third stood for both.
+  bool add_pair() {
+    const auto pair = scan_.best_pair(model_, noise_);
+    if (!pair) return false;
+    std::vector<Candidate> model = model_;
+    model.push_back(pair->first);
+    model.push_back(pair->second);
+    Trial trial = refined(model, model.size() - 1, noise_.shape);
+    trial = refined(trial.model, model.size() - 2, trial.noise.shape);
+    const double ratio = 2.0 * (trial.noise.log_likelihood - noise_.log_likelihood);
+    // Tries grow as the square, and so does what two have to bring.
+    if (ratio < 2.0 * least_ratio_ + penalty({trial.model.end() - 2, trial.model.end()}) || !proven(trial))
+      return false;
+    model_ = trial.model;
+    noise_ = trial.noise;
+    return true;
+  }
+
+  // Effects chosen early were chosen without the later ones: try each one's removal and replacement.
+  void revise() {
+    const std::size_t first = options_.given.size();
+    for (std::size_t i = first; i < model_.size() && model_.size() > first + 1;) {
+      std::vector<Candidate> rest = model_;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+      if (p_value(model_[i], 2.0 * (noise_.log_likelihood - without.log_likelihood)) >
+          options_.significance) {
+        model_ = rest;
+        noise_ = without;
+        continue;
+      }
+      const Trial other = best_addition(rest, without, false);
+      const double score = 2.0 * noise_.log_likelihood - penalty(model_);
+      if (!other.model.empty() && other.score > score + kSwapGain) {
+        model_ = other.model;
+        noise_ = other.noise;
+      }
+      ++i;
+    }
+    for (std::size_t i = first; i < model_.size(); ++i) {
+      if (!model_[i].searched()) continue;
+      Trial trial = refined(model_, i, noise_.shape);
+      if (trial.noise.log_likelihood > noise_.log_likelihood) {
+        model_ = trial.model;
+        noise_ = trial.noise;
+      }
+    }
+  }
+
+  // Two effects whose coefficients depend on each other can be two others together: a slow channel with a lag
+  // and its settling at the start are the channel and its derivative.
+  void revise_pairs() {
+    const std::size_t first = options_.given.size();
+    for (std::size_t i = first; i < model_.size(); ++i) {
+      for (std::size_t j = i + 1; j < model_.size(); ++j) {
+        if (is_event(model_[i]) || is_event(model_[j]) || !depend(i, j)) continue;
+        const Trial other = best_instead_of(i, j);
+        if (other.model.empty()) continue;
+        if (other.score < 2.0 * noise_.log_likelihood - penalty(model_) + kSwapGain || !proven(other))
+          continue;
+        model_ = other.model;
+        noise_ = other.noise;
+      }
+    }
+  }
+
+  [[nodiscard]] bool depend(std::size_t i, std::size_t j) const {
+    Eigen::MatrixXd covariance;
+    solve(data_.grid, noise_.shape, design(data_, model_), &covariance);
+    const Eigen::Index a = column_of(data_.grid, model_, i) - 1;
+    const Eigen::Index b = column_of(data_.grid, model_, j) - 1;
+    return std::abs(covariance(a, b)) > kDependent * std::sqrt(covariance(a, a) * covariance(b, b));
+  }
+
+  // Empty when the best two are the two there are.
+  [[nodiscard]] Trial best_instead_of(std::size_t i, std::size_t j) const {
+    std::vector<Candidate> model;
+    for (std::size_t k = 0; k < model_.size(); ++k) {
+      if (k != i && k != j) model.push_back(model_[k]);
+    }
+    const NoiseFit without = fit_noise(data_.grid, design(data_, model), noise_.shape);
+    const auto pair = scan_.best_pair(model, without, &noise_.shape);
+    if (!pair) return {};
+    const auto [a, b] = *pair;
+    const auto is = [&](const Candidate& x, const Candidate& y) {
+      return x.same_shape(model_[i]) && y.same_shape(model_[j]);
+    };
+    if (is(a, b) || is(b, a)) return {};
+    model.push_back(a);
+    model.push_back(b);
+    const std::size_t last = model.size() - 1;
+    const Trial once = refined(std::move(model), last, noise_.shape);
+    return refined(once.model, last - 1, once.noise.shape);
+  }
+
+  void finish(SearchResult& result) {
+    const std::size_t first = options_.given.size();
+    for (std::size_t i = 0; i < model_.size(); ++i) {
+      std::vector<Candidate> rest = model_;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+      Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - without.log_likelihood), 1.0};
+      chosen.p_value = p_value(model_[i], chosen.likelihood_ratio);
+      result.chosen.push_back(chosen);
+      if (i >= first) find_alternatives(result, i, rest, without);
+    }
+    result.noise = noise_;
+    result.tries = tries_of_channels_;
+    result.coefficients = solve(data_.grid, noise_.shape, design(data_, model_), &result.covariance);
+  }
+
+  void find_alternatives(SearchResult& result, std::size_t i, const std::vector<Candidate>& rest,
+                         const NoiseFit& without) const {
+    const double mine = result.chosen[i].likelihood_ratio;
+    std::vector<Candidate> seen = {model_[i]};
+    std::vector<Scored> scored = scan_.score(rest, without, true, &model_[i], &noise_.shape);
+    std::sort(scored.begin(), scored.end(),
+              [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
+    for (const Scored& each : scored) {
+      const double loss = mine - each.ratio;
+      if (loss > kLikeness && std::abs(each.correlation) < kAlike) continue;
+      if (loss > 3.0 * kLikeness) break;
+      const auto alike = [&](const Candidate& other) { return other.same_shape(each.candidate); };
+      if (std::any_of(seen.begin(), seen.end(), alike)) continue;
+      seen.push_back(each.candidate);
+      if (seen.size() > 5) break;
+      result.alternatives.push_back({i, each.candidate, each.correlation, loss});
+    }
+  }
+
+  const BlockData& data_;
+  const SearchOptions& options_;
+  Scan scan_;
+  std::vector<Candidate> model_;
+  NoiseFit noise_;
+  double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;  // independent ones over their share
+  double least_ratio_ = 0.0;                               // of a channel's effect
+};
+
+}  // namespace
+
+SearchResult search_effects(const BlockData& data, const SearchOptions& options) {
+  const BlockData clean = with_reconstructed_channels(data);
+  SearchResult result = Loop(clean, options).run();
+  for (const Chosen& chosen : result.chosen) result.clean.push_back(chosen.candidate);
+  result.clean_coefficients = result.coefficients;
+  fit_to_readings(data, clean, result);
+  return result;
+}
+
+}  // namespace ifog

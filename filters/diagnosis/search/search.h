@@ -1,0 +1,49 @@
+// The loop of the diagnosis: score every candidate in the innovations of the noise model, take the one that
+// also predicts held-out blocks, fit everything anew, until nothing passes.
+#pragma once
+
+#include <functional>
+
+#include "filters/diagnosis/regression/candidates.h"
+#include "filters/diagnosis/regression/design.h"
+#include "filters/diagnosis/regression/noise_fit.h"
+
+namespace ifog {
+
+struct Chosen {
+  Candidate candidate;
+  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, noise fitted anew
+  double p_value = 1.0;           // after correction for everything tried
+};
+
+struct Alternative {
+  std::size_t of;  // index of the chosen effect it could stand for
+  Candidate candidate;
+  double correlation;  // of the whitened regressors, all else projected out
+  double loss;         // twice the log-likelihood lost by taking it instead
+};
+
+struct SearchResult {
+  std::vector<Chosen> chosen;
+  std::vector<Alternative> alternatives;
+  NoiseFit noise;          // with the chosen effects
+  NoiseFit noise_without;  // without any
+  Eigen::VectorXd
+      coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
+  Eigen::MatrixXd covariance;  // of those
+  // The same as the search had them, of what the channels were; the ones above are of what was read.
+  std::vector<Candidate> clean;
+  Eigen::VectorXd clean_coefficients;
+  double tries = 1.0;  // independent ones of a channel's effect, over their share of the significance
+};
+
+struct SearchOptions {
+  double significance = 0.01;
+  std::size_t most_effects = 8;
+  std::function<void(std::size_t, std::size_t)> progress;
+  std::vector<Candidate> given;  // lines, found elsewhere; in the fit from the start
+};
+
+SearchResult search_effects(const BlockData& data, const SearchOptions& options);
+
+}  // namespace ifog

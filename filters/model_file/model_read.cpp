@@ -1,0 +1,265 @@
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+#include "filters/model_file/model.h"
+#include "filters/model_file/toml_file.h"
+
+namespace ifog {
+namespace {
+
+// One table of the file: every key is asked for once, and what was not asked for is an unknown key.
+class Table {
+ public:
+  Table(const toml::table& table, std::string file, std::string where)
+      : table_(table), file_(std::move(file)), where_(std::move(where)) {}
+
+  [[noreturn]] void fail(const std::string& key, const toml::node* node, const std::string& complaint) const {
+    std::ostringstream text;
+    text << file_;
+    const auto line = (node ? node->source() : table_.source()).begin.line;
+    if (line) text << ':' << line;
+    text << ": " << one_line(where_ + key);
+    if (node) {
+      std::ostringstream value;
+      node->visit([&](const auto& n) {
+        if constexpr (toml::is_value<decltype(n)>) value << n;
+      });
+      text << (value.str().empty() ? "" : " = " + one_line(value.str()));
+    }
+    text << ": " << complaint;
+    throw std::runtime_error(text.str());
+  }
+
+  const toml::node* find(const std::string& key) {
+    known_.push_back(key);
+    return table_.get(key);
+  }
+
+  double number(const std::string& key, double otherwise) {
+    const toml::node* node = find(key);
+    if (!node) return otherwise;
+    const auto value = node->value<double>();
+    if (!value) fail(key, node, "expected a number");
+    return *value;
+  }
+
+  double finite(const std::string& key) {
+    const toml::node* node = find(key);
+    if (!node) fail(key, nullptr, "expected a number, found nothing");
+    const auto value = node->value<double>();
+    if (!value || !std::isfinite(*value)) fail(key, node, "expected a finite number");
+    return *value;
+  }
+
+  std::string words(const std::string& key) {
+    const toml::node* node = find(key);
+    if (!node) return "";
+    const auto value = node->value_exact<std::string>();
+    if (!value) fail(key, node, "expected a string");
+    return *value;
+  }
+
+  bool yes(const std::string& key, bool otherwise) {
+    const toml::node* node = find(key);
+    if (!node) return otherwise;
+    const auto value = node->value_exact<bool>();
+    if (!value) fail(key, node, "expected true or false");
+    return *value;
+  }
+
+  std::int64_t whole(const std::string& key, std::int64_t otherwise, std::int64_t least) {
+    const toml::node* node = find(key);
+    if (!node) return otherwise;
+    const auto value = node->value_exact<std::int64_t>();
+    if (!value || *value < least)
+      fail(key, node, "expected a whole number of at least " + std::to_string(least));
+    return *value;
+  }
+
+  std::vector<double> numbers(const std::string& key) {
+    const toml::node* node = find(key);
+    std::vector<double> values;
+    if (!node) return values;
+    const toml::array* array = node->as_array();
+    if (!array) fail(key, node, "expected a list of numbers");
+    for (const toml::node& item : *array) {
+      const auto value = item.value<double>();
+      if (!value || !std::isfinite(*value)) fail(key, &item, "expected a finite number");
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  // The tables of [[key]], or of [key] when `single`.
+  std::vector<Table> tables(const std::string& key, bool single = false) {
+    std::vector<Table> found;
+    const toml::node* node = find(key);
+    if (!node) return found;
+    if (single) {
+      if (!node->is_table()) fail(key, node, "expected a table [" + key + "]");
+      found.emplace_back(*node->as_table(), file_, where_ + key + ".");
+      return found;
+    }
+    const toml::array* array = node->as_array();
+    if (!array) fail(key, node, "expected tables [[" + key + "]]");
+    for (const toml::node& item : *array) {
+      if (!item.is_table()) fail(key, &item, "expected tables [[" + key + "]]");
+      found.emplace_back(*item.as_table(), file_,
+                         where_ + key + "[" + std::to_string(found.size() + 1) + "].");
+    }
+    return found;
+  }
+
+  std::map<std::string, double> figures() {
+    std::map<std::string, double> values;
+    for (const auto& [key, node] : table_)
+      values[std::string(key.str())] = number(std::string(key.str()), 0.0);
+    return values;
+  }
+
+  void done() const {
+    for (const auto& [key, node] : table_) {
+      const std::string name(key.str());
+      bool known = false;
+      for (const std::string& k : known_) known = known || k == name;
+      if (!known) fail(name, &node, "unknown key");
+    }
+  }
+
+ private:
+  const toml::table& table_;
+  std::string file_, where_;
+  std::vector<std::string> known_;
+};
+
+void read_noise(Table table, Model& model) {
+  const std::string axis = table.words("axis");
+  NoiseTerms& noise = model.noise[axis];
+  const auto term = [&](const char* key, std::optional<double>& value) {
+    const toml::node* node = table.find(key);
+    if (!node) return;
+    value = table.finite(key);
+    if (*value < 0.0) table.fail(key, node, "expected at least 0");
+  };
+  term("Q", noise.Q);
+  term("N", noise.N);
+  term("B", noise.B);
+  term("K", noise.K);
+  term("R", noise.R);
+  table.done();
+}
+
+FilterSettings read_filter(Table table) {
+  FilterSettings filter;
+  if (table.find("rule")) filter.rule = table.words("rule");
+  if (table.find("state")) filter.state = table.words("state");
+  filter.process_noise = table.number("process_noise", filter.process_noise);
+  filter.measurement_noise = table.number("measurement_noise", filter.measurement_noise);
+  filter.state_parameters = table.numbers("state_parameters");
+  filter.window = static_cast<int>(table.whole("window", filter.window, 1));
+  if (table.find("weights")) filter.weights = table.words("weights");
+  filter.draws = static_cast<int>(table.whole("draws", filter.draws, 1));
+  filter.floor = table.number("floor", filter.floor);
+  filter.follow_manoeuvres = table.yes("follow_manoeuvres", filter.follow_manoeuvres);
+  filter.conserve_angle = table.yes("conserve_angle", filter.conserve_angle);
+  filter.seed = static_cast<std::uint64_t>(table.whole("seed", static_cast<std::int64_t>(filter.seed), 0));
+  table.done();
+  return filter;
+}
+
+Effect read_effect(Table table) {
+  Effect effect;
+  effect.form = table.words("form");
+  if (effect.form.empty()) table.fail("form", nullptr, "expected the name of a form");
+  effect.channel = table.words("channel");
+  effect.with_form = table.words("with_form");
+  effect.with_channel = table.words("with_channel");
+  effect.axis = table.words("axis");
+  effect.meaning = table.words("meaning");
+  effect.reference = table.number("reference", 0.0);
+  effect.with_reference = table.number("with_reference", 0.0);
+  effect.table_x = table.numbers("table_x");
+  effect.table_y = table.numbers("table_y");
+  effect.period = table.number("period", 0.0);
+  effect.angle = table.yes("angle", false);
+  if (effect.table_x.size() != effect.table_y.size()) {
+    table.fail("table_y", table.find("table_y"), "expected as many values as table_x has knots");
+  }
+  for (std::size_t i = 1; i < effect.table_x.size(); ++i) {
+    if (!(effect.table_x[i] > effect.table_x[i - 1])) {
+      table.fail("table_x", table.find("table_x"), "expected knots that increase");
+    }
+  }
+  for (Table& item : table.tables("parameter")) {
+    ModelParameter parameter;
+    parameter.name = item.words("name");
+    if (parameter.name.empty()) item.fail("name", nullptr, "expected the name of a parameter");
+    parameter.value = item.finite("value");
+    parameter.std_error = item.number("std_error", 0.0);
+    parameter.unit = item.words("unit");
+    item.done();
+    effect.parameters.push_back(std::move(parameter));
+  }
+  table.done();
+  return effect;
+}
+
+}  // namespace
+
+Model parse_model(std::string_view text, const std::string& name) {
+  const toml::table root = parse_toml(text, name);
+  Table table(root, name, "");
+  const toml::node* version = table.find("version");
+  if (!version || version->value_exact<std::int64_t>() != Model::kVersion) {
+    table.fail("version", version,
+               "expected version = " + std::to_string(Model::kVersion) + ", the only one this program knows");
+  }
+  Model model;
+  model.sensor = table.words("sensor");
+  model.covariance = table.numbers("covariance");
+  for (Table& noise : table.tables("noise")) read_noise(std::move(noise), model);
+  for (Table& filter : table.tables("filter", true)) model.filter = read_filter(std::move(filter));
+  std::size_t parameters = 0;
+  for (Table& effect : table.tables("effect")) {
+    model.effects.push_back(read_effect(std::move(effect)));
+    parameters += model.effects.back().parameters.size();
+  }
+  if (!model.covariance.empty() && model.covariance.size() != parameters * parameters) {
+    table.fail("covariance", nullptr,
+               "expected " + std::to_string(parameters * parameters) +
+                   " numbers, the square of the number of effect parameters, found " +
+                   std::to_string(model.covariance.size()));
+  }
+  for (Table& item : table.tables("range")) {
+    ChannelRange range;
+    range.channel = item.words("channel");
+    range.low = item.finite("low");
+    range.high = item.finite("high");
+    if (range.high < range.low) item.fail("high", item.find("high"), "expected at least low");
+    item.done();
+    model.ranges.push_back(std::move(range));
+  }
+  for (Table& source : table.tables("source", true)) {
+    model.source.capture = source.words("capture");
+    model.source.sha256 = source.words("sha256");
+    model.source.date = source.words("date");
+    for (Table& before : source.tables("before", true)) model.source.before = before.figures();
+    for (Table& after : source.tables("after", true)) model.source.after = after.figures();
+    source.done();
+  }
+  table.done();
+  return model;
+}
+
+Model read_model(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error(path + ": cannot read");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) throw std::runtime_error(path + ": cannot read");
+  return parse_model(text, path);
+}
+
+}  // namespace ifog

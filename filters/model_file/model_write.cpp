@@ -1,0 +1,174 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <stdexcept>
+#include <system_error>
+
+#include "filters/model_file/model.h"
+#include "filters/model_file/sha256.h"
+
+namespace ifog {
+namespace {
+
+// Shortest text that reads back as the same double.
+std::string number(double value) {
+  if (value != value) return "nan";
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string quoted(std::string_view value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') {
+      text += '\\';
+      text += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
+      text += escape.data();
+    } else {
+      text += c;
+    }
+  }
+  return text + '"';
+}
+
+std::string list(const std::vector<double>& values) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < values.size(); ++i) text += (i ? ", " : "") + number(values[i]);
+  return text + "]";
+}
+
+class Text {
+ public:
+  void table(const std::string& name) { text_ += "\n[" + name + "]\n"; }
+  void element(const std::string& name) { text_ += "\n[[" + name + "]]\n"; }
+  void line(const std::string& key, const std::string& value) { text_ += key + " = " + value + "\n"; }
+  void words(const std::string& key, const std::string& value) {
+    if (!value.empty()) line(key, quoted(value));
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+void write_noise(Text& text, const std::string& axis, const NoiseTerms& noise) {
+  text.element("noise");
+  text.words("axis", axis);
+  const std::array<std::pair<const char*, const std::optional<double>*>, 5> terms = {
+      {{"Q", &noise.Q}, {"N", &noise.N}, {"B", &noise.B}, {"K", &noise.K}, {"R", &noise.R}}};
+  for (const auto& [key, value] : terms) {
+    if (*value) text.line(key, number(**value));
+  }
+}
+
+void write_filter(Text& text, const FilterSettings& filter) {
+  text.table("filter");
+  text.words("rule", filter.rule);
+  text.words("state", filter.state);
+  text.line("process_noise", number(filter.process_noise));
+  text.line("measurement_noise", number(filter.measurement_noise));
+  if (!filter.state_parameters.empty()) text.line("state_parameters", list(filter.state_parameters));
+  text.line("window", std::to_string(filter.window));
+  text.words("weights", filter.weights);
+  text.line("draws", std::to_string(filter.draws));
+  text.line("floor", number(filter.floor));
+  text.line("follow_manoeuvres", filter.follow_manoeuvres ? "true" : "false");
+  text.line("conserve_angle", filter.conserve_angle ? "true" : "false");
+  text.line("seed", std::to_string(filter.seed));
+}
+
+void write_effect(Text& text, const Effect& effect) {
+  text.element("effect");
+  text.words("form", effect.form);
+  text.words("channel", effect.channel);
+  text.words("with_form", effect.with_form);
+  text.words("with_channel", effect.with_channel);
+  text.words("axis", effect.axis);
+  text.words("meaning", effect.meaning);
+  text.line("reference", number(effect.reference));
+  if (effect.with_reference != 0.0) text.line("with_reference", number(effect.with_reference));
+  if (!effect.table_x.empty()) {
+    text.line("table_x", list(effect.table_x));
+    text.line("table_y", list(effect.table_y));
+  }
+  if (effect.period > 0.0) text.line("period", number(effect.period));
+  if (effect.angle) text.line("angle", "true");
+  for (const ModelParameter& parameter : effect.parameters) {
+    text.element("effect.parameter");
+    text.words("name", parameter.name);
+    text.line("value", number(parameter.value));
+    text.line("std_error", number(parameter.std_error));
+    text.words("unit", parameter.unit);
+  }
+}
+
+void write_source(Text& text, const ModelSource& source) {
+  text.table("source");
+  text.words("capture", source.capture);
+  text.words("sha256", source.sha256);
+  text.words("date", source.date);
+  if (!source.before.empty()) text.table("source.before");
+  for (const auto& [name, value] : source.before) text.line(quoted(name), number(value));
+  if (!source.after.empty()) text.table("source.after");
+  for (const auto& [name, value] : source.after) text.line(quoted(name), number(value));
+}
+
+[[noreturn]] void fail(const std::string& path, const char* what) {
+  throw std::runtime_error(path + ": " + what + ": " + std::generic_category().message(errno));
+}
+
+}  // namespace
+
+std::string model_text(const Model& model) {
+  Text text;
+  text.line("version", std::to_string(Model::kVersion));
+  text.words("sensor", model.sensor);
+  if (!model.covariance.empty()) text.line("covariance", list(model.covariance));
+  for (const auto& [axis, noise] : model.noise) write_noise(text, axis, noise);
+  if (model.filter) write_filter(text, *model.filter);
+  for (const Effect& effect : model.effects) write_effect(text, effect);
+  for (const ChannelRange& range : model.ranges) {
+    text.element("range");
+    text.words("channel", range.channel);
+    text.line("low", number(range.low));
+    text.line("high", number(range.high));
+  }
+  write_source(text, model.source);
+  return text.take();
+}
+
+std::string Model::identity() const { return sha256_hex(model_text(*this)).substr(0, 12); }
+
+void write_model(const Model& model, const std::string& path) {
+  const std::string text = model_text(model);
+  const std::string beside = path + "." + std::to_string(::getpid()) + ".part";
+  const int file = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) fail(path, "cannot write");
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t wrote = ::write(file, text.data() + done, text.size() - done);
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote <= 0) break;
+    done += static_cast<std::size_t>(wrote);
+  }
+  const bool kept = done == text.size() && ::fsync(file) == 0;
+  const int cause = errno;
+  ::close(file);
+  if (!kept || ::rename(beside.c_str(), path.c_str()) != 0) {
+    if (!kept) errno = cause;
+    const int why = errno;
+    ::unlink(beside.c_str());
+    errno = why;
+    fail(path, "cannot write");
+  }
+}
+
+}  // namespace ifog

@@ -1,0 +1,74 @@
+#include "filters/state_models/arma.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace ifog {
+
+Arma::Arma(std::vector<double> phi, std::vector<double> theta, double nominal_period_s)
+    : states_(static_cast<int>(std::max(phi.size(), theta.size() + 1))),
+      period_s_(nominal_period_s),
+      phi_(std::move(phi)) {
+  const int n = states_;
+  phi_.resize(static_cast<std::size_t>(n), 0.0);
+  theta.resize(static_cast<std::size_t>(n - 1), 0.0);
+  transition_.setZero(n, n);
+  Eigen::VectorXd shock(n);
+  shock(0) = 1.0;
+  for (int i = 0; i < n; ++i) {
+    transition_(i, 0) = phi_[static_cast<std::size_t>(i)];
+    if (i > 0) {
+      transition_(i - 1, i) = 1.0;
+      shock(i) = theta[static_cast<std::size_t>(i - 1)];
+    }
+  }
+  driving_ = period_s_ * shock * shock.transpose();
+
+  const Eigen::VectorXcd roots = Eigen::EigenSolver<Eigen::MatrixXd>(transition_, false).eigenvalues();
+  const double largest = roots.cwiseAbs().maxCoeff();
+  if (!(largest < 1.0)) {
+    throw std::invalid_argument("state_parameters: autoregression with a root of modulus " +
+                                std::to_string(largest) + ", expected a stationary one, all below 1");
+  }
+  // vec(P) = (I - A (x) A)^-1 vec(Q), the stationary solution of P = A P A' + Q.
+  Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n * n, n * n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) system.block(i * n, j * n, n, n) -= transition_(i, j) * transition_;
+  }
+  const Eigen::MatrixXd driving = driving_;
+  const Eigen::VectorXd solved = system.partialPivLu().solve(driving.reshaped());
+  stationary_ = solved.reshaped(n, n);
+  stationary_ = 0.5 * (stationary_ + stationary_.transpose()).eval();
+}
+
+void Arma::discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept {
+  // Beyond this the process has forgotten its past or, near a unit root, its covariance is the stationary one
+  // anyway.
+  constexpr long kMostSteps = 4096;
+  const long steps = std::clamp(std::lround(std::min(dt_s / period_s_, 1e6)), 1L, kMostSteps);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates> a = transition_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates> q = driving_;
+  for (long i = 1; i < steps; ++i) {
+    q = (transition_.lazyProduct(q.lazyProduct(transition_.transpose()).eval()) + driving_).eval();
+    a = transition_.lazyProduct(a).eval();
+  }
+  transition = a;
+  driving = q;
+}
+
+Eigen::VectorXd Arma::measurement() const { return Eigen::VectorXd::Unit(states_, 0); }
+
+Eigen::VectorXd Arma::level() const {
+  // The state that a process held at one would have: element i carries the share still to come.
+  Eigen::VectorXd level = Eigen::VectorXd::Unit(states_, 0);
+  double ahead = 0.0;
+  for (int i = states_ - 1; i > 0; --i) {
+    ahead += phi_[static_cast<std::size_t>(i)];
+    level(i) = ahead;
+  }
+  return level;
+}
+
+}  // namespace ifog

@@ -1,0 +1,32 @@
+// Independent processes added up: block-diagonal transition, measurements side by side.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "filters/state_models/state_model.h"
+
+namespace ifog {
+
+class Sum final : public StateModel {
+ public:
+  struct Term {
+    std::unique_ptr<StateModel> model;
+    double noise_ratio = 1.0;  // its driving noise over process_noise
+  };
+  explicit Sum(std::vector<Term> terms);
+
+  [[nodiscard]] int states() const noexcept override { return states_; }
+  void discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept override;
+  [[nodiscard]] Eigen::VectorXd measurement() const override;
+  [[nodiscard]] Eigen::VectorXd level() const override;
+  [[nodiscard]] bool carries_level() const noexcept override;
+  [[nodiscard]] Eigen::MatrixXd stationary() const override;
+  [[nodiscard]] Eigen::VectorXd diffuse() const override;
+
+ private:
+  std::vector<Term> terms_;
+  int states_ = 0;
+};
+
+}  // namespace ifog

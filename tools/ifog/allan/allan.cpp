@@ -1,0 +1,92 @@
+// ifog allan: overlapping Allan deviation and noise coefficients of captures.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "drivers/capture/text_file.h"
+#include "tools/ifog/allan/allan_record.h"
+#include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/progress.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Arguments {
+  CaptureInput input;
+  std::vector<std::string> captures;
+  AllanOptions options;
+  std::string estimator = "overlapping", gaps = "part", json, picture;
+};
+
+// Read through a driver, a recording becomes the columns that a CSV capture of it would have.
+Table as_table(Capture capture) {
+  Table table;
+  table.time_s = std::move(capture.time_s);
+  for (std::size_t i = 0; i < capture.axes.size(); ++i)
+    table.columns.push_back({capture.axes[i].empty() ? "rate_radps" : "rate_" + capture.axes[i] + "_radps",
+                             std::move(capture.rate_radps[i])});
+  return table;
+}
+
+Table table_of(const Arguments& a, const std::string& path) {
+  return a.input.is_csv(path) ? read_table(path) : as_table(a.input.read(path));
+}
+
+void run(Arguments& a) {
+  a.options.kind = a.estimator == "modified"   ? Deviation::kModified
+                   : a.estimator == "hadamard" ? Deviation::kHadamard
+                                               : Deviation::kAllan;
+  a.options.refuse_gaps = a.gaps == "refuse";
+  std::vector<AllanRecord> records;
+  {
+    Progress progress("Allan", a.captures.size());
+    for (std::size_t i = 0; i < a.captures.size(); ++i) {
+      for (AllanRecord& record : allan_records(a.captures[i], table_of(a, a.captures[i]), a.options))
+        records.push_back(std::move(record));
+      progress.at(i + 1);
+    }
+  }
+  for (const AllanRecord& record : records) print_allan(record, a.options);
+  if (!a.json.empty()) write_text_file(a.json, allan_json(records, a.options).dump(1) + "\n");
+  if (!a.picture.empty()) plot_allan(a.picture, records);
+}
+
+}  // namespace
+
+void add_allan(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "allan",
+      "Overlapping Allan deviation with confidence intervals, and the noise coefficients Q, N, B, K, R");
+  command->add_option("capture", a->captures, "Captures, or files written by ifog denoise")->required();
+  a->input.add_to(*command);
+  command->add_option("--axis", a->options.axis, "Only this axis (x, y, …)");
+  command
+      ->add_option("--tau", a->options.tau_s,
+                   "Averaging times in s, separated by commas; log-spaced otherwise")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command->add_option("--per-decade", a->options.per_decade, "Points per decade of averaging time")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--confidence", a->options.confidence, "Of the intervals")
+      ->check(CLI::Range(0.01, 0.9999))
+      ->capture_default_str();
+  command->add_option("--estimator", a->estimator, "overlapping, modified or hadamard")
+      ->check(CLI::IsMember({"overlapping", "modified", "hadamard"}))
+      ->capture_default_str();
+  command
+      ->add_option("--gaps", a->gaps,
+                   "part: analyse the stretches between holes; refuse: any hole is an error")
+      ->check(CLI::IsMember({"part", "refuse"}))
+      ->capture_default_str();
+  command->add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
+  command->add_option("--from", a->options.from_s, "Leave out what is before this time, s");
+  command->add_option("--to", a->options.to_s, "Leave out what is from this time on, s");
+  command->add_option("--json", a->json, "Write the analysis here, in SI");
+  command->add_option("--plot", a->picture, "Write a picture here (.svg or .png)");
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace ifog::tools

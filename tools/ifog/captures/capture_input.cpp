@@ -1,0 +1,96 @@
+#include "tools/ifog/captures/capture_input.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <stdexcept>
+
+#include "drivers/capture/capture_builder.h"
+#include "tools/ifog/captures/lcm_log.h"
+
+namespace ifog::tools {
+
+void CaptureInput::add_to(CLI::App& command) {
+  command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
+      ->type_name("NAME");
+  command.add_option("--option", options, "Option of the driver; may stand several times")
+      ->type_name("KEY=VALUE");
+  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc")
+      ->type_name("FILE");
+  command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log")
+      ->type_name("NAME");
+}
+
+std::string CaptureInput::driver_name() const { return driver.empty() && !dbc.empty() ? "dbc" : driver; }
+
+DriverSettings CaptureInput::settings() const {
+  DriverSettings out;
+  for (const std::string& option : options) {
+    const std::size_t equals = option.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw CLI::ValidationError("--option", "is '" + option + "', expected KEY=VALUE");
+    if (!out.emplace(option.substr(0, equals), option.substr(equals + 1)).second)
+      throw CLI::ValidationError("--option", "gives '" + option.substr(0, equals) + "' twice");
+  }
+  if (!dbc.empty() && !out.emplace("dbc", dbc).second)
+    throw CLI::ValidationError("--dbc", "stands beside --option dbc=…, expected one of them");
+  return out;
+}
+
+DriverInstance CaptureInput::make_driver() const { return ifog::make_driver(driver_name(), settings()); }
+
+bool CaptureInput::is_csv(const std::string& path) const {
+  const FileKind kind = file_kind(path);
+  return kind == FileKind::capture || (kind == FileKind::unknown && !has_driver());
+}
+
+RecordingCounts CaptureInput::for_each_sample(const std::string& path, DriverInstance& instance,
+                                              const std::function<void(const ifog_sample&)>& sink) const {
+  const RecordingCounts counts = decode_recording(path, instance, instance.takes_can() ? channel : "", sink);
+  if (counts.samples != 0) return counts;
+  std::string why;
+  for (const std::string& loss : losses(counts)) why += (why.empty() ? "" : "; ") + loss;
+  throw std::runtime_error(path + ": driver " + driver_name() + " finds no sample in it" +
+                           (why.empty() ? "" : " (" + why + ")"));
+}
+
+Capture CaptureInput::read(const std::string& path) const {
+  if (is_csv(path)) {
+    if (has_driver())
+      throw std::runtime_error(path + ": is a CSV capture, expected none of --driver and --dbc with it");
+    return read_capture(path);
+  }
+  if (file_kind(path) == FileKind::lcm_log) return read_lcm_log(path, channel);
+  if (!has_driver())
+    throw std::runtime_error(path +
+                             ": is no CSV capture, expected --driver NAME (or --dbc FILE) to decode it with");
+  DriverInstance instance = make_driver();
+  CaptureBuilder builder(instance.description());
+  RecordingCounts counts;
+  try {
+    counts = for_each_sample(path, instance, [&](const ifog_sample& sample) { builder.add(sample); });
+  } catch (const std::runtime_error& error) {
+    const std::string line = error.what();
+    throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
+  }
+  for (const std::string& loss : losses(counts)) std::fprintf(stderr, "%s: %s\n", path.c_str(), loss.c_str());
+  if (builder.missing() != 0)
+    std::fprintf(stderr, "%s: %zu samples are missing by the device's counter\n", path.c_str(),
+                 builder.missing());
+  return builder.finish();
+}
+
+std::vector<std::string> losses(const RecordingCounts& counts) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::uint64_t n, const char* what) {
+    if (n != 0) lines.push_back(std::to_string(n) + " " + what);
+  };
+  say(counts.driver.frames_crc, "frames with a wrong checksum");
+  say(counts.driver.frames_format, "frames or samples that are not as the format or the options say");
+  say(counts.driver.bytes_skipped - counts.bytes_at_end, "bytes that are part of no frame");
+  say(counts.bytes_at_end, "bytes at the end are no whole frame (is the file cut off?)");
+  say(counts.remote_frames, "CAN remote frames passed over");
+  say(counts.error_frames, "CAN error frames passed over");
+  return lines;
+}
+
+}  // namespace ifog::tools

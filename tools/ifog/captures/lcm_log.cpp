@@ -1,0 +1,115 @@
+#include "tools/ifog/captures/lcm_log.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <ifog/rate_t.hpp>
+#include <lcm/lcm-cpp.hpp>
+#include <set>
+#include <stdexcept>
+
+namespace ifog::tools {
+namespace {
+
+bool carries_rates(const std::string& channel) {
+  return channel.starts_with("IFOG_") && !channel.ends_with("_STATUS");
+}
+
+std::string chosen_channel(const std::string& path) {
+  lcm::LogFile log(path, "r");
+  std::set<std::string> found;
+  while (const lcm::LogEvent* event = log.readNextEvent())
+    if (carries_rates(event->channel)) found.insert(event->channel);
+  if (found.size() == 1) return *found.begin();
+  std::string list;
+  for (const std::string& each : found) list += (list.empty() ? "" : ", ") + each;
+  throw std::runtime_error(path + (found.empty()
+                                       ? ": has no channel IFOG_<NAME>"
+                                       : ": has several channels, expected --channel with one of " + list));
+}
+
+// The message carries no names; three axes are x, y, z.
+std::vector<std::string> axis_names(std::size_t axes) {
+  if (axes == 1) return {""};
+  std::vector<std::string> names{"x", "y", "z"};
+  names.resize(std::min(names.size(), axes));
+  return names;
+}
+
+// Hands each message of the channel to `sink` with its time in s from the first, later than the one before.
+void for_each_rate(const std::string& path, const std::string& channel,
+                   const std::function<void(const rate_t&, double)>& sink) {
+  if (!lcm::LogFile(path, "r").good()) throw std::runtime_error(path + ": cannot open as an LCM log");
+  const std::string wanted = channel.empty() ? chosen_channel(path) : channel;
+  lcm::LogFile log(path, "r");
+  std::int64_t start_ns = 0;
+  std::size_t number = 0, axes = 0;
+  double last_s = -1.0;
+  long end = 0;  // of the last whole message
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    ++number;
+    end = std::ftell(log.getFilePtr());
+    if (event->channel != wanted) continue;
+    const auto refuse = [&](const std::string& why) {
+      throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
+    };
+    rate_t message;
+    if (message.decode(event->data, 0, event->datalen) < 0) refuse("is no ifog.rate_t of this version");
+    const std::int64_t now_ns = message.sensor_time_ns >= 0 ? message.sensor_time_ns : message.utime * 1000;
+    if (last_s < 0.0) {
+      start_ns = now_ns;
+      axes = message.raw.size();
+    }
+    if (message.raw.size() != axes) refuse("has another number of axes");
+    const double time_s = static_cast<double>(now_ns - start_ns) / 1e9;
+    if (time_s <= last_s) refuse("is not later than the one before");
+    last_s = time_s;
+    sink(message, time_s);
+  }
+  if (last_s < 0.0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  // LCM's reader does not tell the end of the file from a message that is cut off.
+  std::fseek(log.getFilePtr(), 0, SEEK_END);
+  if (const long left = std::ftell(log.getFilePtr()) - end; left > 0)
+    std::fprintf(stderr, "%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(),
+                 left);
+}
+
+}  // namespace
+
+Capture read_lcm_log(const std::string& path, const std::string& channel) {
+  Capture capture;
+  for_each_rate(path, channel, [&capture](const rate_t& message, double time_s) {
+    if (capture.time_s.empty()) {
+      capture.axes = axis_names(message.raw.size());
+      capture.rate_radps.resize(capture.axes.size());
+      capture.reference_rate_radps.resize(capture.axes.size());
+    }
+    capture.time_s.push_back(time_s);
+    for (std::size_t i = 0; i < capture.axes.size(); ++i) capture.rate_radps[i].push_back(message.raw[i]);
+  });
+  return capture;
+}
+
+Table read_published(const std::string& path, const std::string& channel) {
+  Table table;
+  double time_s = 0.0;
+  for_each_rate(path, channel, [&](const rate_t& message, double) {
+    // The sum of the steps: the sensor's own time also when a recording was played faster.
+    if (!table.time_s.empty()) time_s += message.dt;
+    if (table.time_s.empty()) {
+      for (const std::string& axis : axis_names(message.raw.size()))
+        for (const std::string what : {"raw", "compensated", "denoised", "variance"})
+          table.columns.push_back(
+              {what + (axis.empty() ? "" : "_" + axis) + (what == "variance" ? "_rad2ps2" : "_radps"), {}});
+    }
+    table.time_s.push_back(time_s);
+    auto column = table.columns.begin();
+    for (std::size_t i = 0; column != table.columns.end(); ++i)
+      for (const double value :
+           {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
+        (column++)->values.push_back(value);
+  });
+  return table;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,208 @@
+// ifog compare: every adaptation rule on one capture, with the same settings.
+#include "filters/compare/compare.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "drivers/capture/text_file.h"
+#include "filters/allan/stretches.h"
+#include "filters/estimator/start_up.h"
+#include "filters/model_file/model.h"
+#include "filters/rules/rule.h"
+#include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/compare/compare_picture.h"
+#include "tools/ifog/console/filter_options.h"
+#include "tools/ifog/console/progress.h"
+
+namespace ifog::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDegPerHour = 180.0 / std::numbers::pi * 3600.0;  // of 1 rad/s
+constexpr double kDeg = 180.0 / std::numbers::pi;
+
+struct Options {
+  CaptureInput input;
+  std::string capture, model, json_file, plot_file;
+  FilterChoice choice;
+};
+
+// Q and R when nobody says them: from the whole record, all axes together.
+void fill_noise(FilterSettings& settings, const Capture& capture, double period_s) {
+  if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
+  std::vector<double> all;
+  for (const auto& axis : capture.rate_radps) all.insert(all.end(), axis.begin(), axis.end());
+  const NoiseEstimate noise = estimate_noise(all, static_cast<int>(capture.axes.size()), period_s);
+  if (settings.process_noise <= 0.0) settings.process_noise = noise.process_noise;
+  if (settings.measurement_noise <= 0.0) settings.measurement_noise = noise.measurement_noise;
+}
+
+json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? json(*value) : json(nullptr);
+}
+
+std::string tau_name(double tau) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%g", tau);
+  return text;
+}
+
+json settings_json(const FilterSettings& s) {
+  return {{"state", s.state},
+          {"state_parameters", s.state_parameters},
+          {"process_noise", s.process_noise},
+          {"measurement_noise", s.measurement_noise},
+          {"window", s.window},
+          {"weights", s.weights},
+          {"draws", s.draws},
+          {"floor", s.floor},
+          {"follow_manoeuvres", s.follow_manoeuvres},
+          {"conserve_angle", s.conserve_angle},
+          {"seed", s.seed}};
+}
+
+json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
+  json adev = json::object();
+  for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
+    adev[tau_name(kComparedTaus[i])] = number(row.adev_radps[i]);
+  json out{{"rule", row.rule},
+           {"axis", axis},
+           {"settings", settings_json(settings)},
+           {"rmse_radps", number(row.rmse_radps)},
+           {"bias_radps", number(row.bias_radps)},
+           {"lag_s", number(row.lag_s)},
+           {"std_radps", row.std_radps},
+           {"adev_radps", adev}};
+  if (row.rule == "raw") {
+    out["settings"] = nullptr;
+    return out;
+  }
+  out["heading_end_rad"] = row.heading_end_rad;
+  out["heading_max_rad"] = row.heading_max_rad;
+  out["whiteness"] = {{"lag1", number(row.whiteness_lag1)}, {"excess", number(row.whiteness_excess)}};
+  out["nis_mean"] = number(row.nis_mean);
+  out["nis_typical"] = number(row.nis_typical);
+  out["share_at_rest"] = row.share_at_rest;
+  json steps = json::array();
+  for (const StepResponse& step : row.step)
+    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", number(step.samples)}});
+  out["step_response"] = steps;
+  return out;
+}
+
+std::string cell(const std::optional<double>& value, double scale, const char* format) {
+  if (!value || !std::isfinite(*value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, format, *value * scale);
+  return text;
+}
+
+void print_axis(const Comparison& result, int axis, bool reference) {
+  std::printf("%-10s %10s", "rule", "std");
+  for (const double tau : kComparedTaus) std::printf(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
+  if (reference) std::printf(" %10s %10s %8s", "RMSE", "bias", "lag s");
+  std::printf(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
+              "5s 90%");
+  for (const ComparisonRow& row : result.rows) {
+    if (row.axis != axis) continue;
+    std::printf("%-10s %10s", row.rule.c_str(), cell(row.std_radps, kDegPerHour, "%.4g").c_str());
+    for (const auto& value : row.adev_radps) std::printf(" %9s", cell(value, kDegPerHour, "%.4g").c_str());
+    if (reference)
+      std::printf(" %10s %10s %8s", cell(row.rmse_radps, kDegPerHour, "%.4g").c_str(),
+                  cell(row.bias_radps, kDegPerHour, "%.3g").c_str(), cell(row.lag_s, 1.0, "%.4f").c_str());
+    if (row.rule == "raw") {
+      std::printf("\n");
+      continue;
+    }
+    std::printf(" %11.2e %8.1e %7.3f %7s %6s %7s %7s\n", row.heading_end_rad * kDeg,
+                row.heading_max_rad * kDeg, row.share_at_rest, cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
+                cell(row.nis_typical, 1.0, "%.2f").c_str(), cell(row.step[0].samples, 1.0, "%.0f").c_str(),
+                cell(row.step[1].samples, 1.0, "%.0f").c_str());
+  }
+}
+
+void run(const Options& options) {
+  const Capture capture = options.input.read(options.capture);
+  ComparisonInput in;
+  in.time_s = capture.time_s;
+  if (capture.size() < 16)
+    throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
+                             " rows, expected at least 16");
+  in.period_s = sample_clock(capture.time_s).period_s;
+  bool reference = false;
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    in.rate.emplace_back(capture.rate_radps[a]);
+    in.reference.emplace_back(capture.reference_rate_radps[a]);
+    reference = reference || !capture.reference_rate_radps[a].empty();
+  }
+  FilterSettings base;
+  if (!options.model.empty()) base = read_model(options.model).filter.value_or(base);
+  ComparisonOptions compare;
+  compare.settings = settings_in_force(options.choice, base);
+  try {
+    fill_noise(compare.settings, capture, in.period_s);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.capture + ": " + error.what());
+  }
+  for (const RuleEntry& entry : rules()) compare.rules.emplace_back(entry.name);
+  Progress progress("comparing", compare.rules.size());
+  compare.progress = [&](std::size_t done, std::size_t) { progress.at(done); };
+  const Comparison result = compare_rules(in, compare);
+
+  const FilterSettings& s = compare.settings;
+  std::printf("%s: %zu samples at %.6g Hz; state %s, Q %.4g (rad/s)^2/s, R %.4g (rad/s)^2, window %d\n",
+              options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
+              s.measurement_noise, s.window);
+  std::printf(
+      "rates in deg/h; heading: integral of denoised - compensated; at rest: share of samples outside\n"
+      "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
+      "over\n"
+      "that of a normal law; steps of 20 and 5 sigma in samples to 90 %%\n");
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    if (!capture.axes[a].empty()) std::printf("\naxis %s\n", capture.axes[a].c_str());
+    print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());
+  }
+  if (!options.json_file.empty()) {
+    json rows = json::array(), raw = json::array();
+    for (const ComparisonRow& row : result.rows)
+      (row.rule == "raw" ? raw : rows)
+          .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], s));
+    write_text_file(options.json_file, json{{"schema", "ifog.compare/1"},
+                                            {"capture", options.capture},
+                                            {"samples", capture.size()},
+                                            {"sample_rate_hz", 1.0 / in.period_s},
+                                            {"raw", raw},
+                                            {"rows", rows}}
+                                               .dump(2) +
+                                           "\n");
+  }
+  if (!options.plot_file.empty()) {
+    draw_comparison(options.plot_file, capture, result, compare.rules);
+    std::printf("picture: %s\n", options.plot_file.c_str());
+  }
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("compare", "every adaptation rule on one capture, with the same settings");
+  auto options = std::make_shared<Options>();
+  command->add_option("capture", options->capture, "a capture")->required();
+  command->add_option("--model", options->model, "model file whose [filter] gives the settings");
+  command->add_option("--json", options->json_file, "write the figures as JSON");
+  command->add_option("--plot", options->plot_file, "write a picture, .svg or .png");
+  options->input.add_to(*command);
+  add_filter_options(*command, options->choice, false);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,27 @@
+#include "tools/ifog/console/interrupt.h"
+
+#include <csignal>
+
+namespace ifog::tools {
+namespace {
+
+volatile std::sig_atomic_t caught = 0;
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { caught = 1; };
+  // Without SA_RESTART a waiting write or sleep returns. Reset, so that a program that hangs can still be
+  // ended.
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  action.sa_flags = 0;
+  sigaction(SIGPIPE, &action, nullptr);
+}
+
+bool interrupted() noexcept { return caught != 0; }
+
+}  // namespace ifog::tools

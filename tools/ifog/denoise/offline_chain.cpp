@@ -1,0 +1,141 @@
+#include "tools/ifog/denoise/offline_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "daemon/pipeline/assemble.h"
+#include "daemon/sensor/facts.h"
+
+namespace ifog::tools {
+namespace {
+
+constexpr double kChannelMaxAge_s = 10.0;  // as for the channels of a sensor's own frames in the daemon
+
+class Chain {
+ public:
+  explicit Chain(const ChainSettings& settings)
+      : incrementer_(settings.facts), chain_(std::make_unique<ChainParts>(settings)) {
+    result_.axes = settings.axes;
+    result_.left_out = chain_.parts().left_out();
+    result_.model = chain_.parts().model_identity();
+    result_.noise_learned = !chain_.parts().noise_known();
+    result_.sample_rate_hz = settings.facts.nominal_rate_hz;
+  }
+  // Null: the sample came twice.
+  const Increment* run(const Reading& reading, ChainOutput& out) {
+    if (!incrementer_.next(reading, increment_)) return nullptr;
+    chain_.process(increment_, out);
+    return &increment_;
+  }
+  OfflineResult finish() {
+    result_.counts = incrementer_.counts();
+    result_.filter = chain_.parts().filter();
+    result_.noise_known = chain_.parts().noise_known();
+    return std::move(result_);
+  }
+
+ private:
+  Incrementer incrementer_;
+  SignalChain chain_;
+  Increment increment_;
+  OfflineResult result_;
+};
+
+double median_step_s(const std::vector<double>& time_s) {
+  if (time_s.size() < 2) throw std::runtime_error("the capture has fewer than 2 samples");
+  std::vector<double> steps(time_s.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time_s[i + 1] - time_s[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+bool used(const Model* model, const std::string& channel) {
+  return model != nullptr &&
+         std::any_of(model->effects.begin(), model->effects.end(), [&](const Effect& effect) {
+           return effect.channel == channel || effect.with_channel == channel;
+         });
+}
+
+// Columns that the chain can hold: all, or where they are too many, those the model uses.
+std::vector<const CaptureColumn*> chosen_channels(const Capture& capture, const Model* model) {
+  std::vector<const CaptureColumn*> out;
+  const bool all = capture.channels.size() <= static_cast<std::size_t>(kMaxChannels);
+  for (const CaptureColumn& column : capture.channels)
+    if (all || used(model, column.name)) out.push_back(&column);
+  return out;
+}
+
+}  // namespace
+
+OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& settings,
+                              const OfflineSink& sink) {
+  ChainSettings chain_settings;
+  const std::vector<const CaptureColumn*> channels = chosen_channels(capture, settings.model.get());
+  chain_settings.facts.axes = static_cast<int>(capture.axes.size());
+  chain_settings.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0
+                                             ? settings.sensor.nominal_rate_hz
+                                             : 1.0 / median_step_s(capture.time_s);
+  chain_settings.facts.frame_channels = chain_settings.facts.channels = static_cast<int>(channels.size());
+  chain_settings.axes = capture.axes;
+  for (const CaptureColumn* const column : channels) {
+    chain_settings.channels.push_back(column->name);
+    double max_age_s = kChannelMaxAge_s;
+    for (const ChannelConfig& channel : settings.sensor.channels)
+      if (channel.name == column->name) max_age_s = channel.max_age_s;
+    chain_settings.channel_max_age_s.push_back(max_age_s);
+  }
+  chain_settings.filter = settings.sensor.filter;
+  chain_settings.start_up_s = settings.sensor.start_up_s;
+  chain_settings.model = settings.model;
+  Chain chain(chain_settings);
+  Reading reading;
+  ChainOutput out;
+  for (std::size_t i = 0; i < capture.size(); ++i) {
+    // The column's own times are the device's clock; from the first sample on, as a clock cannot be negative
+    // here.
+    reading.device_time_ns = std::llround((capture.time_s[i] - capture.time_s[0]) * 1e9);
+    reading.valid_axes = 0;
+    for (std::size_t axis = 0; axis < capture.axes.size(); ++axis) {
+      reading.value[axis] = capture.rate_radps[axis][i];
+      if (std::isfinite(reading.value[axis])) reading.valid_axes |= 1u << axis;
+    }
+    reading.fresh_channels = 0;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      reading.channel[c] = channels[c]->values[i];
+      if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
+    }
+    if (const Increment* const increment = chain.run(reading, out)) sink(capture.time_s[i], *increment, out);
+  }
+  return chain.finish();
+}
+
+OfflineResult denoise_recording(const CaptureInput& input, const std::string& path, DriverInstance& driver,
+                                const OfflineSettings& settings, const OfflineSink& sink) {
+  const ChainSettings chain_settings =
+      sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  const SensorFacts& facts = chain_settings.facts;
+  Chain chain(chain_settings);
+  Reading reading;
+  // Channels that did not come in the frames are not in the recording: never a value, for ever stale.
+  reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
+  reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
+  ChainOutput out;
+  double time_s = 0.0;
+  bool first = true;
+  const RecordingCounts counts = input.for_each_sample(path, driver, [&](const ifog_sample& sample) {
+    read_sample(sample, facts.frame_channels, reading);
+    const Increment* const increment = chain.run(reading, out);
+    if (increment == nullptr) return;
+    if (!std::exchange(first, false)) time_s += increment->dt_s;
+    sink(time_s, *increment, out);
+  });
+  for (const std::string& loss : losses(counts)) std::fprintf(stderr, "%s: %s\n", path.c_str(), loss.c_str());
+  return chain.finish();
+}
+
+}  // namespace ifog::tools

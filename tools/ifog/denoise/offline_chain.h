@@ -1,0 +1,43 @@
+// The daemon's signal chain over a recording: the same parts, fed from a file, so that each sample comes out
+// with the bits the daemon publishes for the same frames and settings.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "drivers/capture/capture.h"
+#include "filters/chain/incrementer.h"
+#include "filters/chain/signal_chain.h"
+#include "tools/ifog/captures/capture_input.h"
+
+namespace ifog::tools {
+
+struct OfflineSettings {
+  SensorConfig sensor;                 // model, filter, options, channels; its transport is not used
+  std::shared_ptr<const Model> model;  // null: none
+};
+
+// One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step times.
+using OfflineSink = std::function<void(double time_s, const Increment&, const ChainOutput&)>;
+
+struct OfflineResult {
+  std::vector<std::string> axes;
+  IncrementerCounts counts;
+  FilterSettings filter;              // in force at the end
+  bool noise_learned = false;         // from the first seconds
+  bool noise_known = true;            // false: the record is shorter than the start-up
+  std::vector<std::string> left_out;  // effects of the model that are not corrected
+  std::string model;                  // identity
+  double sample_rate_hz = 0.0;        // nominal
+};
+
+// All throw std::runtime_error or std::invalid_argument with one line.
+OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& settings,
+                              const OfflineSink& sink);
+OfflineResult denoise_recording(const CaptureInput& input, const std::string& path, DriverInstance& driver,
+                                const OfflineSettings& settings, const OfflineSink& sink);
+
+}  // namespace ifog::tools

@@ -1,0 +1,250 @@
+// ifog diagnose: what the error is made of, what to correct, and what stays.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+#include "drivers/capture/text_file.h"
+#include "filters/diagnosis/diagnose.h"
+#include "filters/effects/compensator.h"
+#include "filters/model_file/sha256.h"
+#include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/progress.h"
+#include "tools/ifog/diagnose/diagnosis_json.h"
+#include "tools/ifog/diagnose/diagnosis_text.h"
+#include "tools/report/diagnosis_page.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Arguments {
+  CaptureInput input;
+  std::vector<std::string> captures;
+  std::string model, write_model, json, report;
+  std::vector<std::string> axes;
+  double significance = 0.01;
+  double fit_from = 0.0, fit_to = 1.0;
+  bool quiet = false;
+};
+
+std::string today() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::string text(32, '\0');
+  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
+  return text;
+}
+
+// The model's own effects are subtracted first, by the code that subtracts them online.
+void compensate(Capture& capture, const Model& model) {
+  Compensator compensator(model, capture.axes);
+  std::vector<const CaptureColumn*> columns;
+  for (const std::string& name : compensator.channels()) {
+    const CaptureColumn* found = nullptr;
+    for (const CaptureColumn& column : capture.channels) {
+      if (column.name == name) found = &column;
+    }
+    if (!found)
+      throw std::runtime_error("the model wants channel '" + name + "', which the capture does not have");
+    columns.push_back(found);
+  }
+  CompensatorInput in;
+  CompensatorOutput out;
+  std::vector<double> values(columns.size());
+  for (std::size_t i = 0; i < capture.size(); ++i) {
+    in.dt_s = i ? capture.time_s[i] - capture.time_s[i - 1] : capture.time_s[1] - capture.time_s[0];
+    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c]->values[i];
+    in.channels = values;
+    for (std::size_t a = 0; a < capture.axes.size(); ++a) in.rate_radps[a] = capture.rate_radps[a][i];
+    compensator.step(in, out);
+    for (std::size_t a = 0; a < capture.axes.size(); ++a) capture.rate_radps[a][i] = out.compensated_radps[a];
+  }
+}
+
+Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
+  Record record;
+  record.name = name;
+  record.time_s = capture.time_s;
+  record.rate_radps = capture.rate_radps[axis];
+  if (!capture.reference_rate_radps[axis].empty())
+    record.reference_radps = capture.reference_rate_radps[axis];
+  record.reference_name =
+      capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
+  for (const CaptureColumn& column : capture.channels)
+    record.channels.push_back({column.name, column.values});
+  return record;
+}
+
+// What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
+// the Earth's rate, whatever the mounting. Empty unless there are three gyros and three accelerometers.
+std::string vertical_rate(const Capture& capture) {
+  if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
+  std::array<double, 3> rate{};
+  std::array<double, 3> force{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto mean = [](const std::vector<double>& values) {
+      double sum = 0.0;
+      double n = 0.0;
+      for (const double v : values) {
+        if (!std::isfinite(v)) continue;
+        sum += v;
+        n += 1.0;
+      }
+      return n > 0.0 ? sum / n : 0.0;
+    };
+    rate[a] = mean(capture.rate_radps[a]);
+    const CaptureColumn* accel = nullptr;
+    for (const CaptureColumn& column : capture.channels) {
+      if (column.name == "accel_" + capture.axes[a] + "_mps2") accel = &column;
+    }
+    if (!accel) return "";
+    force[a] = mean(accel->values);
+  }
+  const double g = std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  if (g < 9.0 || g > 10.5) return "";
+  constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
+  const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
+  if (std::abs(up) > kEarth) return "";
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(),
+                "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
+                "Earth's rate "
+                "at latitude %.2f°",
+                up * kDegrees * 3600.0, std::asin(up / kEarth) * kDegrees);
+  return text.data();
+}
+
+std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const Arguments& arguments) {
+  std::vector<AxisDiagnosis> found;
+  const std::vector<std::string>& axes = captures.front().axes;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!arguments.axes.empty() &&
+        std::find(arguments.axes.begin(), arguments.axes.end(), axes[axis]) == arguments.axes.end()) {
+      continue;
+    }
+    std::vector<Record> records;
+    for (std::size_t c = 0; c < captures.size(); ++c) {
+      if (captures[c].axes != axes) {
+        throw std::runtime_error(arguments.captures[c] + ": has other axes than " + arguments.captures[0]);
+      }
+      records.push_back(record_of(captures[c], arguments.captures[c], axis));
+    }
+    DiagnoseOptions options;
+    options.significance = arguments.significance;
+    options.axis = axes[axis];
+    options.fit_from = arguments.fit_from;
+    options.fit_to = arguments.fit_to;
+    auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
+                                               options.most_effects + 1);
+    options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
+    Diagnosis diagnosis;
+    try {
+      diagnosis = diagnose(records, options);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(arguments.captures.front() + ": " + error.what());
+    }
+    progress.reset();
+    found.push_back({axes[axis], std::move(diagnosis)});
+  }
+  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
+  if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
+  if (found.empty()) throw std::runtime_error("no such axis in " + arguments.captures[0]);
+  return found;
+}
+
+Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& arguments, Model model) {
+  for (const AxisDiagnosis& each : found) {
+    add_to_model(each.diagnosis, each.axis, model);
+    const std::string prefix = each.axis.empty() ? "" : each.axis + ".";
+    for (const auto& [name, value] : each.diagnosis.before) model.source.before[prefix + name] = value;
+    for (const auto& [name, value] : each.diagnosis.after) model.source.after[prefix + name] = value;
+  }
+  model.source.capture.clear();
+  std::string contents;
+  for (const std::string& path : arguments.captures) {
+    model.source.capture += (model.source.capture.empty() ? "" : ", ") + path;
+    contents += sha256_hex(read_text_file(path));
+  }
+  model.source.sha256 = arguments.captures.size() == 1 ? contents : sha256_hex(contents);
+  model.source.date = today();
+  return model;
+}
+
+void write_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
+                  const Arguments& arguments) {
+  report::Page page;
+  page.captures = arguments.captures;
+  page.sensor = std::filesystem::path(arguments.captures.front()).filename().string();
+  page.model_path = arguments.write_model;
+  page.made = today() + " by ifog " IFOG_VERSION;
+  const std::vector<std::string>& axes = captures.front().axes;
+  for (const AxisDiagnosis& each : found) {
+    report::PageAxis axis{each.axis, &each.diagnosis, {}};
+    const auto index =
+        static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
+    for (std::size_t c = 0; c < captures.size(); ++c)
+      axis.records.push_back(record_of(captures[c], arguments.captures[c], index));
+    page.axes.push_back(std::move(axis));
+  }
+  write_text_file(arguments.report, report::diagnosis_page(page));
+}
+
+void run(const Arguments& arguments) {
+  std::vector<Capture> captures;
+  for (const std::string& path : arguments.captures) captures.push_back(arguments.input.read(path));
+  Model model;
+  if (!arguments.model.empty()) {
+    model = read_model(arguments.model);
+    for (Capture& capture : captures) compensate(capture, model);
+  }
+  const std::vector<AxisDiagnosis> found = all_axes(captures, arguments);
+  if (!arguments.quiet) {
+    for (const AxisDiagnosis& each : found)
+      std::printf("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
+  }
+  if (!arguments.json.empty()) write_text_file(arguments.json, diagnosis_json(found).dump(2) + "\n");
+  if (!arguments.write_model.empty()) write_model(model_of(found, arguments, model), arguments.write_model);
+  if (!arguments.report.empty()) write_report(captures, found, arguments);
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("diagnose", "trace the error to its effects, with the model that corrects them");
+  command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")->required();
+  arguments->input.add_to(*command);
+  command->add_option("--axis", arguments->axes, "only these axes");
+  command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
+  command->add_option("--write-model", arguments->write_model, "write the model with what was found");
+  command->add_option("--json", arguments->json, "write the diagnosis as JSON");
+  command->add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
+  command
+      ->add_option("--significance", arguments->significance,
+                   "chance of a false effect, after correction for all tried")
+      ->check(CLI::Range(1e-9, 0.5))
+      ->capture_default_str();
+  command
+      ->add_option("--fit-from", arguments->fit_from,
+                   "fit from this share of each capture's time; the rest judges")
+      ->check(CLI::Range(0.0, 0.9));
+  command
+      ->add_option("--fit-to", arguments->fit_to,
+                   "fit up to this share of each capture's time; the rest judges")
+      ->check(CLI::Range(0.1, 1.0));
+  command->add_flag("--quiet", arguments->quiet, "no report on the console");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ifog::tools

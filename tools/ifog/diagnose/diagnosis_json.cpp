@@ -1,0 +1,140 @@
+#include "tools/ifog/diagnose/diagnosis_json.h"
+
+#include <cmath>
+
+#include "filters/effects/form.h"
+
+namespace ifog::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json named(const Effect& effect) {
+  Json json;
+  json["form"] = effect.form;
+  json["channel"] = effect.channel.empty() ? Json(nullptr) : Json(effect.channel);
+  if (!effect.with_form.empty())
+    json["with"] = {{"form", effect.with_form}, {"channel", effect.with_channel}};
+  return json;
+}
+
+Json noise_json(const NoiseTerms& noise) {
+  Json json = Json::object();
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    if (value) json[name] = number(*value);
+  };
+  add("Q_rad", noise.Q);
+  add("N_radps_rthz", noise.N);
+  add("B_radps", noise.B);
+  add("K_radps2_rthz", noise.K);
+  add("R_radps2", noise.R);
+  return json;
+}
+
+Json effect_json(const FoundEffect& found) {
+  Json json = named(found.effect);
+  json["meaning"] = found.effect.meaning;
+  Json parameters = Json::object();
+  for (const ModelParameter& parameter : found.effect.parameters) {
+    parameters[parameter.name] = {{"value", number(parameter.value)},
+                                  {"std_error", number(parameter.std_error)},
+                                  {"unit", parameter.unit}};
+  }
+  json["parameters"] = parameters;
+  if (has_channel(form_named(found.effect.form).value_or(Form::kLine))) {
+    json["reference"] = found.effect.reference;
+    if (!found.effect.with_form.empty()) json["with"]["reference"] = found.effect.with_reference;
+  }
+  if (!found.effect.table_x.empty()) {
+    json["table"] = {{"x", found.effect.table_x},
+                     {"y", found.effect.table_y},
+                     {"period", found.effect.period},
+                     {"kind", found.effect.angle ? "angle_rad" : "rate_radps"}};
+  }
+  json["p_value"] = number(found.p_value);
+  json["variance_explained"] = number(found.variance_explained);
+  json["likelihood_ratio"] = number(found.likelihood_ratio);
+  return json;
+}
+
+Json alternative_json(const Indistinguishable& each) {
+  Json json;
+  json["effects"] = Json::array();
+  for (const Effect& effect : each.effects) json["effects"].push_back(named(effect));
+  json["correlation"] = number(each.correlation);
+  json["separate_by"] = each.separate_by;
+  return json;
+}
+
+Json figures_json(const std::map<std::string, double>& figures) {
+  Json json = Json::object();
+  for (const auto& [name, value] : figures) json[name] = number(value);
+  return json;
+}
+
+Json unexplained_json(const Diagnosis& diagnosis) {
+  const Unexplained& unexplained = diagnosis.unexplained;
+  Json json = {
+      {"fraction", number(unexplained.fraction)}, {"kind", unexplained.kind}, {"hint", unexplained.hint}};
+  if (unexplained.frequency_hz > 0.0) json["frequency_hz"] = unexplained.frequency_hz;
+  if (!unexplained.times_s.empty()) json["times_s"] = unexplained.times_s;
+  if (diagnosis.hysteresis) {
+    json["channel"] = diagnosis.hysteresis->channel;
+    json["half_width"] = number(diagnosis.hysteresis->half_width);
+    json["coefficient"] = number(diagnosis.hysteresis->coefficient);
+  }
+  return json;
+}
+
+Json heading_json(const HeadingPrediction& heading) {
+  return {{"aligned_s", heading.aligned_s}, {"after_s", heading.after_s}, {"sigma_rad", heading.sigma_rad}};
+}
+
+}  // namespace
+
+Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
+  const Diagnosis& first = axes.front().diagnosis;
+  Json json;
+  json["schema"] = "ifog.diagnosis/1";
+  json["samples"] = first.samples;
+  json["sample_rate_hz"] = first.sample_rate_hz;
+  const bool single = axes.size() == 1;
+  const auto put = [&](const char* key, auto&& make) {
+    if (single) {
+      json[key] = make(first);
+      return;
+    }
+    json[key] = Json::object();
+    for (const AxisDiagnosis& each : axes) json[key][each.axis] = make(each.diagnosis);
+  };
+  put("noise", [](const Diagnosis& d) { return noise_json(d.noise); });
+  json["effects"] = Json::array();
+  for (const AxisDiagnosis& each : axes) {
+    for (const FoundEffect& found : each.diagnosis.effects) {
+      json["effects"].push_back(effect_json(found));
+      if (!each.axis.empty()) json["effects"].back()["axis"] = each.axis;
+    }
+  }
+  put("before", [](const Diagnosis& d) { return figures_json(d.before); });
+  put("after", [](const Diagnosis& d) { return figures_json(d.after); });
+  json["indistinguishable"] = Json::array();
+  for (const AxisDiagnosis& each : axes) {
+    for (const Indistinguishable& pair : each.diagnosis.indistinguishable) {
+      json["indistinguishable"].push_back(alternative_json(pair));
+      if (!each.axis.empty()) json["indistinguishable"].back()["axis"] = each.axis;
+    }
+  }
+  put("unexplained", [](const Diagnosis& d) { return unexplained_json(d); });
+  put("heading_prediction", [](const Diagnosis& d) { return heading_json(d.heading); });
+  json["remarks"] = Json::array();
+  for (const AxisDiagnosis& each : axes) {
+    for (const std::string& remark : each.diagnosis.remarks) {
+      json["remarks"].push_back(each.axis.empty() ? remark : each.axis + ": " + remark);
+    }
+  }
+  return json;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,142 @@
+#include "tools/ifog/diagnose/diagnosis_text.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace ifog::tools {
+namespace {
+
+constexpr double kDegPerHour = 180.0 / std::numbers::pi * 3600.0;  // °/h per rad/s
+constexpr double kDeg = 180.0 / std::numbers::pi;
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 600> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  return line.data();
+}
+
+std::string named(const Effect& effect) {
+  std::string name = effect.form;
+  if (!effect.channel.empty()) name += " of " + effect.channel;
+  if (!effect.with_form.empty()) name += " with " + effect.with_form + " of " + effect.with_channel;
+  return name;
+}
+
+std::string percent(double share) { return share >= 0.001 ? text("%.3g %%", 100.0 * share) : "under 0.1 %"; }
+
+std::string chance(double p) { return p < 1e-6 ? "under one in a million" : text("%.2g", p); }
+
+// The coefficient in the field's units: °/h for what is rad/s.
+std::string value_of(const ModelParameter& parameter) {
+  const bool rate = parameter.unit.starts_with("rad/s");
+  const double scale = rate ? kDegPerHour : 1.0;
+  const std::string unit = rate ? "°/h" + parameter.unit.substr(5) : parameter.unit;
+  return text("%.4g ± %.2g %s", parameter.value * scale, parameter.std_error * scale, unit.c_str());
+}
+
+std::string effect_lines(const FoundEffect& found, std::size_t number) {
+  const Effect& effect = found.effect;
+  std::string lines = text("  %zu. %s\n     %s\n", number, named(effect).c_str(), effect.meaning.c_str());
+  for (const ModelParameter& parameter : effect.parameters) {
+    std::string name = parameter.name;
+    for (char& c : name) c = c == '_' ? ' ' : c;
+    if (name.ends_with(" s")) name.resize(name.size() - 2);
+    if (name.ends_with(" hz")) name.resize(name.size() - 3);
+    lines += text("     %-18s %s\n", name.c_str(), value_of(parameter).c_str());
+  }
+  if (effect.form == "line") {
+    const double amplitude = std::hypot(effect.parameters[0].value, effect.parameters[1].value);
+    lines += text("     %-18s %.4g °/h\n", "amplitude", amplitude * kDegPerHour);
+  }
+  if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
+  lines += text("     explains %s of the error's variance; by chance: %s\n",
+                percent(found.variance_explained).c_str(), chance(found.p_value).c_str());
+  return lines;
+}
+
+struct FigureName {
+  const char* key;
+  const char* words;
+  const char* unit;
+  double scale;
+};
+
+constexpr std::array<FigureName, 11> kFigures = {{
+    {"residual_rms_radps", "single samples, RMS", "°/h", kDegPerHour},
+    {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", kDegPerHour},
+    {"rms_1s_radps", "1 s means, RMS", "°/h", kDegPerHour},
+    {"rms_10s_radps", "10 s means, RMS", "°/h", kDegPerHour},
+    {"rms_100s_radps", "100 s means, RMS", "°/h", kDegPerHour},
+    {"adev_0.1s_radps", "Allan deviation, 0.1 s", "°/h", kDegPerHour},
+    {"adev_1s_radps", "Allan deviation, 1 s", "°/h", kDegPerHour},
+    {"adev_10s_radps", "Allan deviation, 10 s", "°/h", kDegPerHour},
+    {"adev_100s_radps", "Allan deviation, 100 s", "°/h", kDegPerHour},
+    {"heading_drift_rad", "heading drift at the end", "°", kDeg},
+    {"whiteness", "correlation of neighbours", "", 1.0},
+}};
+
+std::string figure_lines(const Diagnosis& diagnosis) {
+  std::string lines = text("  %-28s %12s %12s\n", "", "before", "after");
+  for (const FigureName& figure : kFigures) {
+    const auto before = diagnosis.before.find(figure.key);
+    const auto after = diagnosis.after.find(figure.key);
+    if (before == diagnosis.before.end() || after == diagnosis.after.end()) continue;
+    lines += text("  %-28s %12.4g %12.4g %s\n", figure.words, before->second * figure.scale,
+                  after->second * figure.scale, figure.unit);
+  }
+  return lines;
+}
+
+std::string noise_line(const NoiseTerms& noise) {
+  std::string line = "Noise:";
+  if (noise.N) line += text(" angle random walk %.3g °/√h", *noise.N * kDeg * 60.0);
+  if (noise.B) line += text(", bias instability %.3g °/h", *noise.B * kDegPerHour);
+  if (noise.K) line += text(", rate random walk %.3g °/h/√h", *noise.K * kDegPerHour * 60.0);
+  if (!noise.B && !noise.K) line += ", nothing slower that this record shows";
+  return line + "\n";
+}
+
+}  // namespace
+
+std::string diagnosis_text(const AxisDiagnosis& axis) {
+  const Diagnosis& diagnosis = axis.diagnosis;
+  std::string report;
+  if (!axis.axis.empty()) report += "Axis " + axis.axis + "\n";
+  report += text("%zu samples at %.4g Hz\n", diagnosis.samples, diagnosis.sample_rate_hz);
+  report += noise_line(diagnosis.noise);
+  if (diagnosis.effects.empty() && diagnosis.hysteresis) {
+    report += "\nFound: nothing that a correction could take away; see what stays unexplained.\n";
+  } else if (diagnosis.effects.empty()) {
+    report += "\nFound: nothing. No channel, line or jump explains more of this error than noise would.\n";
+  } else {
+    report += "\nFound:\n";
+    for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
+      report += effect_lines(diagnosis.effects[i], i + 1);
+  }
+  report += "\nError, on data held out of the fit:\n" + figure_lines(diagnosis);
+  if (!diagnosis.indistinguishable.empty()) report += "\nCannot be told apart on this data:\n";
+  for (const Indistinguishable& pair : diagnosis.indistinguishable) {
+    for (std::size_t i = 0; i < pair.effects.size(); ++i)
+      report += (i ? "  or  " : "  ") + named(pair.effects[i]);
+    report += text("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
+  }
+  report += text("\nStays unexplained: %s of the variance of 1 s means",
+                 percent(diagnosis.unexplained.fraction).c_str());
+  report += " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
+  if (!diagnosis.heading.after_s.empty()) {
+    report += text("\nNext capture, bias taken over %.3g s at rest: heading error (1 sigma)",
+                   diagnosis.heading.aligned_s);
+    for (std::size_t i = 0; i < diagnosis.heading.after_s.size(); ++i) {
+      report += text("%s %.3g° after %.4g s", i ? "," : "", diagnosis.heading.sigma_rad[i] * kDeg,
+                     diagnosis.heading.after_s[i]);
+    }
+    report += "\n";
+  }
+  for (const std::string& remark : diagnosis.remarks) report += "Note: " + remark + "\n";
+  return report;
+}
+
+}  // namespace ifog::tools

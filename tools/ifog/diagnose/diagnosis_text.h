@@ -1,0 +1,12 @@
+// A diagnosis in plain words, for the console.
+#pragma once
+
+#include <string>
+
+#include "tools/ifog/diagnose/diagnosis_json.h"
+
+namespace ifog::tools {
+
+std::string diagnosis_text(const AxisDiagnosis& axis);
+
+}  // namespace ifog::tools

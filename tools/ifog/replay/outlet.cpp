@@ -1,0 +1,59 @@
+#include "tools/ifog/replay/outlet.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <ctime>
+#include <stdexcept>
+#include <system_error>
+
+#include "tools/ifog/console/interrupt.h"
+
+namespace ifog::tools {
+namespace {
+
+constexpr int kPatience_ms = 100;  // between two looks at whether the user wants to stop
+
+}  // namespace
+
+ssize_t Outlet::write(const void* bytes, std::size_t n) { return ::write(fd_, bytes, n); }
+
+void Outlet::pause(int error) {
+  if (error == ENOBUFS) {
+    // A CAN interface's queue is full, and poll() knows nothing of it: wait for about a frame at 1 Mbit/s.
+    const timespec frame{0, 100'000};
+    nanosleep(&frame, nullptr);
+    return;
+  }
+  pollfd ask{fd_, POLLOUT, 0};
+  poll(&ask, 1, kPatience_ms);
+}
+
+bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
+  const auto* at = static_cast<const unsigned char*>(bytes);
+  while (n > 0) {
+    const ssize_t taken = write(at, n);
+    // A datagram of which a part went is another one: nothing a second write could mend.
+    if (whole && taken > 0 && static_cast<std::size_t>(taken) != n)
+      throw std::runtime_error(name_ + ": cannot send: " + std::to_string(taken) + " of " +
+                               std::to_string(n) + " bytes of a frame were taken");
+    if (taken > 0) {
+      at += taken;
+      n -= static_cast<std::size_t>(taken);
+      if (n > 0) ++retries_;
+      continue;
+    }
+    const int error = taken < 0 ? errno : EAGAIN;
+    if (interrupted()) return false;
+    if (error == EINTR) continue;
+    if (error == EPIPE) throw std::runtime_error(name_ + ": the reader went away");
+    if (error != EAGAIN && error != ENOBUFS)
+      throw std::runtime_error(name_ + ": cannot send: " + std::generic_category().message(error));
+    ++retries_;
+    pause(error);
+  }
+  return true;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,223 @@
+// ifog replay: a recording onto a CAN interface, a serial device, a file or a FIFO, at the times it was
+// recorded.
+//
+// Every deadline is computed from the first item's, so that lateness never adds up, and slept for by absolute
+// time on CLOCK_MONOTONIC. Lateness is what passes from an item's deadline until the system has taken it.
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "drivers/capture/text_file.h"
+#include "drivers/transport/pace.h"
+#include "drivers/transport/transport.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/progress.h"
+#include "tools/ifog/replay/lateness.h"
+#include "tools/ifog/replay/replay_target.h"
+#include "tools/ifog/replay/replay_timeline.h"
+
+namespace ifog::tools {
+namespace {
+
+struct ReplaySettings {
+  ReplaySource source;
+  std::string to, json;
+  SerialSettings line;
+  double speed = 1.0;
+  std::uint64_t loops = 1;  // 0: for ever
+  double spin_us = 0.0;
+  bool realtime = false;
+};
+
+struct ReplayResult {
+  std::uint64_t sent = 0;
+  double seconds = 0.0;
+  Lateness late;
+};
+
+// Time from being ready to the first deadline: the first item is slept for like every other.
+constexpr std::int64_t kLead_ns = 20'000'000;
+constexpr std::int64_t kLongestSleep_ns = 100'000'000;
+// Drawing a progress bar takes time that only a pause in the recording has.
+constexpr std::int64_t kPauseForProgress_ns = 2'000'000;
+
+// False: interrupted.
+bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
+  for (;;) {
+    if (interrupted()) return false;
+    const std::int64_t now = monotonic_ns();
+    if (now >= due_ns) return true;
+    if (due_ns - now <= spin_ns) continue;
+    // In slices, for a signal that arrives between the question above and the sleep would else be waited out.
+    const std::int64_t until = std::min(due_ns - spin_ns, now + kLongestSleep_ns);
+    const timespec when{until / 1'000'000'000, until % 1'000'000'000};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr);
+  }
+}
+
+// What one round of a loop takes: the recording and one mean step to its beginning.
+std::int64_t round_ns(const ReplayTimeline& timeline) {
+  const std::size_t n = timeline.size();
+  if (n < 2) return 1'000'000'000;
+  const std::int64_t length = timeline.time_ns(n - 1) - timeline.time_ns(0);
+  return length + length / static_cast<std::int64_t>(n - 1);
+}
+
+void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, ReplayTarget& target,
+            ReplayResult& result) {
+  const std::size_t n = timeline.size();
+  const bool paced = settings.speed > 0.0;
+  const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
+  const std::int64_t round = round_ns(timeline);
+  Progress progress("replay", settings.loops * n);
+  Pace pace(paced ? settings.speed : 1.0);
+  const std::int64_t begin = monotonic_ns() + (paced ? kLead_ns : 0);
+  pace.start(timeline.time_ns(0), begin);
+  bool going = true;
+  for (std::uint64_t loop = 0; going && (settings.loops == 0 || loop < settings.loops); ++loop) {
+    const std::int64_t shift = static_cast<std::int64_t>(loop) * round;
+    for (std::size_t i = 0; going && i < n; ++i) {
+      const std::int64_t due = pace.due_ns(timeline.time_ns(i) + shift);
+      if (settings.loops != 0 && (!paced || due - monotonic_ns() > kPauseForProgress_ns))
+        progress.at(result.sent);
+      going = paced ? sleep_until(due, spin_ns) && target.send(i) : !interrupted() && target.send(i);
+      if (!going) break;
+      if (paced) result.late.add(monotonic_ns() - due);
+      ++result.sent;
+    }
+  }
+  target.finish();
+  result.seconds = static_cast<double>(monotonic_ns() - begin) * 1e-9;
+}
+
+void prepare(const ReplaySettings& settings) {
+  // A sleep of an ordinary thread may otherwise end 50 µs late.
+  prctl(PR_SET_TIMERSLACK, 1UL);
+  if (!settings.realtime) return;
+  const auto warn = [](const char* what) {
+    std::fprintf(stderr, "ifog replay: no %s (%s), going on without\n", what,
+                 std::generic_category().message(errno).c_str());
+  };
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) warn("locked memory");
+  sched_param priority{};
+  priority.sched_priority = 50;
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) warn("SCHED_FIFO");
+}
+
+void report(const ReplaySettings& settings, const ReplayTimeline& timeline, const ReplayTarget& target,
+            const ReplayResult& result) {
+  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  const bool paced = settings.speed > 0.0 && result.sent > 0;
+  // Standard output may be where the bytes went.
+  std::FILE* out = settings.to == "-" ? stderr : stdout;
+  std::fprintf(out, "sent %llu %s in %.3f s%s, %llu retries\n", static_cast<unsigned long long>(result.sent),
+               timeline.is_can() ? "frames" : "blocks", result.seconds, interrupted() ? " (interrupted)" : "",
+               static_cast<unsigned long long>(target.retries()));
+  if (paced)
+    std::fprintf(out, "lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", us(result.late.percentile_ns(0.5)),
+                 us(result.late.percentile_ns(0.99)), us(result.late.max_ns()));
+  if (settings.json.empty()) return;
+  nlohmann::json json = {{"schema", "ifog.replay/1"},
+                         {"sent", result.sent},
+                         {"seconds", result.seconds},
+                         {"retries", target.retries()},
+                         {"interrupted", interrupted()},
+                         {"lateness_us", nullptr},
+                         {"unit", timeline.is_can() ? "frame" : "block"}};
+  if (paced)
+    json["lateness_us"] = {{"p50", us(result.late.percentile_ns(0.5))},
+                           {"p99", us(result.late.percentile_ns(0.99))},
+                           {"max", us(result.late.max_ns())}};
+  write_text_file(settings.json, json.dump(2) + "\n");
+}
+
+void run(ReplaySettings settings) {
+  const ReplayDestination to = ReplayDestination::parse(settings.to);
+  settings.source.prefer_can = to.is_can();
+  const ReplayTimeline timeline = read_timeline(settings.source);
+
+  catch_interrupts();
+  const std::unique_ptr<ReplayTarget> target =
+      open_target(to, timeline, settings.line, settings.speed == 0.0);
+  if (target == nullptr) throw Failed("interrupted");
+  prepare(settings);
+  ReplayResult result;
+  try {
+    replay(timeline, settings, *target, result);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ifog replay: %s\n", error.what());
+    report(settings, timeline, *target, result);
+    throw Failed(error.what());
+  }
+  report(settings, timeline, *target, result);
+}
+
+// "" or what is wrong with it, as CLI11 wants it.
+std::string names_a_target(const std::string& text) {
+  try {
+    ReplayDestination::parse(text);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  auto settings = std::make_shared<ReplaySettings>();
+  CLI::App* command = app.add_subcommand("replay", "Send a recording to a device, as it was recorded");
+  ReplaySource& source = settings->source;
+  command->add_option("capture", source.path, "candump log, raw bytes or CSV capture")->required();
+  command
+      ->add_option("--to", settings->to,
+                   "can:INTERFACE, serial:DEVICE, file:PATH, fifo:PATH or - (standard output)")
+      ->required()
+      ->check(names_a_target);
+  command->add_option("--format", source.format, "of the recording")
+      ->check(CLI::IsMember({"auto", "candump", "bytes", "csv"}))
+      ->default_val("auto");
+  command->add_option("--speed", settings->speed, "times faster than recorded; 0: as fast as possible")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--loop", settings->loops, "how often; 0: for ever")->capture_default_str();
+  command->add_flag("--realtime", settings->realtime, "try SCHED_FIFO and locked memory");
+  command->add_option("--spin", settings->spin_us, "µs before each deadline spent awake")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--block", source.block_bytes, "raw bytes: bytes sent together, a frame of the device");
+  command->add_option("--rate", source.rate_hz, "raw bytes: blocks a second");
+  source.input.add_to(*command);
+  command->add_option("--axis", source.axis, "CSV of one axis: the driver's axis it goes to");
+  command->add_option("--baud", settings->line.baud, "serial: speed, else the driver's");
+  command->add_option("--baud-base", settings->line.baud_base,
+                      "serial: the UART's clock / 16, where the driver has it wrong");
+  command->add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character")
+      ->check(CLI::Range(5, 8))
+      ->capture_default_str();
+  command->add_option("--parity", settings->line.parity, "serial: none unless given")
+      ->transform(CLI::CheckedTransformer(
+                      std::map<std::string, SerialSettings::Parity>{{"none", SerialSettings::Parity::none},
+                                                                    {"even", SerialSettings::Parity::even},
+                                                                    {"odd", SerialSettings::Parity::odd}})
+                      .description(""))
+      ->type_name("none|even|odd");
+  command->add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  command->add_option("--json", settings->json, "write the report to this file");
+  command->callback([settings] { run(*settings); });
+}
+
+}  // namespace ifog::tools

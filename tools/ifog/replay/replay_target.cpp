@@ -1,0 +1,154 @@
+#include "tools/ifog/replay/replay_target.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "drivers/capture/candump.h"
+#include "drivers/transport/can_socket.h"
+#include "tools/ifog/console/interrupt.h"
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::size_t kHeld = 1U << 16U;  // bytes collected when nothing is due at a time of its own
+
+[[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
+  throw std::runtime_error(name + ": " + what + ": " + std::generic_category().message(error));
+}
+
+class CanTarget final : public ReplayTarget {
+ public:
+  CanTarget(const std::string& interface, const ReplayTimeline& timeline)
+      : CanTarget(CanSocket(interface), interface, timeline) {}
+
+  bool send(std::size_t i) override {
+    canfd_frame frame{};
+    const std::size_t size = to_socket(timeline_.frames[i], frame);
+    return outlet_.send_datagram(&frame, size);
+  }
+
+ private:
+  CanTarget(CanSocket socket, const std::string& interface, const ReplayTimeline& timeline)
+      : ReplayTarget(interface, socket.fd()), timeline_(timeline), socket_(std::move(socket)) {
+    socket_.receive_nothing();
+  }
+
+  const ReplayTimeline& timeline_;
+  CanSocket socket_;
+};
+
+// Anything that takes bytes.
+class ByteTarget final : public ReplayTarget {
+ public:
+  ByteTarget(const std::string& name, int fd, const ReplayTimeline& timeline, bool hold)
+      : ReplayTarget(name, fd), timeline_(timeline), hold_(hold) {
+    held_.reserve(kHeld + 2 * kCandumpLineMax);
+  }
+  ByteTarget(std::unique_ptr<SerialPort> port, const std::string& name, const ReplayTimeline& timeline,
+             bool hold)
+      : ByteTarget(name, port->fd(), timeline, hold) {
+    port_ = std::move(port);
+  }
+  ~ByteTarget() override {
+    if (port_ == nullptr && outlet_.fd() != STDOUT_FILENO) close(outlet_.fd());
+  }
+  ByteTarget(const ByteTarget&) = delete;
+  ByteTarget& operator=(const ByteTarget&) = delete;
+
+  bool send(std::size_t i) override {
+    if (timeline_.is_can()) {
+      std::array<char, kCandumpLineMax> line{};
+      const std::size_t n = format_candump_line(timeline_.frames[i], timeline_.interface, line.data());
+      return put(reinterpret_cast<const std::uint8_t*>(line.data()), n);
+    }
+    const std::size_t begin = i == 0 ? 0 : timeline_.blocks[i - 1].end;
+    return put(timeline_.bytes.data() + begin, timeline_.blocks[i].end - begin);
+  }
+
+  bool finish() override {
+    if (!flush()) return false;
+    if (port_ != nullptr) tcdrain(outlet_.fd());
+    return true;
+  }
+
+ private:
+  bool put(const std::uint8_t* bytes, std::size_t n) {
+    if (!hold_) return outlet_.send_bytes(bytes, n);
+    held_.insert(held_.end(), bytes, bytes + n);
+    return held_.size() < kHeld || flush();
+  }
+  bool flush() {
+    const bool done = outlet_.send_bytes(held_.data(), held_.size());
+    held_.clear();
+    return done;
+  }
+
+  const ReplayTimeline& timeline_;
+  bool hold_;
+  std::unique_ptr<SerialPort> port_;
+  std::vector<std::uint8_t> held_;
+};
+
+int open_file(const ReplayDestination& to) {
+  const bool fifo = to.kind == ReplayDestination::Kind::fifo;
+  struct stat info {};
+  const bool there = stat(to.name.c_str(), &info) == 0;
+  if (fifo && !there && mkfifo(to.name.c_str(), 0644) != 0) fail(to.name, "cannot make a FIFO", errno);
+  if (fifo && there && !S_ISFIFO(info.st_mode))
+    throw std::runtime_error(to.name + ": is no FIFO, expected one");
+  if (fifo) std::fprintf(stderr, "%s: waiting for a reader\n", to.name.c_str());
+  for (;;) {
+    const int fd =
+        open(to.name.c_str(), fifo ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (fd >= 0 || interrupted()) return fd;
+    if (errno != EINTR) fail(to.name, "cannot open for writing", errno);
+  }
+}
+
+}  // namespace
+
+ReplayDestination ReplayDestination::parse(const std::string& text) {
+  if (text == "-") return {Kind::standard_output, "standard output"};
+  for (const auto& [prefix, kind] : {std::pair{"can:", Kind::can},
+                                     {"serial:", Kind::serial},
+                                     {"file:", Kind::file},
+                                     {"fifo:", Kind::fifo}})
+    if (text.starts_with(prefix) && text.size() > std::string(prefix).size())
+      return {kind, text.substr(std::string(prefix).size())};
+  throw std::runtime_error("--to is '" + text +
+                           "', expected can:INTERFACE, serial:DEVICE, file:PATH, fifo:PATH or -");
+}
+
+std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,
+                                          SerialSettings line, bool hold) {
+  using Kind = ReplayDestination::Kind;
+  if (to.kind == Kind::can) {
+    if (!timeline.is_can())
+      throw std::runtime_error(
+          to.name + ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
+    return std::make_unique<CanTarget>(to.name, timeline);
+  }
+  if (to.kind == Kind::serial) {
+    if (timeline.is_can())
+      throw std::runtime_error(to.name + ": CAN frames cannot go onto a serial line, expected bytes");
+    line.device = to.name;
+    if (line.baud == 0) line.baud = timeline.baud;
+    if (line.baud == 0) throw std::runtime_error(to.name + ": no speed known, expected --baud");
+    std::string warning;
+    return std::make_unique<ByteTarget>(open_serial_port(line, warning), to.name, timeline, hold);
+  }
+  const int fd = to.kind == Kind::standard_output ? STDOUT_FILENO : open_file(to);
+  if (fd < 0) return nullptr;
+  return std::make_unique<ByteTarget>(to.name, fd, timeline, hold);
+}
+
+}  // namespace ifog::tools

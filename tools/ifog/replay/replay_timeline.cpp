@@ -1,0 +1,139 @@
+#include "tools/ifog/replay/replay_timeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "drivers/capture/candump.h"
+#include "drivers/capture/capture.h"
+#include "drivers/capture/capture_encoder.h"
+#include "drivers/capture/recording.h"
+#include "drivers/capture/text_file.h"
+
+namespace ifog::tools {
+namespace {
+
+std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+
+FileKind kind_of(const ReplaySource& source) {
+  if (source.format == "candump") return FileKind::candump;
+  if (source.format == "bytes") return FileKind::bytes;
+  if (source.format == "csv") return FileKind::capture;
+  return file_kind(source.path);
+}
+
+ReplayTimeline from_candump(const ReplaySource& source) {
+  Candump log = read_candump(source.path, source.input.channel);
+  if (log.remote + log.error > 0)
+    std::fprintf(stderr, "%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(),
+                 log.remote, log.error);
+  ReplayTimeline timeline;
+  timeline.frames = std::move(log.frames);
+  timeline.interface = std::move(log.interface);
+  return timeline;
+}
+
+// Blocks of a given size at a given rate.
+void cut_evenly(const ReplaySource& source, ReplayTimeline& timeline) {
+  for (std::size_t end = 0; end < timeline.bytes.size();) {
+    end = std::min(end + source.block_bytes, timeline.bytes.size());
+    timeline.blocks.push_back(
+        {nanoseconds(static_cast<double>(timeline.blocks.size()) / source.rate_hz), end});
+  }
+}
+
+// Blocks that end where a sample does, at the device's time or else at the nominal rate by its counter.
+void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
+  DriverInstance driver = source.input.make_driver();
+  const ifog_description& d = driver.description();
+  timeline.baud = d.baud;
+  if (!driver.takes_bytes())
+    throw std::runtime_error(source.path + ": driver " + source.input.driver_name() + " takes no bytes");
+  if (d.has_device_time == 0 && !(d.nominal_rate_hz > 0.0))
+    throw std::runtime_error(source.path + ": the frames carry no time, expected --option rate_hz=HZ");
+  std::uint64_t periods = 0;
+  std::uint32_t last = 0;
+  for (std::size_t i = 0; i < timeline.bytes.size(); ++i)
+    driver.decode_bytes({&timeline.bytes[i], 1}, 0, [&](const ifog_sample& sample) {
+      const bool counted = d.sequence_modulus != 0 && (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0;
+      if (!timeline.blocks.empty())
+        periods += counted ? (sample.sequence + d.sequence_modulus - last) % d.sequence_modulus : 1;
+      last = sample.sequence;
+      const bool timed = (sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0;
+      timeline.blocks.push_back(
+          {timed ? sample.device_time_ns : nanoseconds(static_cast<double>(periods) / d.nominal_rate_hz),
+           i + 1});
+    });
+  if (timeline.blocks.empty())
+    throw std::runtime_error(source.path + ": no frame of driver " + source.input.driver_name() + " in it");
+  timeline.blocks.back().end = timeline.bytes.size();
+}
+
+ReplayTimeline from_bytes(const ReplaySource& source) {
+  const bool even = source.block_bytes != 0 && source.rate_hz > 0.0;
+  if (!even && !source.input.has_driver())
+    throw std::runtime_error(
+        source.path + ": raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME");
+  const std::string text = read_text_file(source.path);
+  ReplayTimeline timeline;
+  timeline.bytes.assign(text.begin(), text.end());
+  if (timeline.bytes.empty()) return timeline;
+  even ? cut_evenly(source, timeline) : cut_by_driver(source, timeline);
+  return timeline;
+}
+
+ReplayTimeline from_capture(const ReplaySource& source) {
+  if (!source.input.has_driver())
+    throw std::runtime_error(source.path +
+                             ": a CSV capture needs --driver NAME, whose frames its rows become");
+  const Capture capture = read_capture(source.path);
+  const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
+  DriverInstance driver(plugin, with_rate_of(capture, *plugin, source.input.settings()));
+  CaptureEncoder encoder(capture, driver, source.axis);
+  for (const std::string& notice : encoder.notices())
+    std::fprintf(stderr, "%s: %s\n", source.path.c_str(), notice.c_str());
+  ReplayTimeline timeline;
+  timeline.baud = driver.description().baud;
+  if (driver.takes_can() && (source.prefer_can || !driver.takes_bytes())) {
+    for (std::size_t begin = 0; encoder.next(timeline.frames); begin = timeline.frames.size())
+      for (std::size_t i = begin; i < timeline.frames.size(); ++i)
+        timeline.frames[i].arrival_ns = nanoseconds(capture.time_s[encoder.rows_done() - 1]);
+  } else {
+    while (encoder.next(timeline.bytes))
+      if (timeline.bytes.size() > (timeline.blocks.empty() ? 0 : timeline.blocks.back().end))
+        timeline.blocks.push_back(
+            {nanoseconds(capture.time_s[encoder.rows_done() - 1]), timeline.bytes.size()});
+  }
+  if (encoder.rows_left_out() > 0)
+    std::fprintf(stderr, "%s: %zu rows without a rate are not sent: the format cannot say so\n",
+                 source.path.c_str(), encoder.rows_left_out());
+  return timeline;
+}
+
+}  // namespace
+
+ReplayTimeline read_timeline(const ReplaySource& source) {
+  ReplayTimeline timeline;
+  switch (kind_of(source)) {
+    case FileKind::candump:
+      timeline = from_candump(source);
+      break;
+    case FileKind::bytes:
+      timeline = from_bytes(source);
+      break;
+    case FileKind::capture:
+      timeline = from_capture(source);
+      break;
+    case FileKind::lcm_log:
+    case FileKind::unknown:
+      throw std::runtime_error(
+          source.path +
+          ": neither a candump log, raw bytes nor a CSV capture by its name and first bytes; "
+          "--format says which");
+  }
+  if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");
+  return timeline;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,49 @@
+// What `ifog replay` sends: blocks of bytes or CAN frames, each with its recorded time, all in memory so that
+// nothing but the sending happens between two deadlines.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/ifog/driver.h"
+#include "tools/ifog/captures/capture_input.h"
+
+namespace ifog::tools {
+
+struct ReplayTimeline {
+  struct Block {
+    std::int64_t time_ns;
+    std::size_t end;  // one past its last byte in `bytes`
+  };
+  std::vector<ifog_can_frame> frames;  // arrival_ns is the recorded time
+  std::vector<std::uint8_t> bytes;     // either these or frames
+  std::vector<Block> blocks;
+  std::string interface = "can0";  // the log's, for writing a log again
+  std::uint32_t baud = 0;          // what the driver's maker prescribes; 0: unknown
+
+  [[nodiscard]] bool is_can() const { return blocks.empty() && !frames.empty(); }
+  [[nodiscard]] std::size_t size() const { return is_can() ? frames.size() : blocks.size(); }
+  [[nodiscard]] std::int64_t time_ns(std::size_t i) const {
+    return is_can() ? frames[i].arrival_ns : blocks[i].time_ns;
+  }
+};
+
+struct ReplaySource {
+  std::string path;
+  std::string format;         // "auto", "candump", "bytes" or "csv"
+  std::size_t block_bytes{};  // raw bytes: sent together, one frame of the device
+  double rate_hz{};           // raw bytes: blocks a second
+  // csv: whose frames the rows become; raw bytes: whose frames and times they are, instead of the two above;
+  // of a candump log the channel is the interface.
+  CaptureInput input;
+  std::string axis;
+  bool prefer_can = false;  // csv: for a driver that speaks both
+};
+
+// Throws std::runtime_error with one line: what the file lacks, or which setting a format needs. Notices
+// (columns without a place in the frames, …) go to stderr.
+ReplayTimeline read_timeline(const ReplaySource& source);
+
+}  // namespace ifog::tools
