@@ -20,8 +20,8 @@ class ChannelTable {
     entry.value.store(value, std::memory_order_relaxed);
     entry.time_ns.store(time_ns, std::memory_order_release);
   }
-  // NaN and an infinite age until the first value. Value and age may be of two neighbouring updates, no more
-  // apart.
+  // NaN and an infinite age until the first value. The value is at least as new as the age says: updates that
+  // come between the two loads show in the value alone.
   void get(int channel, std::int64_t now_ns, double& value, float& age_s) const noexcept {
     const Entry& entry = entries_[static_cast<std::size_t>(channel)];
     const std::int64_t time_ns = entry.time_ns.load(std::memory_order_acquire);

@@ -52,8 +52,9 @@ std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
     case TransportState::open:
       break;
   }
-  if (pipeline.reader().counters().samples.value() == 0) return status_t::STATE_STARTING;
+  // One word says whether there is a sample and when: two counters could be seen in either order.
   const std::int64_t last = pipeline.reader().counters().last_arrival_ns.load(std::memory_order_relaxed);
+  if (last == 0) return status_t::STATE_STARTING;
   const bool silent = !transport.holds_back() && static_cast<double>(now_ns - last) * 1e-9 > kSilence_s;
   if (silent) return status_t::STATE_NO_DATA;
   return status_t::STATE_RUNNING;

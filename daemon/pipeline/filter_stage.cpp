@@ -11,6 +11,8 @@ namespace {
 void relax() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
+#elif defined(__aarch64__) || defined(__arm__)
+  asm volatile("yield");
 #endif
 }
 
@@ -51,8 +53,7 @@ void FilterStage::run(bool spin) noexcept {
     if (ask_.load(std::memory_order_acquire) == Ask::asked) answer();
     if (stepped) continue;
     if (queue_.finished()) {
-      // The last word, for whoever asks after the end. While answered, the snapshot is housekeeping's.
-      if (ask_.load(std::memory_order_acquire) != Ask::answered) answer();
+      finished_.store(true, std::memory_order_release);
       return;
     }
     if (spin)
@@ -155,9 +156,12 @@ bool FilterStage::ask() noexcept {
 }
 
 bool FilterStage::take_snapshot(FilterSnapshot& out) noexcept {
+  // Nobody else touches the chain once its consumer is done, so the last word needs no question and cannot be
+  // older than the last sample.
+  if (finished_.load(std::memory_order_acquire)) answer();
   if (ask_.load(std::memory_order_acquire) != Ask::answered) return false;
   out = snapshot_;
-  // Release: the filter's last word may be written as soon as this is seen, and not before `out` has it all.
+  // Release: the next answer may be written as soon as this is seen, and not before `out` has it all.
   ask_.store(Ask::none, std::memory_order_release);
   return true;
 }

@@ -57,7 +57,8 @@ class FilterStage {
   void offer(std::unique_ptr<ChainParts> parts) noexcept;
   // Frees parts that are out of use.
   void collect_retired() noexcept;
-  // Asks for a snapshot; look again later. False: the last one has not come yet.
+  // Asks for a snapshot; look again later. False: the last one has not come yet. After the end of run() there
+  // is one at every call, without a question.
   bool ask() noexcept;
   // True: `out` has the snapshot asked for.
   bool take_snapshot(FilterSnapshot& out) noexcept;
@@ -87,6 +88,7 @@ class FilterStage {
   FilterSnapshot current_;   // filled as samples go by
   FilterSnapshot snapshot_;  // belongs to housekeeping while ask_ is answered
   std::atomic<Ask> ask_{Ask::none};
+  std::atomic<bool> finished_{false};
   std::atomic<ChainParts*> offered_{nullptr};
   std::atomic<ChainParts*> retired_{nullptr};
   FilterCounters counters_;

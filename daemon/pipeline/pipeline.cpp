@@ -1,6 +1,7 @@
 #include "daemon/pipeline/pipeline.h"
 
 #include <span>
+#include <system_error>
 #include <utility>
 
 namespace ifog {
@@ -36,10 +37,17 @@ std::string Pipeline::start() {
     ended_.store(true, std::memory_order_release);
   });
   std::string missed = filter_ready.get_future().get();
-  reader_thread_ = std::thread([this, &reader_ready, prepare] {
-    prepare(plan_.reader, reader_ready);
-    reader_.run();
-  });
+  try {
+    reader_thread_ = std::thread([this, &reader_ready, prepare] {
+      prepare(plan_.reader, reader_ready);
+      reader_.run();
+    });
+  } catch (const std::system_error&) {
+    // The filter thread waits for a queue that nobody would close.
+    queue_.close();
+    filter_thread_.join();
+    throw;
+  }
   const std::string reader_missed = reader_ready.get_future().get();
   if (!missed.empty() && !reader_missed.empty()) missed += "; ";
   return missed + reader_missed;

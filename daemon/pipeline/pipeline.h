@@ -32,7 +32,8 @@ class Pipeline {
   // Sends the driver's opening bytes. Throws std::runtime_error as Transport::open; start() may follow all
   // the same: the reader goes on trying.
   void open();
-  // Starts both threads; returns what of their real-time settings could not be had, "" for nothing.
+  // Starts both threads; returns what of their real-time settings could not be had, "" for nothing. Throws
+  // std::system_error when the system has no thread left; nothing runs then.
   std::string start();
   // No more is read, what has been read is published. Waits for both threads.
   void stop() noexcept;

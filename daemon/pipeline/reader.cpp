@@ -6,6 +6,8 @@ namespace ifog {
 namespace {
 
 constexpr auto kTurn = std::chrono::milliseconds(250);
+// While increments wait outside a full ring: a source that falls silent must not keep them there.
+constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
 
 }  // namespace
 
@@ -89,7 +91,7 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
 }
 
 void Reader::run() noexcept {
-  while (turn(kTurn)) {
+  while (turn(queue_.has_waiting() ? kImpatientTurn : kTurn)) {
   }
   // The bytes of a frame that never came to its end count as passed over.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;

@@ -146,7 +146,7 @@ Transport::Wake Transport::wait(int fd, short events, std::int64_t until_ns, sho
 
 void Transport::enter(TransportState state, int reason) noexcept {
   reason_.store(reason, std::memory_order_relaxed);
-  state_.store(state, std::memory_order_relaxed);
+  state_.store(state, std::memory_order_release);
 }
 
 void Transport::report(const char* what, std::uint64_t line) noexcept {

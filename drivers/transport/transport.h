@@ -88,7 +88,8 @@ class Transport {
   [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] TransportState state() const { return state_.load(std::memory_order_relaxed); }
+  // Whoever sees a state sees the reason it came with, too.
+  [[nodiscard]] TransportState state() const { return state_.load(std::memory_order_acquire); }
   [[nodiscard]] int reason() const {
     return reason_.load(std::memory_order_relaxed);
   }  // errno of the latest failure

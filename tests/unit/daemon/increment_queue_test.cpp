@@ -171,18 +171,23 @@ TEST(IncrementQueue, MoreThanTheBorrowerWantsGoesToTheConsumer) {
   IncrementQueue queue(16, IncrementQueue::WhenFull::merge);
   for (std::uint64_t n = 1; n <= 3; ++n) push(queue, n);
   std::atomic<int> taken{0};
-  std::atomic<bool> waiting{false};
+  std::atomic<bool> waiting{false}, offered{false};
   std::thread consumer([&] {
     for (; queue.front() != nullptr; queue.pop()) taken.fetch_add(1);
     waiting.store(true);
     while (!queue.finished()) {
       queue.wait();
+      // What a consumer that had not yet fallen asleep took on its way would not be there to refuse for.
+      while (!offered.load()) std::this_thread::yield();
       for (; queue.front() != nullptr; queue.pop()) taken.fetch_add(1);
     }
   });
   while (!waiting.load()) std::this_thread::yield();
   for (std::uint64_t n = 4; n <= 6; ++n) push(queue, n);
-  EXPECT_FALSE(queue.flush_or_borrow(2));
+  const bool borrowed = queue.flush_or_borrow(2);
+  EXPECT_FALSE(borrowed);
+  if (borrowed) queue.give_back();
+  offered.store(true);
   while (taken.load() < 6) std::this_thread::yield();
   queue.close();
   consumer.join();

@@ -80,6 +80,8 @@ class KeepingPublisher final : public Publisher {
 
 double rate_of(int n) { return 0.01 + 1e-4 * std::sin(0.01 * n); }
 
+double temperature_of(int n) { return n % 50; }
+
 std::vector<std::uint8_t> frames(int count) {
   DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
   std::vector<std::uint8_t> out;
@@ -89,7 +91,7 @@ std::vector<std::uint8_t> frames(int count) {
     sample.sequence = static_cast<std::uint32_t>(n % 128);
     sample.valid_axes = 7;
     for (double& value : sample.value) value = rate_of(n);
-    for (double& value : sample.environment) value = 0.0;
+    for (double& value : sample.environment) value = temperature_of(n);
     sample.environment_fresh = ~0U;
     driver.encode_bytes(sample, out);
   }
@@ -352,6 +354,27 @@ TEST(Pipeline, HousekeepingGetsASnapshotWhileSamplesFlow) {
   EXPECT_GT(taken, 3);
   EXPECT_TRUE(snapshot.has_health);
   EXPECT_GT(snapshot.allan_octaves, 5);
+}
+
+// However late the last question was asked, and whether or not its answer was fetched: what housekeeping says
+// at the end of a file tells of the file's last sample, and is not the latency of an earlier second.
+TEST(Pipeline, TheLastWordTellsOfTheLastSample) {
+  constexpr int kCount = 1033, kHalf = 500;
+  Rig rig(frames(kCount), kFrame, true);
+  rig.transport->allowed_ = kHalf * kFrame;
+  rig.pipeline->start();
+  while (rig.publisher->messages().size() < kHalf) std::this_thread::sleep_for(1ms);
+  rig.pipeline->filter().ask();
+  std::this_thread::sleep_for(20ms);  // answered, and not fetched
+  rig.transport->allowed_ = ~std::size_t{0};
+  rig.wait_for_the_end();
+  FilterSnapshot snapshot;
+  ASSERT_TRUE(rig.pipeline->filter().take_snapshot(snapshot));
+  EXPECT_NEAR(snapshot.channel[0], temperature_of(kCount - 1), 1e-3);  // read in 1/100 °C
+  rig.pipeline->filter().ask();
+  ASSERT_TRUE(rig.pipeline->filter().take_snapshot(snapshot));
+  EXPECT_NEAR(snapshot.channel[0], temperature_of(kCount - 1), 1e-3);  // read in 1/100 °C
+  EXPECT_EQ(snapshot.latency.count(), 0U);
 }
 
 // By the definition (IEEE Std 952, overlapping) from what was published, at averaging times that the stream
