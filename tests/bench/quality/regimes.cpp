@@ -1,0 +1,232 @@
+#include "tests/bench/quality/regimes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace ifog::bench {
+namespace {
+
+// Samples: a filter of that ratio is five time constants old before anything is judged, and forty (at rest)
+// or ten (in motion) of them are judged, where that is more than the least.
+struct Lengths {
+  std::size_t settle, rest, motion;
+};
+
+std::size_t time_constants(double ratio, double number) {
+  return static_cast<std::size_t>(std::lround(number / std::sqrt(ratio)));
+}
+
+Lengths lengths(double ratio) {
+  return {.settle = std::max<std::size_t>(20'000, time_constants(ratio, 5.0)),
+          .rest = std::max<std::size_t>(128'000, time_constants(ratio, 40.0)),
+          .motion = std::max<std::size_t>(80'000, time_constants(ratio, 10.0))};
+}
+
+enum Stream : std::uint32_t { kWalk, kNoise, kMotion, kOffset };
+
+// Streams that have nothing in common for any two of (regime, ratio, seed, stream).
+class Streams {
+ public:
+  Streams(const std::string& regime, double ratio, std::uint64_t seed) : seed_(seed) {
+    for (const char c : regime) name_.push_back(static_cast<unsigned char>(c));
+    name_.push_back(static_cast<std::uint32_t>(std::lround(-1000.0 * std::log10(ratio))));
+  }
+  [[nodiscard]] Random operator()(Stream stream) const {
+    std::vector<std::uint32_t> key{static_cast<std::uint32_t>(seed_),
+                                   static_cast<std::uint32_t>(seed_ >> 32U), stream};
+    key.insert(key.end(), name_.begin(), name_.end());
+    std::seed_seq sequence(key.begin(), key.end());
+    return Random(sequence);
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::vector<std::uint32_t> name_;
+};
+
+RegimeRecord compose(const Streams& streams, double ratio, std::size_t from, Noise noise,
+                     const std::vector<double>& motion) {
+  RegimeRecord record;
+  record.from = from;
+  record.truth.resize(noise.value.size());
+  record.measured.resize(noise.value.size());
+  Random random = streams(kWalk);
+  std::normal_distribution<double> step(0.0, std::sqrt(ratio));
+  double walk = 0.0;
+  for (std::size_t i = 0; i < record.truth.size(); ++i) {
+    record.truth[i] = walk + (motion.empty() ? 0.0 : motion[i]);
+    record.measured[i] = record.truth[i] + noise.value[i];
+    walk += step(random);
+  }
+  record.noise_variance = std::move(noise.variance);
+  return record;
+}
+
+using NoiseKind = std::function<Noise(Random&, std::size_t samples, std::size_t from)>;
+using MotionKind = std::function<std::vector<double>(Random&, std::size_t samples, std::size_t from)>;
+
+Regime at_rest(const std::string& name, double limit, NoiseKind noise) {
+  return {.name = name,
+          .limit = limit,
+          .judge_variance = true,
+          .make = [name, noise = std::move(noise)](double ratio, std::uint64_t seed) {
+            const Streams streams(name, ratio, seed);
+            const auto [settle, judged, motion] = lengths(ratio);
+            Random random = streams(kNoise);
+            return compose(streams, ratio, settle, noise(random, settle + judged, settle), {});
+          }};
+}
+
+// judged: samples; 0: by the time constant.
+Regime moving(const std::string& name, double limit, std::size_t judged, MotionKind motion) {
+  return {.name = name,
+          .limit = limit,
+          .make = [name, judged, motion = std::move(motion)](double ratio, std::uint64_t seed) {
+            const Streams streams(name, ratio, seed);
+            const Lengths length = lengths(ratio);
+            const std::size_t samples = length.settle + (judged > 0 ? judged : length.motion);
+            Random of_noise = streams(kNoise), of_motion = streams(kMotion);
+            return compose(streams, ratio, length.settle, gaussian_noise(of_noise, samples),
+                           motion(of_motion, samples, length.settle));
+          }};
+}
+
+// A motion that the conventional filter and no filter at all both bear.
+Regime borne(const std::string& name, bool slow, MotionKind motion) {
+  Regime regime = moving(name, 1.05, 0, std::move(motion));
+  regime.judge_variance = slow;
+  regime.judge_against_raw = true;
+  return regime;
+}
+
+// The level is anywhere between two steps of the converter, another place in each record.
+Regime quantised_regime(const std::string& name, double limit, double step) {
+  Regime regime = at_rest(name, limit, nullptr);
+  regime.make = [name, step](double ratio, std::uint64_t seed) {
+    const Streams streams(name, ratio, seed);
+    const Lengths length = lengths(ratio);
+    Random of_noise = streams(kNoise), of_offset = streams(kOffset);
+    const double level = std::uniform_real_distribution<double>(0.0, step)(of_offset);
+    const std::size_t samples = length.settle + length.rest;
+    RegimeRecord record = compose(streams, ratio, length.settle, gaussian_noise(of_noise, samples),
+                                  std::vector<double>(samples, level));
+    for (double& value : record.measured) value = quantised(value, step);
+    return record;
+  };
+  return regime;
+}
+
+// At rest, then a drift of 1e-4 a sample until its lag has settled, then a step; judged from the step on
+// while the conventional filter recovers, as what is wrong afterwards is wrong there.
+Regime drift_then_step() {
+  const std::string name = "drift-then-step";
+  Regime regime = borne(name, false, nullptr);
+  regime.make = [name](double ratio, std::uint64_t seed) {
+    const Streams streams(name, ratio, seed);
+    const std::size_t settle = lengths(ratio).settle;
+    const std::size_t step = settle + std::max<std::size_t>(20'000, time_constants(ratio, 3.0));
+    const std::size_t samples = step + std::max<std::size_t>(2'000, time_constants(ratio, 3.0));
+    std::vector<double> motion = ramp(samples, settle, samples, 1e-4);
+    for (std::size_t i = step; i < samples; ++i) motion[i] += 20.0;
+    Random of_noise = streams(kNoise);
+    return compose(streams, ratio, step, gaussian_noise(of_noise, samples), motion);
+  };
+  return regime;
+}
+
+// Two periods of a swing from the first sample on, then rest; judged a minute later.
+Regime started_moving(const std::string& name, bool told) {
+  return {.name = name,
+          .limit = 1.1,
+          .judge_variance = true,
+          .told = told,
+          .make = [name](double ratio, std::uint64_t seed) {
+            constexpr std::size_t kSwing = 20'000;
+            constexpr auto kMinute = static_cast<std::size_t>(60.0 * kSampleRate_hz);
+            const Streams streams(name, ratio, seed);
+            const std::size_t samples = kSwing + kMinute + lengths(ratio).motion;
+            Random of_noise = streams(kNoise), of_motion = streams(kMotion);
+            RegimeRecord record = compose(streams, ratio, kSwing + kMinute, gaussian_noise(of_noise, samples),
+                                          sway_that_ends(of_motion, samples, kSwing, 30.0, 0.02));
+            record.rest_from = kSwing;
+            return record;
+          }};
+}
+
+void add_rest(std::vector<Regime>& all) {
+  const auto independent = [](Noise (*kind)(Random&, std::size_t)) {
+    return [kind](Random& random, std::size_t samples, std::size_t) { return kind(random, samples); };
+  };
+  all.push_back(at_rest("gaussian", 1.05, independent(gaussian_noise)));
+  all.push_back(at_rest("student-t3", 1.1, independent(student_noise)));
+  all.push_back(at_rest("skewed", 1.2, independent(skewed_noise)));
+  all.push_back(at_rest("bimodal", 1.05, independent(bimodal_noise)));
+  all.push_back(at_rest("missing-10%", 1.05, [](Random& random, std::size_t samples, std::size_t) {
+    return missing_noise(random, samples, 0.1);
+  }));
+  all.push_back(at_rest("outliers-1%-20", 1.05, [](Random& random, std::size_t samples, std::size_t) {
+    return outlier_noise(random, samples, 0.01, 20.0);
+  }));
+  for (const auto& [name, factor, limit] : {std::tuple{"noise-x5", 5.0, 1.5}, {"noise-x10", 10.0, 2.0}})
+    all.push_back(at_rest(name, limit, [f = factor](Random& random, std::size_t samples, std::size_t from) {
+      constexpr auto kTurn = static_cast<std::size_t>(40.0 * kSampleRate_hz);
+      return changing_noise(random, samples, from, kTurn, f);
+    }));
+  for (const auto& [name, correlation, limit] :
+       {std::tuple{"colour-0.5", 0.5, 1.1}, {"colour-0.9", 0.9, 1.5}, {"colour-0.98", 0.98, 1.5}})
+    all.push_back(at_rest(name, limit, [c = correlation](Random& random, std::size_t samples, std::size_t) {
+      return coloured_noise(random, samples, c);
+    }));
+  all.push_back(quantised_regime("quantised-5", 1.15, 5.0));
+}
+
+// Slow: no more than 0.02 σ a sample, the slope of a swing of 30 σ at 0.02 Hz.
+void add_motion(std::vector<Regime>& all) {
+  for (const auto& [name, slope] :
+       {std::pair{"ramp-1e-4", 1e-4}, {"ramp-1e-3", 1e-3}, {"ramp-1e-2", 1e-2}, {"ramp-1e-1", 1e-1}})
+    all.push_back(borne(name, slope < 0.02, [s = slope](Random&, std::size_t samples, std::size_t from) {
+      return ramp(samples, from, from + (samples - from) * 3 / 4, s);
+    }));
+  all.push_back(drift_then_step());
+  for (const auto& [name, hz] : {std::pair{"sea-", 0.1}, {"swing-", 0.02}})
+    for (const int amplitude : {3, 30, 300})
+      all.push_back(borne(name + std::to_string(amplitude), hz * amplitude < 0.61,
+                          [a = amplitude, f = hz](Random& random, std::size_t samples, std::size_t from) {
+                            return sway(random, samples, from, a, f);
+                          }));
+  for (const int rms : {1, 10})
+    for (const int band_hz : {1, 10})
+      all.push_back(borne("random-" + std::to_string(rms) + "-to-" + std::to_string(band_hz) + "Hz", false,
+                          [rms, band_hz](Random& random, std::size_t samples, std::size_t from) {
+                            return random_motion(random, samples, from, rms, band_hz);
+                          }));
+}
+
+std::vector<Regime> make_regimes() {
+  std::vector<Regime> all;
+  add_rest(all);
+  add_motion(all);
+  all.push_back(moving("turns-30", 0.1, 40'000, [](Random&, std::size_t samples, std::size_t from) {
+    return turns(samples, from, 30.0);
+  }));
+  all.push_back(moving("steps-20", 0.1, 40'000, [](Random& random, std::size_t samples, std::size_t from) {
+    return steps(random, samples, from, 20.0);
+  }));
+  for (std::size_t i = all.size() - 2; i < all.size(); ++i) all[i].limit_at_laboratory = 0.3;
+  all.push_back(started_moving("started-moving", true));
+  all.push_back(started_moving("started-moving-untold", false));
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Regime>& regimes() {
+  static const std::vector<Regime> all = make_regimes();
+  return all;
+}
+
+double quantised(double value, double step) { return step * std::nearbyint(value / step); }
+
+}  // namespace ifog::bench

@@ -1,0 +1,47 @@
+// The regimes in which the denoised rate is judged: a true rate that walks at random with variance Q a
+// sample, a motion on top, and measurement noise of variance R = 1 at rest, sampled at 200 Hz. In units of σ
+// = √R.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/bench/quality/motions.h"
+
+namespace ifog::bench {
+
+struct RegimeRecord {
+  std::vector<double> truth;     // σ
+  std::vector<double> measured;  // σ; NaN: missing
+  std::size_t from = 0;          // first sample judged; all up to the end are
+  // What nobody tells the filter: the variance of each sample's noise (empty: 1), and from when on there is
+  // only the random walk.
+  std::vector<double> noise_variance;
+  std::optional<std::size_t> rest_from;
+};
+
+struct Regime {
+  std::string name;
+  double limit = 0.0;              // on RMSE over the conventional filter's
+  double limit_at_laboratory = 0;  // the same at Q/R ≥ 5e-4; 0: the same
+  bool judge_variance = false;     // the normalised square of the error is to be 0.8 … 1.25
+  bool judge_against_raw = false;  // the limit holds against the better of raw and conventional as well
+  bool told = true;                // Q and R are told; else they are learned from the record
+  std::function<RegimeRecord(double ratio, std::uint64_t seed)> make;
+
+  [[nodiscard]] double limit_at(double ratio) const {
+    return limit_at_laboratory > 0.0 && ratio >= 5e-4 ? limit_at_laboratory : limit;
+  }
+};
+
+// In the order of the table. ratio: Q/R, > 0 and ≤ 1. Every record depends on regime, ratio and seed only.
+const std::vector<Regime>& regimes();
+
+// A multiple of `step`, values right in the middle of two go to the even one.
+double quantised(double value, double step);
+
+}  // namespace ifog::bench
