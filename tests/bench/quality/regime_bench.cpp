@@ -5,11 +5,13 @@
 // Prints a markdown table. RMSE is over the judged samples against the true rate; "over CKF" is its ratio to
 // the RMSE of the conventional filter on the same record, median over seeds with least and most, and has the
 // limit. "Over the better" is the ratio to the better of that filter and the raw samples; where it is judged,
-// no seed may be above the limit. "Over informed" is the ratio to a conventional filter that is also told the
-// variance of each sample and when rest came: nobody knows that, it shows what is left to gain. NEES is the
-// mean of (estimate − truth)²/variance, mean over seeds with least and most; where it is judged 0.8 … 1.25 is
-// wanted, and the conventional filter's beside it shows how far chance alone goes. Exit: 0 all within their
-// limits, 1 not, 2 wrong usage.
+// no seed may be above the limit, its five per cent included, as what is compared is chance in part. "Over
+// informed" is the ratio to a conventional filter that is also told the variance of each sample and when rest
+// came: nobody knows that, it shows what is left to gain, and at small Q/R, where the conventional filter is
+// still far off long after a motion or a loud stretch, how much of a good figure is that filter's weakness.
+// NEES is the mean of (estimate − truth)²/variance, mean over seeds with least and most; where it is judged
+// 0.8 … 1.25 is wanted, and the conventional filter's beside it shows how far chance alone goes. The table's
+// last column names what is missed. Exit: 0 all within their limits, 1 not, 2 wrong usage.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
