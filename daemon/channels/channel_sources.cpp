@@ -37,7 +37,7 @@ class FileChannel {
     std::ifstream file(wanted_.config.path);
     double number = 0.0;
     // What cannot be read grows old, and is flagged as stale: no other message is needed.
-    if (file >> number) put(wanted_, number, realtime_ns());
+    if (file >> number) put(wanted_, number, arrival_clock_ns());
   }
 
  private:
@@ -58,7 +58,10 @@ class LcmChannel {
     std::int64_t utime = 0;
     const std::span bytes(static_cast<const std::uint8_t*>(message.data), message.data_size);
     if (!field_.read(bytes, value, utime)) return;
-    put(wanted_, value, (utime > 0 ? utime : message.recv_utime) * 1000);
+    // What was measured in the future was measured now: else it would never grow old.
+    const std::int64_t measured_ns =
+        utime > 0 && utime < INT64_MAX / 1000 ? utime * 1000 : message.recv_utime * 1000;
+    put(wanted_, value, arrival_clock_ns() - std::max<std::int64_t>(0, realtime_ns() - measured_ns));
   }
 
  private:

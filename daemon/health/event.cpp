@@ -26,6 +26,11 @@ std::string describe(const Event& event) {
       return fmt::format("model in use from number {} on", event.sequence);
     case EventKind::divergence:
       return fmt::format("estimator diverged and started again at number {}", event.sequence);
+    case EventKind::clock_step:
+      return fmt::format(
+          "the wall clock was set, now {:+.3f} s against start-up: times of day follow from number {} on, "
+          "intervals and angles do not",
+          event.a, event.sequence);
     case EventKind::publish_failed:
       return fmt::format("LCM did not take number {}", event.sequence);
   }

@@ -18,6 +18,7 @@ enum class EventKind : std::uint8_t {
   noise_learned,   // a: process noise, b: measurement noise, from start-up data
   model_in_use,    // sequence: the first sample with the new parts
   divergence,      // the estimator started again
+  clock_step,      // the wall clock was set; a: how far it is now from where it was at start-up, s
   publish_failed,
 };
 

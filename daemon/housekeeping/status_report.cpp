@@ -116,8 +116,8 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   const FilterCounters& filter = pipeline.filter().counters();
   const Transport& transport = pipeline.reader().transport();
   const TransportCounters line = transport.counters();
-  const std::int64_t now_ns = realtime_ns();
-  now_.utime = now_ns / 1000;
+  const std::int64_t now_ns = arrival_clock_ns();
+  now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
   now_.state = state_of(pipeline, now_ns);
   now_.fault = fault_of(pipeline.reader());

@@ -67,7 +67,7 @@ void FilterStage::process(const Increment& in) noexcept {
   chain_.process(in, out_);
   const ChainParts& parts = chain_.parts();
   const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
-  if (measure_latency_) current_.latency.add(realtime_ns() - in.arrival_ns);
+  if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
   counters_.device_samples.add(in.samples);
   if (sent) {
     counters_.published.add(1);

@@ -25,17 +25,17 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
 
 void Reader::take(const ifog_sample& sample) noexcept {
   read_sample(sample, facts_.frame_channels, reading_);
+  const std::int64_t came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
-    outside_->get(i - facts_.frame_channels, sample.arrival_ns, reading_.channel[c],
-                  reading_.channel_age_s[c]);
+    outside_->get(i - facts_.frame_channels, came_ns, reading_.channel[c], reading_.channel_age_s[c]);
   }
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = queue_.next();
   if (!incrementer_.next(reading_, increment)) return;
   report(increment, before);
   queue_.push();
-  counters_.last_arrival_ns.store(sample.arrival_ns, std::memory_order_relaxed);
+  counters_.last_arrival_ns.store(came_ns, std::memory_order_relaxed);
 }
 
 void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {
@@ -49,6 +49,11 @@ void Reader::report(const Increment& increment, const IncrementerCounts& before)
   } else if (now.missing != before.missing) {
     event.kind = EventKind::gap;
     event.count = now.missing - before.missing;
+    events_.report(event);
+  }
+  if (now.clock_steps != before.clock_steps) {
+    event.kind = EventKind::clock_step;
+    event.a = static_cast<double>(increment.wall_shift_ns) * 1e-9;
     events_.report(event);
   }
   if (const std::uint64_t overflows = queue_.overflows(); overflows != overflows_seen_) {
@@ -66,6 +71,7 @@ void Reader::publish_counters() noexcept {
   counters_.invalid.set(counts.invalid);
   counters_.repeated.set(counts.repeated);
   counters_.device_restarts.set(counts.restarts);
+  counters_.clock_steps.set(counts.clock_steps);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();
   counters_.frames_good.set(driver.frames_good);
@@ -80,6 +86,11 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
     driver_.reset();
     incrementer_.discontinuity();
     events_.report({.kind = EventKind::reopened});
+  }
+  if (!delivery.empty()) {
+    turn_ns_ = arrival_clock_ns();
+    // A recording that is read at its own pace brings its own times of day.
+    if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.now();
   }
   const auto sink = [this](const ifog_sample& sample) { take(sample); };
   if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);

@@ -21,10 +21,10 @@ namespace ifog {
 
 // Any thread may read them.
 struct ReaderCounters {
-  Counter turns, samples, gaps, missing, invalid, repeated, device_restarts;
+  Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter frames_good, frames_crc, frames_format, bytes_skipped;
   Counter bytes_at_end;                          // of a file that ends within a frame; also in bytes_skipped
-  std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, CLOCK_REALTIME; 0: none yet
+  std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, arrival clock; 0: none yet
   std::atomic<double> clock_offset_ppm{0.0};
 };
 
@@ -58,6 +58,8 @@ class Reader {
   HandOver& hand_over_;
   EventQueue& events_;
   Reading reading_;
+  WallShift wall_shift_;
+  std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
   ReaderCounters counters_;
 };

@@ -16,6 +16,7 @@ std::int32_t flags(const Increment& in, const ChainOutput& out) noexcept {
   pass(in.flags, kGapBefore, rate_t::FLAG_GAP);
   pass(in.flags, kMerged, rate_t::FLAG_MERGED);
   pass(in.flags, kInvalid, rate_t::FLAG_INVALID);
+  pass(in.flags, kClockStep, rate_t::FLAG_CLOCK_STEP);
   pass(out.compensator_flags, kStaleChannel | kNoChannelYet, rate_t::FLAG_STALE_CHANNEL);
   pass(out.compensator_flags, kOutOfRange, rate_t::FLAG_OUT_OF_RANGE);
   pass(out.flags, kNoiseUnknown, rate_t::FLAG_NOISE_UNKNOWN);
@@ -50,7 +51,7 @@ std::span<const std::uint8_t> RateEncoder::encode(const Increment& in, const Cha
   message_.utime = in.utime_ns / 1000;
   message_.seq = static_cast<std::int64_t>(in.sequence);
   message_.sensor_time_ns = in.device_time_ns;
-  message_.arrival_ns = in.arrival_ns;
+  message_.arrival_ns = in.arrival_ns != 0 ? in.arrival_ns + in.wall_shift_ns : 0;
   message_.dt = in.dt_s;
   message_.merged = static_cast<std::int32_t>(in.samples);
   message_.flags = flags(in, out);

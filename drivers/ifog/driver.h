@@ -47,7 +47,7 @@ enum ifog_sample_flags {
 
 /* One reading of the sensor. */
 typedef struct ifog_sample {
-  int64_t arrival_ns;     /* copied from the chunk the last byte came in: CLOCK_REALTIME, ns */
+  int64_t arrival_ns;     /* copied from the chunk the last byte came in, ns; 0: not known */
   int64_t device_time_ns; /* the device's own clock, unwrapped by the plugin, any origin */
   uint32_t sequence;      /* the device's counter as sent, 0 … sequence_modulus − 1 */
   uint32_t status;        /* the device's status word as sent */
@@ -63,7 +63,7 @@ enum ifog_can_flags { IFOG_CAN_EXTENDED = 1, IFOG_CAN_FD = 2, IFOG_CAN_BRS = 4 }
 
 /* A data frame; error and remote frames never reach a plugin. */
 typedef struct ifog_can_frame {
-  int64_t arrival_ns; /* kernel's time of reception where it gives one, CLOCK_REALTIME, ns */
+  int64_t arrival_ns; /* time of reception, ns since the epoch on a clock that nobody sets; 0: not known */
   uint32_t id;        /* 11 or 29 bits, without flag bits */
   uint8_t flags;      /* ifog_can_flags */
   uint8_t length;     /* bytes, 0 … 64 */

@@ -44,6 +44,7 @@ class CanTransport final : public Transport {
   CanSettings settings_;
   CanSocket socket_;
   std::uint32_t drops_ = 0;
+  KernelStamps stamps_;
   std::array<canfd_frame, kBatch> raw_{};
   std::array<iovec, kBatch> vectors_{};
   std::array<Control, kBatch> control_{};
@@ -70,6 +71,7 @@ void CanTransport::connect(std::string& warning) {
   fresh.receive_only(settings_.ids, settings_.interface);
   socket_ = std::move(fresh);
   drops_ = 0;
+  stamps_.begin(realtime_ns(), arrival_clock_ns());
   set(socket_.fd(), SO_RXQ_OVFL, 1);
   ask_for_room(warning);
   ask_for_times(warning);
@@ -117,7 +119,8 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
 
 std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexcept {
   std::size_t kept = 0;
-  std::int64_t read_at = 0;
+  const std::int64_t read_at = arrival_clock_ns();
+  stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < received; ++i) {
     const CanControl said = can_control(messages_[i].msg_hdr);
     if (said.has_drops) {
@@ -127,8 +130,7 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexc
     ifog_can_frame& frame = frames_[kept];
     switch (from_socket(raw_[i], messages_[i].msg_len, frame)) {
       case CanKind::data:
-        if (said.arrival_ns == 0 && read_at == 0) read_at = realtime_ns();
-        frame.arrival_ns = said.arrival_ns != 0 ? said.arrival_ns : read_at;
+        frame.arrival_ns = said.arrival_ns != 0 ? stamps_.on_arrival_clock(said.arrival_ns) : read_at;
         ++kept;
         break;
       case CanKind::error:

@@ -27,6 +27,10 @@ class FileTransport : public Transport {
         pace_(settings_.speed) {}
 
   [[nodiscard]] bool holds_back() const override { return settings_.pace == FileSettings::Pace::free; }
+  [[nodiscard]] bool times_are_recorded() const override {
+    return holds_back() &&
+           (settings_.format == FileSettings::Format::candump || settings_.bytes_per_second > 0.0);
+  }
 
  protected:
   void connect(std::string& warning) override;
@@ -141,7 +145,7 @@ class BytesFile final : public FileTransport {
 
  private:
   void begin() noexcept override {
-    opened_ns_ = realtime_ns();
+    opened_ns_ = arrival_clock_ns();
     delivered_ = held_ = 0;
   }
   Delivery take(std::int64_t until_ns) noexcept override;
@@ -172,7 +176,7 @@ Delivery BytesFile::take(std::int64_t until_ns) noexcept {
   Delivery delivery;
   delivery.bytes = unread().first(n);
   if (recorded() || settings().bytes_per_second <= 0.0)
-    delivery.arrival_ns = realtime_ns();
+    delivery.arrival_ns = arrival_clock_ns();
   else
     delivery.arrival_ns = opened_ns_ + recorded_ns(delivered_);
   return delivery;
@@ -263,7 +267,7 @@ Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
     const std::int64_t until = n == 0 ? until_ns : monotonic_ns();
     if (!next_frame(until)) break;
     if (recorded()) {
-      if (!pace().started()) shift_ns_ = realtime_ns() - monotonic_ns();
+      if (!pace().started()) shift_ns_ = arrival_clock_ns() - monotonic_ns();
       if (!await(entry_.frame.arrival_ns, until)) break;
     }
     batch_[n] = entry_.frame;

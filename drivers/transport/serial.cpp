@@ -23,6 +23,10 @@ class SerialTransport final : public Transport {
  private:
   void connect(std::string& warning) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
+  [[nodiscard]] bool more_waits() noexcept override {
+    pollfd port{port_ ? port_->fd() : -1, POLLIN, 0};
+    return ::poll(&port, 1, 0) > 0;
+  }
   void send_opening();
   void count_line_errors(std::int64_t now_ns) noexcept;
 
@@ -75,7 +79,7 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
   const ssize_t n = ::read(port_->fd(), buffer_.data(), buffer_.size());
   if (n > 0) {
     Delivery delivery;
-    delivery.arrival_ns = realtime_ns();
+    delivery.arrival_ns = arrival_clock_ns();
     delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(n));
     return delivery;
   }

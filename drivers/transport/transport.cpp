@@ -6,25 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 namespace ifog {
-namespace {
-
-std::int64_t clock_ns(clockid_t clock) noexcept {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
-}
-
-}  // namespace
-
-std::int64_t realtime_ns() noexcept { return clock_ns(CLOCK_REALTIME); }
-std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
-
 OpenError::OpenError(const std::string& device, const std::string& what, int error,
                      const std::string& expected)
     : std::runtime_error(device + ": " + what + ": " + std::generic_category().message(error) +
@@ -75,10 +61,15 @@ std::string Transport::take_warning() {
 }
 
 Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
+  const std::int64_t entered_ns = arrival_clock_ns();
   const std::int64_t until = monotonic_ns() + timeout.count();
   if (stopped() || state() == TransportState::ended) return {};
   if (!connected_ && !regain(until)) return {};
   Delivery delivery = receive(until);
+  if (!times_are_recorded() && backlog_.read(entered_ns, arrival_clock_ns(), timeout.count())) {
+    delivery.arrival_ns = 0;
+    if (backlog_.may_be_over() && !more_waits()) backlog_.over();
+  }
   if (delivery.empty()) return {};
   delivery.restarted = std::exchange(returning_, false);
   if (state() == TransportState::gone) {

@@ -15,14 +15,18 @@
 #include <vector>
 
 #include "drivers/ifog/driver.h"
+#include "drivers/transport/backlog.h"
 #include "drivers/transport/backoff.h"
+#include "drivers/transport/clock.h"
 
 namespace ifog {
 
 // What one read() brought. Points into the transport: valid until the next read().
 struct Delivery {
-  std::span<const std::uint8_t> bytes;     // a byte transport
-  std::int64_t arrival_ns = 0;             // of the last of `bytes`: CLOCK_REALTIME, ns
+  std::span<const std::uint8_t> bytes;  // a byte transport
+  // Of the last of `bytes`, arrival clock; 0: not known, because this process was held up and read late what
+  // may have come at any time since.
+  std::int64_t arrival_ns = 0;
   std::span<const ifog_can_frame> frames;  // a CAN transport; each frame has its own time
   bool restarted = false;  // the first since the device was opened again: forget half-read frames
 
@@ -82,6 +86,8 @@ class Transport {
   // True: the source keeps until it is read, so a reader whose ring is full stops reading rather than lose
   // samples.
   [[nodiscard]] virtual bool holds_back() const { return false; }
+  // True: arrival times are those of a recording, times of day of another day included.
+  [[nodiscard]] virtual bool times_are_recorded() const { return false; }
 
   // Ends a waiting read() at once and every later one immediately.
   void stop() noexcept;
@@ -105,6 +111,8 @@ class Transport {
   // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
   // is no more.
   virtual Delivery receive(std::int64_t until_ns) noexcept = 0;
+  // Whether receive() would find something at once.
+  [[nodiscard]] virtual bool more_waits() noexcept { return false; }
 
   enum class Wake { ready, timeout, stopped };
   // Waits for `events` on fd (or for nothing but time and stop() when fd is −1). `happened` gets poll's
@@ -140,6 +148,7 @@ class Transport {
   Backoff backoff_;
   bool connected_ = false, once_ = false;
   bool returning_ = false;  // the next delivery is the first since the device came back
+  Backlog backlog_;
   int stop_event_;
   std::atomic<bool> stopped_{false};
   std::atomic<TransportState> state_{TransportState::gone};
@@ -148,9 +157,5 @@ class Transport {
   std::atomic<std::uint64_t> fault_line_{0};
   Counter bytes_{0}, frames_{0}, reopened_{0}, malformed_{0};
 };
-
-// CLOCK_REALTIME and CLOCK_MONOTONIC in ns.
-std::int64_t realtime_ns() noexcept;
-std::int64_t monotonic_ns() noexcept;
 
 }  // namespace ifog

@@ -10,6 +10,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLongSilence_s = 2.0;
 constexpr double kClockMemory_s = 20.0;
+// A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
+// turn.
+constexpr double kPrompt_s = 0.05;
 // A step of counter or clock that exceeds what the arrival times allow by this much is a restart of the
 // device.
 constexpr double kRestart_s = 10.0;
@@ -62,7 +65,9 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading, double el
   step.samples = difference;
   // A gap shows, or the silence was too long for a late delivery: then the arrival times count the full
   // rounds.
-  if (elapsed_s > 0.0 && (difference != 1 || reopened_ || elapsed_s > kLongSilence_s)) {
+  // So do they at the end of a backlog, whose own times were not known.
+  const bool after_backlog = last_.arrival_ns == 0 && elapsed_s > kPrompt_s;
+  if (elapsed_s > 0.0 && (difference != 1 || reopened_ || elapsed_s > kLongSilence_s || after_backlog)) {
     const double rounds = std::floor((elapsed - static_cast<double>(difference)) / round + 0.5);
     if (rounds > 0.0) step.samples += static_cast<std::uint64_t>(rounds) * modulus;
   }
@@ -78,7 +83,7 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading, double el
     step.gap = true;
   }
   const double claimed_s = static_cast<double>(step.samples) * period_s_;
-  const bool backwards = elapsed_s < 0.0 && difference > modulus / 2;  // no arrival times to ask
+  const bool backwards = known_arrival_ns_ == 0 && difference > modulus / 2;  // no arrival times to ask, ever
   if (step.samples > 1 &&
       ((elapsed_s >= 0.0 && claimed_s > kRestartFactor * elapsed_s + kRestart_s) || backwards)) {
     step.samples = elapsed_s > 0.0 ? at_least_one(elapsed) : 1;
@@ -118,8 +123,12 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double el
 }
 
 Incrementer::Step Incrementer::step(const Reading& reading) const noexcept {
-  const bool timed = reading.arrival_ns > 0 && last_.arrival_ns > 0;
-  const double elapsed_s = timed ? static_cast<double>(reading.arrival_ns - last_.arrival_ns) * 1e-9 : -1.0;
+  // Since the sample before. Where the arrival of that one is not known, time is taken from the latest one
+  // that is, less what has been counted since.
+  const bool timed = reading.arrival_ns > 0 && known_arrival_ns_ > 0;
+  const double elapsed_s =
+      timed ? std::max(0.0, static_cast<double>(reading.arrival_ns - known_arrival_ns_) * 1e-9 - counted_s_)
+            : -1.0;
   const bool counts = reading.has_sequence && facts_.sequence_modulus > 0;
   const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
   Step step;
@@ -232,9 +241,20 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.status = reading.status;
   out.sequence = sequence_;
   out.arrival_ns = reading.arrival_ns;
+  out.wall_shift_ns = reading.wall_shift_ns;
+  if (started_ && reading.wall_shift_ns != last_.wall_shift_ns) {
+    out.flags |= kClockStep;
+    ++counts_.clock_steps;
+  }
   out.device_time_ns = reading.device_time_ns;
   out.dt_s = now.dt_s;
-  out.utime_ns = clock_.advance(now.samples, reading.arrival_ns);
+  out.utime_ns = clock_.advance(now.samples, reading.arrival_ns) + reading.wall_shift_ns;
+  if (reading.arrival_ns > 0) {
+    known_arrival_ns_ = reading.arrival_ns;
+    counted_s_ = 0.0;
+  } else {
+    counted_s_ += now.dt_s;
+  }
   measure(reading, now, out);
   hold_channels(reading, out);
   ++counts_.samples;

@@ -18,12 +18,13 @@
 namespace ifog {
 
 struct IncrementerCounts {
-  std::uint64_t samples = 0;   // increments made
-  std::uint64_t gaps = 0;      // places where samples are missing
-  std::uint64_t missing = 0;   // samples missing
-  std::uint64_t repeated = 0;  // samples left out because they came twice
-  std::uint64_t restarts = 0;  // device counter or clock jumped back: it was switched off and on
-  std::uint64_t invalid = 0;   // samples with an axis that may not be used
+  std::uint64_t samples = 0;      // increments made
+  std::uint64_t gaps = 0;         // places where samples are missing
+  std::uint64_t missing = 0;      // samples missing
+  std::uint64_t repeated = 0;     // samples left out because they came twice
+  std::uint64_t restarts = 0;     // device counter or clock jumped back: it was switched off and on
+  std::uint64_t invalid = 0;      // samples with an axis that may not be used
+  std::uint64_t clock_steps = 0;  // times the wall clock was set: labels moved, nothing else
 };
 
 class Incrementer {
@@ -61,6 +62,8 @@ class Incrementer {
   bool started_ = false;
   bool reopened_ = false;
   Reading last_;
+  std::int64_t known_arrival_ns_ = 0;  // latest arrival time that is known; 0: none yet
+  double counted_s_ = 0.0;             // steps since then
   std::uint64_t sequence_ = 0;
   std::array<double, kMaxAxes> angle_{};          // last valid, SensorKind::angle
   std::array<double, kMaxAxes> since_angle_s_{};  // time since it; < 0: there is none yet

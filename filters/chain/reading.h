@@ -30,7 +30,9 @@ struct SensorFacts {
 
 // One sample as decoded.
 struct Reading {
-  std::int64_t arrival_ns = 0;       // CLOCK_REALTIME; 0 where nobody knows (a raw byte file)
+  // On a clock that nobody sets, ns; 0 where nobody knows (a raw byte file, a backlog).
+  std::int64_t arrival_ns = 0;
+  std::int64_t wall_shift_ns = 0;    // time of day less that clock
   std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; −1: it has none
   std::uint32_t sequence = 0;        // as sent
   bool has_sequence = false;
@@ -47,12 +49,14 @@ enum IncrementFlags : std::uint32_t {
   kGapBefore = 1,  // samples are missing before this one
   kMerged = 2,     // several samples in one, because the filter could not keep up
   kInvalid = 4,    // the device marks an axis invalid, or its value is no number
+  kClockStep = 8,  // the wall clock has been set: utime has moved against the sample before, dt has not
 };
 
 // The angle turned over one step, and what came with it.
 struct Increment {
-  std::int64_t utime_ns = 0;  // fitted time of the sample, ns since the epoch
-  std::int64_t arrival_ns = 0;
+  std::int64_t utime_ns = 0;       // fitted time of the sample, time of day, ns since the epoch
+  std::int64_t arrival_ns = 0;     // as in Reading
+  std::int64_t wall_shift_ns = 0;  // likewise
   std::int64_t device_time_ns = -1;
   std::uint64_t sequence = 0;                      // unwrapped; starts at the device's first counter value
   double dt_s = 0.0;                               // since the sample before, gap included

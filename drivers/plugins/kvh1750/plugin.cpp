@@ -106,27 +106,36 @@ class Unwrapped {
     if (started_) {
       std::int64_t step_us = static_cast<std::int64_t>(stamp_us) - last_us_;
       if (step_us < 0) step_us += modulus_us;
-      const double missing_us =
-          static_cast<double>(arrival_ns - last_arrival_ns_) * 1e-3 - static_cast<double>(step_us);
-      const double wraps = std::round(missing_us / static_cast<double>(modulus_us));
-      if (wraps >= 1.0 && wraps < 1e6) step_us += static_cast<std::int64_t>(wraps) * modulus_us;
       time_us_ += step_us;
+      if (arrival_ns > 0 && known_arrival_ns_ > 0) {
+        // Against the latest arrival that is known: between two of them stamps alone count.
+        const double missing_us = static_cast<double>(arrival_ns - known_arrival_ns_) * 1e-3 -
+                                  static_cast<double>(time_us_ - known_time_us_);
+        const double wraps = std::round(missing_us / static_cast<double>(modulus_us));
+        if (wraps >= 1.0 && wraps < 1e6) time_us_ += static_cast<std::int64_t>(wraps) * modulus_us;
+      }
     } else {
       time_us_ = stamp_us;
     }
     started_ = true;
     last_us_ = stamp_us;
-    last_arrival_ns_ = arrival_ns;
+    if (arrival_ns > 0) {
+      known_arrival_ns_ = arrival_ns;
+      known_time_us_ = time_us_;
+    }
     return time_us_ * 1000;
   }
   // The device may have been switched off in between: the next stamp starts anew.
-  void restart() noexcept { started_ = false; }
+  void restart() noexcept {
+    started_ = false;
+    known_arrival_ns_ = 0;
+  }
 
  private:
   bool started_ = false;
   std::int64_t last_us_ = 0;
-  std::int64_t last_arrival_ns_ = 0;
   std::int64_t time_us_ = 0;
+  std::int64_t known_arrival_ns_ = 0, known_time_us_ = 0;  // at the latest stamp whose arrival is known
 };
 
 class Driver {

@@ -236,5 +236,78 @@ TEST(Merge, AddsAnglesTimesAndCounts) {
   EXPECT_EQ(sum.flags & kMerged, kMerged);
 }
 
+// A reader that is stopped for 4 s and then finds all that came meanwhile: the time of reading says nothing
+// of any of it. `lost`: samples that found no room, behind the first 1800.
+Increment read_late(Incrementer& incrementer, std::uint64_t lost, bool has_sequence) {
+  Increment increment;
+  std::uint64_t n = 0;
+  double angle = 0.0;
+  std::uint64_t read = 0;
+  for (; n < 5000; ++n) {
+    if (n >= 2800 && n < 2800 + lost) continue;
+    Reading reading = sample(n, 0.25);
+    reading.has_sequence = has_sequence;
+    if (n >= 1000 && n < 5000 - 100) reading.arrival_ns = 0;
+    EXPECT_TRUE(incrementer.next(reading, increment));
+    angle += increment.delta_theta_rad[0];
+    ++read;
+  }
+  EXPECT_NEAR(angle, 0.25e-3 * static_cast<double>(read), 1e-9);
+  return increment;
+}
+
+TEST(Incrementer, WhatWasReadLateIsNotMissing) {
+  Incrementer incrementer(counting_rate_sensor());
+  const Increment last = read_late(incrementer, 0, true);
+  EXPECT_EQ(incrementer.counts().missing, 0U);
+  EXPECT_EQ(incrementer.counts().gaps, 0U);
+  EXPECT_EQ(last.sequence, 4999U);
+}
+
+TEST(Incrementer, OfWhatWasReadLateTheLostAreCountedRoundsIncluded) {
+  Incrementer incrementer(counting_rate_sensor());
+  const Increment last = read_late(incrementer, 1500, true);
+  EXPECT_EQ(incrementer.counts().missing, 1500U);
+  EXPECT_EQ(last.sequence, 4999U);
+}
+
+TEST(Incrementer, ADeviceWithoutACounterReadLateHasNoGapUnlessTimeIsShort) {
+  SensorFacts facts = counting_rate_sensor();
+  facts.sequence_modulus = 0;
+  Incrementer incrementer(facts);
+  read_late(incrementer, 0, false);
+  EXPECT_EQ(incrementer.counts().missing, 0U);
+  Incrementer short_of_some(facts);
+  read_late(short_of_some, 1500, false);
+  EXPECT_NEAR(static_cast<double>(short_of_some.counts().missing), 1500.0, 5.0);
+}
+
+TEST(Incrementer, AStepOfTheWallClockMovesTheLabelAloneAndIsFlagged) {
+  for (const std::int64_t step_ns : {-5'000'000'000, 3'600'000'000'000}) {
+    for (const bool counts : {true, false}) {
+      SensorFacts facts = counting_rate_sensor();
+      if (!counts) facts.sequence_modulus = 0;
+      Incrementer incrementer(facts);
+      Increment increment;
+      double angle = 0.0, time = 0.0;
+      for (std::uint64_t n = 0; n < 4000; ++n) {
+        Reading reading = sample(n, 0.25);
+        reading.has_sequence = counts;
+        if (n >= 2000) reading.wall_shift_ns = step_ns;
+        ASSERT_TRUE(incrementer.next(reading, increment));
+        EXPECT_EQ(increment.flags, n == 2000 ? kClockStep : 0U);
+        EXPECT_NEAR(static_cast<double>(increment.utime_ns - reading.arrival_ns - reading.wall_shift_ns), 0.0,
+                    1000.0);
+        angle += increment.delta_theta_rad[0];
+        time += increment.dt_s;
+      }
+      EXPECT_NEAR(angle, 1.0, 1e-9);
+      EXPECT_NEAR(time, 4.0, 1e-9);
+      EXPECT_EQ(incrementer.counts().missing, 0U);
+      EXPECT_EQ(incrementer.counts().clock_steps, 1U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ifog

@@ -1,0 +1,49 @@
+// The clocks of everything that arrives.
+//
+// Intervals come from a clock that nobody sets: what is integrated, counted or timed out must not move when
+// somebody sets the date. The arrival clock is CLOCK_BOOTTIME (which also runs while the machine sleeps)
+// counted from the epoch as the wall clock had it when the process started, so that its numbers read like
+// times of day, and recorded times (a log's) and live ones are of one kind. The wall clock only labels: a
+// time of day is a time of the arrival clock plus wall_shift_ns().
+#pragma once
+
+#include <cstdint>
+
+namespace ifog {
+
+// CLOCK_REALTIME, the wall clock, and CLOCK_MONOTONIC, in which the system takes deadlines; ns.
+std::int64_t realtime_ns() noexcept;
+std::int64_t monotonic_ns() noexcept;
+
+// The arrival clock, ns since the epoch as the wall clock had it when the process started.
+std::int64_t arrival_clock_ns() noexcept;
+
+// How far the wall clock has been set since the process started, ns. Exactly the same value until somebody
+// sets it by more than the reading of two clocks can tell (50 µs): a label must not jitter.
+class WallShift {
+ public:
+  // Looks at both clocks. No allocation, no system call where the clocks need none.
+  std::int64_t now() noexcept;
+  // The same from readings of the two clocks, taken together.
+  std::int64_t from(std::int64_t realtime, std::int64_t arrival) noexcept;
+
+ private:
+  std::int64_t shift_ns_ = 0;
+};
+
+// The kernel stamps what it receives with the wall clock. Here such stamps are put on the arrival clock, also
+// where the wall clock was set while they waited to be read.
+class KernelStamps {
+ public:
+  // When the source is opened, and before the stamps of each read: both clocks as they stand.
+  void begin(std::int64_t realtime, std::int64_t arrival) noexcept;
+  // Never later than begin()'s time. Stamps of one read in order.
+  std::int64_t on_arrival_clock(std::int64_t stamp_ns) noexcept;
+
+ private:
+  std::int64_t now_ns_ = 0, latest_ns_ = 0;
+  std::int64_t before_ns_ = 0, after_ns_ = 0;  // wall clock less arrival clock, at the read before and now
+  bool started_ = false, stepped_ = false;
+};
+
+}  // namespace ifog
