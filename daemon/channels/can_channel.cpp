@@ -4,25 +4,23 @@
 
 #include "drivers/capture/text_file.h"
 #include "drivers/dbc/codec.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 
 CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
   const dbc::Database database = dbc::parse_database(read_text_file(dbc_file), dbc_file);
-  int found = 0;
-  for (const dbc::Message& message : database.messages)
-    for (std::size_t i = 0; i < message.signals.size(); ++i)
-      if (message.signals[i].name == signal || message.name + "." + message.signals[i].name == signal) {
-        dbc::check_fits(database, message, message.signals[i]);
-        message_ = message;
-        signal_ = i;
-        ++found;
-      }
-  if (found == 0)
-    throw std::runtime_error(dbc_file + ": no signal \"" + signal + "\"; expected SIGNAL or MESSAGE.SIGNAL");
-  if (found > 1)
-    throw std::runtime_error(dbc_file + ": signal \"" + signal +
-                             "\" is in several messages; expected MESSAGE.SIGNAL");
+  const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, signal);
+  if (found.empty())
+    throw std::runtime_error(
+        dbc_file + ": no signal " + in_quotes(signal) + "; expected SIGNAL or MESSAGE.SIGNAL" +
+        (database.warnings.empty() ? "" : " (a bad line: " + database.warnings.front() + ")"));
+  if (found.size() > 1)
+    throw std::runtime_error(dbc_file + ": signal " + in_quotes(signal) +
+                             " is in several messages; expected MESSAGE.SIGNAL");
+  dbc::check_fits(database, *found.front().message, *found.front().signal);
+  message_ = *found.front().message;
+  signal_ = static_cast<std::size_t>(found.front().signal - found.front().message->signals.data());
 }
 
 bool CanChannel::decode(const ifog_can_frame& frame, double& value) const noexcept {

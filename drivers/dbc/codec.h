@@ -17,7 +17,7 @@ std::size_t bytes_needed(const Signal& signal) noexcept;
 std::uint64_t raw_bits(const Signal& signal, std::span<const std::uint8_t> data) noexcept;
 void set_raw_bits(const Signal& signal, std::uint64_t bits, std::span<std::uint8_t> data) noexcept;
 
-// raw · scale + offset, with the sign, or as IEEE float or double.
+// raw · scale + offset, with the sign, or as IEEE half, float or double.
 double physical(const Signal& signal, std::uint64_t bits) noexcept;
 
 // The nearest raw value. Throws std::invalid_argument: NaN in an integer, out of the signal's range.

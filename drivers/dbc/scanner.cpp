@@ -3,7 +3,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
+
+#include "drivers/dbc/keywords.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog::dbc {
 namespace {
@@ -13,6 +15,9 @@ bool begins_word(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z
 bool digit(char c) { return c >= '0' && c <= '9'; }
 bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
+// A longer one is taken for an open quote, and the search for its end stays bounded.
+constexpr std::size_t kLongestString = 65536;
+
 }  // namespace
 
 void Scanner::step() {
@@ -21,7 +26,22 @@ void Scanner::step() {
 }
 
 void Scanner::skip_space() {
-  while (at_ < text_.size() && space(text_[at_])) step();
+  while (at_ < text_.size()) {
+    if (space(text_[at_]))
+      step();
+    else if (text_.substr(at_, 2) == "//")
+      skip_line();
+    else
+      return;
+  }
+}
+
+void Scanner::skip_line() {
+  while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+}
+
+void Scanner::skip_digits() {
+  while (at_ < text_.size() && digit(text_[at_])) ++at_;
 }
 
 bool Scanner::at_end() {
@@ -29,15 +49,16 @@ bool Scanner::at_end() {
   return at_ == text_.size();
 }
 
+std::string_view Scanner::rest_of_line() const {
+  const std::string_view rest = text_.substr(at_);
+  return rest.substr(0, rest.find_first_of("\r\n"));
+}
+
 void Scanner::fail(const std::string& expected) {
   constexpr std::size_t kShown = 24;
   skip_space();
-  std::string here;
-  for (std::size_t i = at_; i < text_.size() && here.size() < kShown && text_[i] != '\n' && text_[i] != '\r';
-       ++i)
-    here += text_[i] >= ' ' && text_[i] <= '~' ? text_[i] : '?';
-  throw std::runtime_error(file_ + ":" + std::to_string(line_) + ": " +
-                           (here.empty() ? "the file ends" : "'" + here + "'") + ", expected " + expected);
+  const std::string_view here = rest_of_line();
+  throw ScanError(line_, (here.empty() ? "the file ends" : in_quotes(here, kShown)) + ", expected " + expected);
 }
 
 std::string_view Scanner::peek_word() {
@@ -67,29 +88,58 @@ std::uint64_t Scanner::integer(const char* expected, std::uint64_t highest) {
 
 double Scanner::number(const char* expected) {
   skip_space();
-  if (at_ < text_.size() && text_[at_] == '+') ++at_;  // from_chars takes no plus sign
+  const std::size_t sign = at_ < text_.size() && text_[at_] == '+' ? 1 : 0;  // from_chars takes no plus sign
   double value = 0.0;
-  const char* begin = text_.data() + at_;
+  const char* begin = text_.data() + at_ + sign;
   const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
   if (error != std::errc() || !std::isfinite(value)) fail(expected);
-  at_ += static_cast<std::size_t>(end - begin);
+  at_ += static_cast<std::size_t>(end - begin) + sign;
   return value;
 }
 
+// A quote that was never closed would end at the next string's first quote and take along all that lies
+// between: it shows by a statement that begins on a line within, and no ';' behind. Then the string is not
+// read, and what follows its line is.
 std::string_view Scanner::string(const char* expected) {
   skip_space();
   if (at_ == text_.size() || text_[at_] != '"') fail(expected);
-  const std::size_t first_line = line_;
-  const std::size_t begin = ++at_;
-  while (at_ < text_.size() && text_[at_] != '"') {
+  const Scanner open = *this;
+  bool holds_statement = false;
+  ++at_;
+  while (at_ < text_.size() && text_[at_] != '"' && at_ - open.at_ < kLongestString) {
+    const bool line_end = text_[at_] == '\n' && !holds_statement;
     // A quote inside a string is written \".
     if (text_[at_] == '\\' && at_ + 1 < text_.size()) step();
     step();
+    if (line_end && rest_of_line().find_first_not_of(" \t") != std::string_view::npos)
+      holds_statement = begins_statement();
   }
-  if (at_ == text_.size())
-    throw std::runtime_error(file_ + ":" + std::to_string(first_line) +
-                             ": a string without its closing quote");
-  return text_.substr(begin, at_++ - begin);
+  if (at_ < text_.size() && text_[at_] == '"') {
+    const std::string_view content = text_.substr(open.at_ + 1, at_ - open.at_ - 1);
+    ++at_;
+    if (!holds_statement || next_is(';')) return content;
+  }
+  *this = open;
+  throw ScanError(line_, "a string without its closing quote");
+}
+
+std::string_view Scanner::one_line_string(const char* expected) {
+  skip_space();
+  const Scanner open = *this;
+  const std::string_view content = string(expected);
+  if (content.find('\n') == std::string_view::npos) return content;
+  *this = open;
+  throw ScanError(line_, "a string without its closing quote");
+}
+
+bool Scanner::next_is(char character) const {
+  Scanner ahead = *this;
+  return ahead.accept(character);
+}
+
+bool Scanner::next_is_digit() const {
+  Scanner ahead = *this;
+  return !ahead.at_end() && digit(ahead.text_[ahead.at_]);
 }
 
 bool Scanner::accept(char character) {
@@ -110,25 +160,50 @@ char Scanner::one_of(const char* characters) {
   return text_[at_++];
 }
 
-void Scanner::skip_statement() {
-  const std::size_t first_line = line_;
-  for (;;) {
-    skip_space();
-    if (at_ == text_.size())
-      throw std::runtime_error(file_ + ":" + std::to_string(first_line) +
-                               ": a statement without its closing ';'");
-    if (text_[at_] == '"') {
-      (void)string("a string");
-      continue;
-    }
-    const char c = text_[at_];
-    step();
-    if (c == ';') return;
-  }
+bool Scanner::begins_statement() const {
+  Scanner ahead = *this;
+  const std::string_view keyword = ahead.peek_word();
+  if (keyword.empty()) return false;
+  if (stands_first_only(keyword)) return true;
+  ahead.at_ += keyword.size();
+  const bool numbered = ahead.next_is_digit();
+  if (numbered) ahead.skip_space();
+  if (numbered) ahead.skip_digits();
+  if (keyword == "VERSION") return ahead.next_is('"');
+  if (keyword == "NS_" || keyword == "BS_" || keyword == "BU_") return ahead.next_is(':');
+  // Elsewhere it is BO_ 12 "text", BO_ 12 34 or, where attributes are declared, BO_ "name".
+  if (keyword == "BO_") return numbered ? !ahead.peek_word().empty() : !ahead.next_is('"');
+  // Elsewhere it is SG_ 12 name "text", SG_ 12 name 34 or SG_ "name".
+  if (keyword == "SG_" && !numbered) return !ahead.next_is('"');
+  if (keyword != "SG_" && keyword != "EV_") return false;
+  const std::string_view name = ahead.peek_word();
+  ahead.at_ += name.size();
+  return !name.empty() && ahead.next_is(':');
 }
 
-void Scanner::skip_line() {
-  while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+bool Scanner::skip_statement() {
+  (void)word("a keyword");
+  while (!at_end()) {
+    if (text_[at_] == '"') {
+      (void)string("a string");
+    } else if (begins_statement()) {
+      return false;
+    } else if (const std::string_view found = peek_word(); !found.empty()) {
+      at_ += found.size();
+    } else {
+      const char c = text_[at_];
+      step();
+      if (c == ';') return true;
+    }
+  }
+  return true;
+}
+
+void Scanner::resume() {
+  for (; at_ < text_.size() && text_[at_] != '\n'; ++at_) {
+    const bool word_begins = at_ == 0 || !(begins_word(text_[at_ - 1]) || digit(text_[at_ - 1]));
+    if (word_begins && text_[at_] == 'S' && peek_word() == "SG_" && begins_statement()) return;
+  }
 }
 
 }  // namespace ifog::dbc

@@ -1,15 +1,19 @@
 #include "drivers/host/driver_instance.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
 
-constexpr std::size_t kErrorLength = 512;
+constexpr std::size_t kErrorLength = 4096;
 using ErrorText = std::array<char, kErrorLength>;
 
 // The settings in the plugin's own order, defaults filled in.
@@ -22,8 +26,8 @@ std::vector<ifog_setting> complete(const ifog_driver& table, const DriverSetting
     const ifog_option* option = table.options;
     while (option->key != nullptr && key != option->key) ++option;
     if (option->key == nullptr)
-      throw std::runtime_error(who + "unknown option '" + key + "' (value '" + value +
-                               "'), expected one of: " + (known.empty() ? "(it has none)" : known));
+      throw std::runtime_error(who + "unknown option " + in_quotes(key) + " (value " + in_quotes(value) +
+                               "), expected one of: " + (known.empty() ? "(it has none)" : known));
   }
   std::vector<ifog_setting> all;
   for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
@@ -68,10 +72,17 @@ DriverInstance::DriverInstance(std::shared_ptr<const Plugin> plugin, const Drive
   const std::vector<ifog_setting> all = complete(table(), settings);
   ErrorText error{};
   instance_ = table().create(all.data(), all.size(), error.data(), error.size());
+  error.back() = '\0';
   if (instance_ == nullptr) {
-    error.back() = '\0';
-    throw std::runtime_error(std::string("driver ") + table().name + ": " +
-                             (error[0] == '\0' ? "was not created and gave no reason" : error.data()));
+    throw std::runtime_error(
+        std::string("driver ") + table().name + ": " +
+        (error[0] == '\0' ? "was not created and gave no reason" : printable(error.data(), kLongestMessage)));
+  }
+  for (std::string_view rest = error.data(); !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    warnings_.push_back(std::string("driver ") + table().name + ": " +
+                        printable(rest.substr(0, end), kLongestMessage));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   table().describe(instance_, &description_);
   if (const char* what = impossible(description_)) {
@@ -87,7 +98,8 @@ DriverInstance::~DriverInstance() {
 DriverInstance::DriverInstance(DriverInstance&& other) noexcept
     : plugin_(std::move(other.plugin_)),
       instance_(std::exchange(other.instance_, nullptr)),
-      description_(other.description_) {}
+      description_(other.description_),
+      warnings_(std::move(other.warnings_)) {}
 
 ifog_driver_counters DriverInstance::counters() const {
   ifog_driver_counters out{};
@@ -106,7 +118,8 @@ void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::ui
   const std::size_t before = out.size();
   if (table().encode_bytes(instance_, &sample, emit, &out, error.data(), error.size()) == 0) return;
   out.resize(before);  // a sample is encoded whole or not at all
-  throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
+  throw std::runtime_error(std::string("driver ") + table().name + ": " +
+                           printable(error.data(), kLongestMessage));
 }
 
 void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out) {
@@ -119,7 +132,8 @@ void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_
   const std::size_t before = out.size();
   if (table().encode_can(instance_, &sample, emit, &out, error.data(), error.size()) == 0) return;
   out.resize(before);
-  throw std::runtime_error(std::string("driver ") + table().name + ": " + error.data());
+  throw std::runtime_error(std::string("driver ") + table().name + ": " +
+                           printable(error.data(), kLongestMessage));
 }
 
 DriverInstance make_driver(const std::string& name, const DriverSettings& settings,

@@ -36,6 +36,8 @@ class DriverInstance {
   [[nodiscard]] bool takes_bytes() const { return (table().transports & IFOG_TRANSPORT_BYTES) != 0; }
   [[nodiscard]] bool takes_can() const { return (table().transports & IFOG_TRANSPORT_CAN) != 0; }
   [[nodiscard]] ifog_driver_counters counters() const;
+  // What the plugin could do without but its user should know: one line each.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
   // Hot path. `sink` is called with each const ifog_sample& as its last byte is seen; it must not throw. Only
   // for a driver that takes_bytes() / takes_can().
@@ -68,6 +70,7 @@ class DriverInstance {
   std::shared_ptr<const Plugin> plugin_;
   void* instance_ = nullptr;
   ifog_description description_{};
+  std::vector<std::string> warnings_;
 };
 
 // Finds, loads and creates in one go.

@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-#define IFOG_DRIVER_ABI 1u
+#define IFOG_DRIVER_ABI 2u
 #define IFOG_MAX_AXES 3
 #define IFOG_MAX_ENVIRONMENT 16
 #define IFOG_NAME_LENGTH 48
@@ -72,10 +72,12 @@ typedef struct ifog_can_frame {
 
 /* Counters only grow. The host reads them once a second from the reader thread. */
 typedef struct ifog_driver_counters {
-  uint64_t frames_good;   /* complete frames that passed every check */
-  uint64_t frames_crc;    /* frame header found, checksum wrong */
-  uint64_t frames_format; /* frame understood but a field impossible (bad number, short CAN frame, …) */
-  uint64_t bytes_skipped; /* bytes passed over to find the next frame */
+  uint64_t frames_good;     /* complete frames that passed every check */
+  uint64_t frames_crc;      /* frame header found, checksum wrong */
+  uint64_t frames_format;   /* frame understood but a field impossible (bad number, short CAN frame, …) */
+  uint64_t bytes_skipped;   /* bytes passed over to find the next frame */
+  uint64_t frames_repeated; /* good frames that came a second time and were left out */
+  uint64_t samples_incomplete; /* begun but never whole: some of their frames are missing */
 } ifog_driver_counters;
 
 /* What a configured instance will deliver. Filled by `describe`, constant afterwards. */
@@ -128,7 +130,8 @@ typedef struct ifog_driver {
   const char* summary;        /* one line */
   const ifog_option* options; /* ended by an entry whose key is NULL */
 
-  /* Makes an instance, or returns NULL with one line in error: the key, its value and what was expected. */
+  /* Makes an instance, or returns NULL with one line in error: the key, its value and what was expected. With
+   * an instance, `error` may hold warnings, one a line: the host shows them, and "" is what it finds else. */
   void* (*create)(const ifog_setting* settings, size_t count, char* error, size_t error_size);
   void (*destroy)(void* instance);
   void (*describe)(const void* instance, ifog_description* out);
@@ -138,7 +141,8 @@ typedef struct ifog_driver {
                        ifog_emit_sample emit, void* sink);
   /* One CAN frame. NULL if bytes only. */
   void (*decode_can)(void* instance, const ifog_can_frame* frame, ifog_emit_sample emit, void* sink);
-  /* Forget half-read frames: the device was closed and opened. Counters stay. */
+  /* Forget half-read frames: the device was closed and opened, or its recording has ended. Counters stay, and
+   * count what is given up: bytes as skipped, a sample begun as incomplete. */
   void (*reset)(void* instance);
   void (*counters)(const void* instance, ifog_driver_counters* out);
 

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "driver.h"
+#include "quoted.h"
 
 namespace ifog::plugin {
 
@@ -60,8 +61,7 @@ class Options {
   }
 
   [[noreturn]] void fail(std::string_view key, const std::string& expected) const {
-    throw std::invalid_argument(std::string(key) + " is '" + std::string(text(key)) + "', expected " +
-                                expected);
+    throw std::invalid_argument(std::string(key) + " is " + in_quotes(text(key)) + ", expected " + expected);
   }
 
  private:
@@ -74,6 +74,7 @@ template <typename Make>
 void* create_or_explain(const ifog_setting* settings, std::size_t count, char* error, std::size_t error_size,
                         Make&& make) noexcept {
   try {
+    if (error_size != 0) error[0] = '\0';
     return std::forward<Make>(make)(Options({settings, count}));
   } catch (const std::exception& problem) {
     if (error_size != 0) std::snprintf(error, error_size, "%s", problem.what());
@@ -81,6 +82,21 @@ void* create_or_explain(const ifog_setting* settings, std::size_t count, char* e
     if (error_size != 0) std::snprintf(error, error_size, "unknown failure while creating the driver");
   }
   return nullptr;
+}
+
+// Beside a new instance: warnings for the host to show, one a line. What does not fit is counted in the last.
+inline void explain_warnings(std::span<const std::string> warnings, char* error, std::size_t error_size) {
+  constexpr std::size_t kForCount = 64;
+  std::string all;
+  for (std::size_t i = 0; i < warnings.size(); ++i) {
+    const std::string line = printable(warnings[i], kLongestMessage);
+    if (all.size() + line.size() + 1 + kForCount > error_size) {
+      all += "and " + std::to_string(warnings.size() - i) + " more warnings\n";
+      break;
+    }
+    all += line + '\n';
+  }
+  if (error_size != 0) std::snprintf(error, error_size, "%s", all.c_str());
 }
 
 // Copies into a name field of ifog_description; a longer text is cut, the end is always marked.

@@ -119,7 +119,10 @@ class Driver {
 
   void counters(ifog_driver_counters& out) const {
     const Counters& c = rows_.counters();
-    out = {c.good, 0, c.format, c.skipped};
+    out = {};
+    out.frames_good = c.good;
+    out.frames_format = c.format;
+    out.bytes_skipped = c.skipped;
   }
 
  private:

@@ -16,6 +16,8 @@ constexpr double kNsPerSecond = 1e9;
 
 constexpr std::uint32_t bit(std::size_t i) { return 1U << i; }
 
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
 }  // namespace
 
 Decoder::Decoder(const Picks& picks) : picks_(picks) {
@@ -26,7 +28,7 @@ Decoder::Decoder(const Picks& picks) : picks_(picks) {
   if (picks.time) {
     add(Role::kTime, 0, *picks.time);
     const Signal& s = *picks.time->signal;
-    if (s.type == ValueType::kUnsigned || s.type == ValueType::kSigned)
+    if (is_integer(s.type))
       time_wrap_s_ = std::ldexp(std::abs(s.scale), static_cast<int>(s.length)) * picks.seconds_per_unit;
   }
   for (std::size_t i = 0; i < picks.environments.size(); ++i)
@@ -70,10 +72,28 @@ void Decoder::begin_sample() noexcept {
   present_ = 0;
   finite_ = 0;
   counted_ = false;
+  frames_ = 0;
+}
+
+// What is left of a sample may be a late copy of the one before.
+bool Decoder::repeats_last() const noexcept {
+  if (!last_counted_ || !counted_ || !counter_moved_ || sample_.sequence != last_sequence_) return false;
+  for (std::size_t i = 0; i < last_value_.size(); ++i)
+    if ((present_ & bit(i)) != 0 && !same(sample_.value[i], last_value_[i])) return false;
+  return true;
+}
+
+void Decoder::give_up() noexcept {
+  if (present_ != 0 && repeats_last())
+    counters_.frames_repeated += frames_;
+  else if (present_ != 0)
+    ++counters_.samples_incomplete;
+  begin_sample();
 }
 
 void Decoder::reset() noexcept {
-  begin_sample();
+  give_up();
+  last_counted_ = false;
   sample_.environment_fresh = 0;
   time_started_ = false;
 }
@@ -103,14 +123,18 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
     if (entry.role == Role::kCounter) counter = &entry;
   }
   if (brings != 0) {
-    const bool other_count = counter != nullptr && counted_ &&
-                             raw_bits(*counter->signal, data) % picks_.counter_modulus != sample_.sequence;
-    if (present_ != 0 && (other_count || (present_ & brings) != 0)) {
-      ++counters_.frames_format;
-      begin_sample();
+    const bool same_count = counter != nullptr && counted_ &&
+                            raw_bits(*counter->signal, data) % picks_.counter_modulus == sample_.sequence;
+    if (present_ != 0 && same_count && counter_moved_ && (present_ & brings) == brings &&
+        repeats(wanted, data)) {
+      ++counters_.frames_good;
+      ++counters_.frames_repeated;
+      return;
     }
+    const bool other_count = counter != nullptr && counted_ && !same_count;
+    if (present_ != 0 && (other_count || (present_ & brings) != 0)) give_up();
     if (present_ == 0 && (brings & beginning_axes_) == 0) {
-      ++counters_.frames_format;
+      ++counters_.samples_incomplete;
       return;
     }
   }
@@ -118,7 +142,18 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
     if (selected(*entry.message, *entry.signal, data) && (entry.role != Role::kCounter || brings != 0))
       set(entry, raw_bits(*entry.signal, data));
   ++counters_.frames_good;
+  if (brings != 0) ++frames_;
   if (brings != 0 && present_ == all_axes_) complete(frame.arrival_ns, emit, sink);
+}
+
+// Whether the values of the frame's axes are those that are there already.
+bool Decoder::repeats(const Wanted& wanted, std::span<const std::uint8_t> data) const noexcept {
+  for (const Entry& entry : wanted.entries) {
+    if (entry.role != Role::kAxis || !selected(*entry.message, *entry.signal, data)) continue;
+    const double value = physical(*entry.signal, raw_bits(*entry.signal, data)) * entry.si_per_unit;
+    if (!same(value, sample_.value[entry.index])) return false;
+  }
+  return true;
 }
 
 void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
@@ -172,6 +207,10 @@ void Decoder::complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sin
   const bool good = !picks_.status_good || (sample_.status & picks_.status_mask) == *picks_.status_good;
   sample_.valid_axes = good ? finite_ : 0;
   emit(sink, &sample_);
+  counter_moved_ = counter_moved_ || (counted_ && last_counted_ && sample_.sequence != last_sequence_);
+  last_counted_ = counted_;
+  last_sequence_ = sample_.sequence;
+  std::copy_n(std::begin(sample_.value), last_value_.size(), last_value_.begin());
   begin_sample();
   sample_.environment_fresh = 0;
 }

@@ -1,7 +1,9 @@
 // From CAN frames to samples by a DBC file's description. No allocation after construction.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "drivers/plugins/dbc/picks.h"
@@ -14,8 +16,10 @@ namespace ifog::dbc {
 //   - an axis that comes a second time;
 //   - where some axis's frame carries no counter: the frame of the lowest id. It begins a sample, because
 //     frames queued together leave in the order of their ids (arbitration).
-// So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. Environment,
-// status and time may be in frames of their own; they go with the next sample that completes.
+// So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. A frame that
+// comes twice, same counter and same values, changes nothing and is counted too; a sample of one frame passes
+// on, and whoever counts samples sees it. Environment, status and time may be in frames of their own; they go
+// with the next sample that completes.
 class Decoder {
  public:
   explicit Decoder(const Picks& picks);
@@ -23,8 +27,8 @@ class Decoder {
   void decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
   void reset() noexcept;
 
-  // frames_format: frames too short for a signal, samples given up incomplete, frames whose sample's
-  // beginning was lost
+  // frames_format: frames too short for a signal. samples_incomplete: begun and given up, and frames whose
+  // sample's beginning was lost. frames_good: all others, with frames_repeated among them.
   [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
 
  private:
@@ -47,7 +51,10 @@ class Decoder {
   void learn_order();
   void take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
   void set(const Entry& entry, std::uint64_t bits) noexcept;
+  [[nodiscard]] bool repeats(const Wanted& wanted, std::span<const std::uint8_t> data) const noexcept;
+  [[nodiscard]] bool repeats_last() const noexcept;
   void begin_sample() noexcept;
+  void give_up() noexcept;
   void complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept;
   std::int64_t unwrapped_ns(double seconds) noexcept;
 
@@ -57,7 +64,13 @@ class Decoder {
   std::uint32_t beginning_axes_ = 0;  // any of which begins a sample
   std::uint32_t present_ = 0;         // axes of the sample being gathered
   std::uint32_t finite_ = 0;
-  bool counted_ = false;  // its counter is known
+  bool counted_ = false;      // its counter is known
+  std::uint32_t frames_ = 0;  // that brought axes of it
+  // The last whole one, if it was counted. A counter that has never moved does not tell one sample from
+  // another.
+  bool last_counted_ = false, counter_moved_ = false;
+  std::uint32_t last_sequence_ = 0;
+  std::array<double, IFOG_MAX_AXES> last_value_{};
   ifog_sample sample_{};
   double time_wrap_s_ = 0.0;  // the device's clock starts again at this; 0: it is a float and does not
   double last_time_s_ = 0.0;

@@ -112,8 +112,7 @@ void Encoder::put(const Layout& layout, const ifog_sample& sample, ifog_emit_can
   const std::span<std::uint8_t> data(frame.data, frame.length);
   for (const auto& [selector, value] : layout.selection) set_raw_bits(*selector, value, data);
   for (const Entry& entry : layout.entries) {
-    const bool integer =
-        entry.signal->type == ValueType::kUnsigned || entry.signal->type == ValueType::kSigned;
+    const bool integer = is_integer(entry.signal->type);
     // An integer has no way to say "unknown"; the bits stay 0.
     if (entry.role == Role::kEnvironment && integer && std::isnan(sample.environment[entry.index])) continue;
     set_raw_bits(*entry.signal, bits_of(entry, sample), data);

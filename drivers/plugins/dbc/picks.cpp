@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
 
+#include "drivers/ifog/quoted.h"
 #include "drivers/plugins/dbc/units.h"
 
 namespace ifog::dbc {
@@ -46,13 +47,28 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+// A DBC file of a whole vehicle has some megabytes; a device or an endless file given by mistake has more.
+constexpr std::size_t kLargestFile = 64U << 20U;
+
 std::string file_text(const plugin::Options& options) {
   const std::string path(options.text("dbc"));
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    options.fail("dbc", "a regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file) options.fail("dbc", "a DBC file that can be read");
-  std::string text(std::istreambuf_iterator<char>(file), {});
+  std::string text;
+  std::vector<char> block(1U << 16U);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kLargestFile) options.fail("dbc", "a DBC file of at most 64 MiB");
+  }
   if (file.bad() || text.empty()) options.fail("dbc", "a DBC file that can be read and is not empty");
   return text;
+}
+
+std::string shown(const Pick& pick) {
+  return printable(display_name(*pick.message) + "." + display_name(*pick.signal), 2 * kLongestQuote);
 }
 
 std::optional<std::uint64_t> whole_number(std::string_view text) {
@@ -85,16 +101,7 @@ class Reader {
   }
 
  private:
-  std::vector<Pick> find(std::string_view name) const {
-    const std::size_t dot = name.find('.');
-    const std::string_view message = dot == std::string_view::npos ? std::string_view() : name.substr(0, dot);
-    const std::string_view signal = dot == std::string_view::npos ? name : name.substr(dot + 1);
-    std::vector<Pick> found;
-    for (const Message& m : out_.database.messages)
-      for (const Signal& s : m.signals)
-        if (s.name == signal && (message.empty() || m.name == message)) found.push_back({&m, &s});
-    return found;
-  }
+  std::vector<Pick> find(std::string_view name) const { return find_signals(out_.database, name); }
 
   std::string known_signals() const {
     constexpr std::size_t kShown = 12;
@@ -102,16 +109,21 @@ class Reader {
     std::size_t n = 0;
     for (const Message& m : out_.database.messages)
       for (const Signal& s : m.signals)
-        if (n++ < kShown) list += (list.empty() ? "" : ", ") + m.name + "." + s.name;
-    return list + (n > kShown ? ", … (" + std::to_string(n) + " in all)" : "");
+        if (n++ < kShown) list += (list.empty() ? "" : ", ") + shown(Pick{&m, &s});
+    list += n > kShown ? ", … (" + std::to_string(n) + " in all)" : "";
+    // It may stand on a line that could not be read.
+    const std::vector<std::string>& bad = out_.database.warnings;
+    if (!bad.empty())
+      list += "; " + std::to_string(bad.size()) + " bad lines in it, the first: " + bad.front();
+    return list;
   }
 
   Pick one(std::string_view key, std::string_view name) const {
     const std::vector<Pick> found = find(name);
     if (found.empty()) options_.fail(key, "a signal of " + out_.database.file + ": " + known_signals());
     if (found.size() > 1)
-      options_.fail(key, "one signal, with its message before a dot; '" + std::string(name) + "' may be " +
-                             found[0].name() + " or " + found[1].name());
+      options_.fail(key, "one signal, with its message before a dot; " + in_quotes(name) + " may be " +
+                             shown(found[0]) + " or " + shown(found[1]));
     check_fits(out_.database, *found[0].message, *found[0].signal);
     return found[0];
   }
@@ -130,10 +142,11 @@ class Reader {
       const std::optional<double> scale = angle_unit(unit, out_.kind == IFOG_RATE, !automatic);
       if (!scale)
         options_.fail(
-            "unit", "a unit of " +
-                        std::string(out_.kind == IFOG_RATE ? "angular rate (rad/s, deg/s, deg/h, …)"
-                                                           : "angle (rad, deg, arcsec, …)") +
-                        (automatic ? ", as the DBC file gives '" + unit + "' for " + axis.pick.name() : ""));
+            "unit",
+            "a unit of " +
+                std::string(out_.kind == IFOG_RATE ? "angular rate (rad/s, deg/s, deg/h, …)"
+                                                   : "angle (rad, deg, arcsec, …)") +
+                (automatic ? ", as the DBC file gives " + in_quotes(unit) + " for " + shown(axis.pick) : ""));
       axis.si_per_unit = *scale;
       out_.axes.push_back(std::move(axis));
     }
@@ -148,7 +161,7 @@ class Reader {
       double here = 2.0 * std::numbers::pi;
       if (word != "auto")
         here = options_.number("wrap", 1e-12, 1e12, "auto, none or a number > 0") * axis.si_per_unit;
-      else if (s.type == ValueType::kUnsigned || s.type == ValueType::kSigned)
+      else if (is_integer(s.type))
         here = std::ldexp(std::abs(s.scale), static_cast<int>(s.length)) * axis.si_per_unit;
       if (out_.angle_wrap_rad != 0.0 && out_.angle_wrap_rad != here)
         options_.fail("wrap", "a number: the axes' signals have different ranges");
@@ -170,10 +183,9 @@ class Reader {
       if (std::none_of(out_.axes.begin(), out_.axes.end(),
                        [&](const Axis& axis) { return axis.pick.message == pick.message; }))
         options_.fail("counter",
-                      "a signal in a message that carries an axis; " + pick.name() + " is in none");
+                      "a signal in a message that carries an axis; " + shown(pick) + " is in none");
       check_fits(out_.database, *pick.message, *pick.signal);
-      if (pick.signal->type != ValueType::kUnsigned && pick.signal->type != ValueType::kSigned)
-        options_.fail("counter", "an integer signal");
+      if (!is_integer(pick.signal->type)) options_.fail("counter", "an integer signal");
       if (pick.signal->length != out_.counter.front().signal->length)
         options_.fail("counter", "counters of one length in all messages");
     }
@@ -209,8 +221,8 @@ class Reader {
     out_.time = one("time", options_.text("time"));
     const std::optional<double> unit = time_unit(out_.time->signal->unit);
     if (!unit)
-      options_.fail("time", "a signal whose unit in the DBC file is s, ms, us or ns; it is '" +
-                                out_.time->signal->unit + "'");
+      options_.fail("time", "a signal whose unit in the DBC file is s, ms, us or ns; it is " +
+                                in_quotes(out_.time->signal->unit));
     out_.seconds_per_unit = *unit;
   }
 
@@ -225,7 +237,7 @@ class Reader {
       const std::string_view column = trimmed(item.substr(0, equals));
       if (equals == std::string_view::npos || column.empty() || column.size() >= IFOG_NAME_LENGTH)
         options_.fail("environment",
-                      "COLUMN=SIGNAL, several separated by commas; '" + std::string(item) + "' is not");
+                      "COLUMN=SIGNAL, several separated by commas; " + in_quotes(item) + " is not");
       for (const Environment& other : out_.environments)
         if (other.column == column) options_.fail("environment", "each column once");
       if (out_.environments.size() == IFOG_MAX_ENVIRONMENT)

@@ -14,13 +14,8 @@
 
 namespace ifog::dbc {
 
-// A signal of the database. Both are addresses inside Picks::database, which does not change after reading.
-struct Pick {
-  const Message* message = nullptr;
-  const Signal* signal = nullptr;
-
-  [[nodiscard]] std::string name() const { return message->name + "." + signal->name; }
-};
+// Addresses inside Picks::database, which does not change after reading.
+using Pick = SignalInMessage;
 
 struct Axis {
   std::string name;  // "x", "y", "z", or "" for the one axis of `signal`

@@ -23,6 +23,7 @@ class Driver {
   Decoder& decoder() { return *decoder_; }
   [[nodiscard]] const Decoder& decoder() const { return *decoder_; }
   Encoder& encoder() { return *encoder_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return picks_.database.warnings; }
 
   void describe(ifog_description& out) const {
     out = {};
@@ -71,7 +72,11 @@ const ifog_driver kTable{
     .options = option_list(),
     .create = [](const ifog_setting* settings, size_t count, char* error, size_t error_size) -> void* {
       return plugin::create_or_explain(settings, count, error, error_size,
-                                       [](const plugin::Options& options) { return new Driver(options); });
+                                       [&](const plugin::Options& options) {
+                                         auto driver = std::make_unique<Driver>(options);
+                                         plugin::explain_warnings(driver->warnings(), error, error_size);
+                                         return driver.release();
+                                       });
     },
     .destroy = [](void* instance) { delete static_cast<Driver*>(instance); },
     .describe = [](const void* instance, ifog_description* out) { self(instance).describe(*out); },

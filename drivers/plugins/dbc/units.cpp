@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numbers>
+#include <string>
 #include <utility>
 
 namespace ifog::dbc {
@@ -9,25 +10,56 @@ namespace {
 
 using Unit = std::pair<std::string_view, double>;
 
+constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-// "\xB0" is the degree sign in Latin-1, the encoding DBC editors write.
 constexpr std::array kAngles{Unit{"rad", 1.0},
+                             Unit{"rads", 1.0},
+                             Unit{"radian", 1.0},
+                             Unit{"radians", 1.0},
                              Unit{"mrad", 1e-3},
+                             Unit{"millirad", 1e-3},
                              Unit{"urad", 1e-6},
+                             Unit{"microrad", 1e-6},
                              Unit{"nrad", 1e-9},
                              Unit{"deg", kDegree},
+                             Unit{"degs", kDegree},
                              Unit{"degree", kDegree},
                              Unit{"degrees", kDegree},
-                             Unit{"°", kDegree},
-                             Unit{"\xB0", kDegree},
+                             Unit{"cdeg", kDegree * 1e-2},
                              Unit{"mdeg", kDegree * 1e-3},
+                             Unit{"millideg", kDegree * 1e-3},
+                             Unit{"udeg", kDegree * 1e-6},
                              Unit{"arcmin", kDegree / 60.0},
                              Unit{"arcsec", kDegree / 3600.0},
-                             Unit{"rev", 2.0 * std::numbers::pi}};
+                             Unit{"gon", kTurn / 400.0},
+                             Unit{"rev", kTurn},
+                             Unit{"revs", kTurn},
+                             Unit{"revolution", kTurn},
+                             Unit{"revolutions", kTurn},
+                             Unit{"turn", kTurn},
+                             Unit{"turns", kTurn},
+                             Unit{"unit_degreofarc", kDegree}};
 
-constexpr std::array kTimes{Unit{"s", 1.0},   Unit{"sec", 1.0},  Unit{"ms", 1e-3},  Unit{"us", 1e-6},
-                            Unit{"ns", 1e-9}, Unit{"min", 60.0}, Unit{"h", 3600.0}, Unit{"hr", 3600.0}};
+// What stands for a turn where the time is a minute and only there. By ISO 80000-3 "1/min" is a rotational
+// frequency, while "1/s" may be an angular velocity as well; r and U (Umdrehung) are revolutions.
+constexpr std::array<std::string_view, 4> kPerMinute{"1", "", "r", "u"};
+
+constexpr std::array kRates{Unit{"dps", kDegree},
+                            Unit{"mdps", kDegree * 1e-3},
+                            Unit{"dph", kDegree / 3600.0},
+                            Unit{"degps", kDegree},
+                            Unit{"radps", 1.0},
+                            Unit{"rpm", kTurn / 60.0},
+                            Unit{"upm", kTurn / 60.0},
+                            Unit{"unit_degreofarcpersecon", kDegree},
+                            Unit{"unit_minutinver", kTurn / 60.0}};
+
+constexpr std::array kTimes{
+    Unit{"s", 1.0},       Unit{"sec", 1.0},   Unit{"secs", 1.0},  Unit{"second", 1.0},
+    Unit{"seconds", 1.0}, Unit{"sek", 1.0},   Unit{"ms", 1e-3},   Unit{"msec", 1e-3},
+    Unit{"us", 1e-6},     Unit{"usec", 1e-6}, Unit{"ns", 1e-9},   Unit{"min", 60.0},
+    Unit{"minute", 60.0}, Unit{"h", 3600.0},  Unit{"hr", 3600.0}, Unit{"hour", 3600.0}};
 
 template <std::size_t N>
 std::optional<double> find(const std::array<Unit, N>& units, std::string_view text) {
@@ -36,18 +68,98 @@ std::optional<double> find(const std::array<Unit, N>& units, std::string_view te
   return std::nullopt;
 }
 
+struct Spelling {
+  std::string_view from, to;
+};
+
+// Longer ones first: the byte B0 alone is Latin-1, and within C2 B0 it is not.
+constexpr std::array kSpellings{
+    Spelling{"\xC3\x82\xC2\xB0", "deg"},  // UTF-8 taken for Latin-1 and coded again
+    Spelling{"\xC2\xB0", "deg"},
+    Spelling{"\xC2\xBA", "deg"},              // the ordinal sign, easily mistaken for it
+    Spelling{"\x81\x8B", "deg"},              // Shift-JIS
+    Spelling{"\xA1\xE3", "deg"},              // GBK
+    Spelling{"\xA1\xC6", "deg"},              // CP949
+    Spelling{"\xC2\xB5", "u"},                // the micro sign
+    Spelling{"\xCE\xBC", "u"},                // the Greek letter
+    Spelling{"\xC2\xB7", "*"},                // a middle dot
+    Spelling{"\xE2\x8B\x85", "*"},            // the dot operator
+    Spelling{"\xE2\x81\xBB\xC2\xB9", "^-1"},  // as superscripts
+    Spelling{"\xB0", "deg"},
+    Spelling{"\xBA", "deg"},
+    Spelling{"\xB5", "u"},
+    Spelling{"Grad", "deg"}};
+
+std::string_view trimmed(std::string_view text, std::string_view what) {
+  const std::size_t from = text.find_first_not_of(what);
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(what) - from + 1);
+}
+
+// In ASCII, lower case, without blanks at the ends and brackets around. "" where case decides and leaves it
+// open.
+std::string plain(std::string_view text) {
+  constexpr std::string_view kBlank = " \t";
+  text = trimmed(text, kBlank);
+  if (text.size() > 2 && (text.front() == '[' || text.front() == '(') &&
+      text.back() == (text.front() == '[' ? ']' : ')'))
+    text = trimmed(text.substr(1, text.size() - 2), kBlank);
+  std::string out;
+  while (!text.empty()) {
+    const Spelling* found = nullptr;
+    for (const Spelling& spelling : kSpellings)
+      if (found == nullptr && text.starts_with(spelling.from)) found = &spelling;
+    if (found != nullptr) {
+      out += found->to;
+      text.remove_prefix(found->from.size());
+      continue;
+    }
+    const char c = text.front();
+    out += c >= 'A' && c <= 'Z' && !(c == 'M' && out.empty() && !text.starts_with("Min"))
+               ? static_cast<char>(c - 'A' + 'a')
+               : c;
+    text.remove_prefix(1);
+  }
+  return out;
+}
+
+struct Quotient {
+  std::string_view angle, time;
+};
+
+std::optional<Quotient> quotient(std::string_view text) {
+  constexpr std::string_view kBetween = " \t_*.";
+  if (text.ends_with("-1")) {
+    text = trimmed(text.substr(0, text.size() - 2), " ^*");
+    std::size_t at = text.size();
+    while (at > 0 && text[at - 1] >= 'a' && text[at - 1] <= 'z') --at;
+    return Quotient{trimmed(text.substr(0, at), kBetween), text.substr(at)};
+  }
+  for (const std::string_view sign : {"/", "per"})
+    if (const std::size_t at = text.find(sign); at != std::string_view::npos)
+      return Quotient{trimmed(text.substr(0, at), kBetween),
+                      trimmed(text.substr(at + sign.size()), kBetween)};
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::optional<double> time_unit(std::string_view text) { return find(kTimes, text); }
+std::optional<double> time_unit(std::string_view text) { return find(kTimes, plain(text)); }
 
 std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rate) {
-  if (!rate) return find(kAngles, text);
-  if (text == "rpm") return 2.0 * std::numbers::pi / 60.0;
-  const std::size_t slash = text.find('/');
-  if (slash == std::string_view::npos) return bare_rate ? find(kAngles, text) : std::nullopt;
-  const std::optional<double> angle = find(kAngles, text.substr(0, slash));
-  const std::optional<double> time = time_unit(text.substr(slash + 1));
-  if (!angle || !time) return std::nullopt;
+  const std::string unit = plain(text);
+  const std::optional<double> bare = find(kAngles, unit);
+  if (!rate || (bare && bare_rate)) return bare;
+  if (const std::optional<double> known = find(kRates, unit)) return known;
+  const std::optional<Quotient> parts = quotient(unit);
+  if (!parts) return std::nullopt;
+  const std::optional<double> time = find(kTimes, parts->time);
+  if (!time) return std::nullopt;
+  if (*time == 60.0)
+    for (const std::string_view turn : kPerMinute)
+      if (parts->angle == turn) return kTurn / *time;
+  const std::optional<double> angle = find(kAngles, parts->angle);
+  if (!angle) return std::nullopt;
   return *angle / *time;
 }
 

@@ -6,8 +6,12 @@
 
 namespace ifog::dbc {
 
-// rad (for a rate: rad/s) per unit. A rate needs "/s", "/min" or "/h" behind the angle, unless `bare_rate`
-// lets a bare angle unit stand for "per second". Nothing for a text that is no such unit.
+// rad (for a rate: rad/s) per unit; nothing for a text that is no such unit. `bare_rate` lets a bare angle
+// unit stand for "per second". Read are the spellings that DBC files hold: upper or lower case; the degree
+// sign in UTF-8, Latin-1, Shift-JIS, GBK and CP949; µ; "/", "per" and "s^-1"; one pair of brackets around.
+//
+// Refused because two meanings are about: "grad" (a degree in German, where it has a capital, else 1/400 of a
+// turn: "gon"), "1/s", "Hz" and "rps" (turns or radians), "Mrad" (milli or mega).
 std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rate);
 
 // Seconds per unit.

@@ -78,7 +78,10 @@ class Driver {
 
   void counters(ifog_driver_counters& out) const {
     const LineFinder::Counters& c = finder_.counters();
-    out = {c.good, 0, c.malformed, c.bytes_skipped};
+    out = {};
+    out.frames_good = c.good;
+    out.frames_format = c.malformed;
+    out.bytes_skipped = c.bytes_skipped;
   }
 
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {

@@ -179,7 +179,11 @@ class Driver {
 
   void counters(ifog_driver_counters& out) const {
     const FrameFinder::Counters& found = finder_.counters();
-    out = {found.intact - other_format_, found.crc_failed, other_format_, found.bytes_skipped};
+    out = {};
+    out.frames_good = found.intact - other_format_;
+    out.frames_crc = found.crc_failed;
+    out.frames_format = other_format_;
+    out.bytes_skipped = found.bytes_skipped;
   }
 
   // Throws std::invalid_argument: a value the format has no room for.
