@@ -16,8 +16,8 @@ CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
         dbc_file + ": no signal " + in_quotes(signal) + "; expected SIGNAL or MESSAGE.SIGNAL" +
         (database.warnings.empty() ? "" : " (a bad line: " + database.warnings.front() + ")"));
   if (found.size() > 1)
-    throw std::runtime_error(dbc_file + ": signal " + in_quotes(signal) +
-                             " is in several messages; expected MESSAGE.SIGNAL");
+    throw std::runtime_error(dbc_file + ": signal \"" + printable(signal) +
+                             "\" is in several messages; expected MESSAGE.SIGNAL");
   dbc::check_fits(database, *found.front().message, *found.front().signal);
   message_ = *found.front().message;
   signal_ = static_cast<std::size_t>(found.front().signal - found.front().message->signals.data());

@@ -16,6 +16,7 @@
 
 #include "daemon/channels/can_channel.h"
 #include "daemon/channels/lcm_field.h"
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
 
 namespace ifog {
@@ -149,7 +150,8 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
   }
   if (!impl_->messages.empty()) {
     impl_->lcm = lcm_create(lcm_url.c_str());
-    if (impl_->lcm == nullptr) throw std::runtime_error("lcm_url = \"" + lcm_url + "\": LCM cannot use it");
+    if (impl_->lcm == nullptr)
+      throw std::runtime_error("lcm_url = \"" + printable(lcm_url) + "\": LCM cannot use it");
     std::vector<std::string> names;
     for (const LcmChannel& one : impl_->messages) names.push_back(one.lcm_channel());
     std::sort(names.begin(), names.end());

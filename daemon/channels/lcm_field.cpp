@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/estimator/estimator.h"
 
 namespace ifog {
@@ -62,7 +63,7 @@ LcmField::LcmField(const std::string& text) : name_(text.substr(0, text.find('['
   const bool axis = within_.size() == 1 && within_[0] >= '0' && within_[0] < '0' + kMaxAxes;
   if (!closed || !by_axis || !axis)
     throw std::runtime_error(
-        "sensor.channel.field = \"" + text +
+        "sensor.channel.field = \"" + printable(text) +
         "\": expected the name in an ifog.channel_t; raw[i], compensated[i], denoised[i] of an ifog.rate_t; "
         "channel_value[NAME], nis_mean[i], whiteness[i], measurement_noise[i] or a number of an "
         "ifog.status_t; i = 0 ... 2");

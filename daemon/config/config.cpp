@@ -9,6 +9,7 @@
 
 #include "daemon/config/table_reader.h"
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
 
 namespace ifog {
@@ -165,7 +166,7 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   out.line = table.source().begin.line;
   out.name = in.required_text("name", "a name, letters, digits, _ and -");
   if (!out.name.empty() && !good_name(out.name))
-    in.complain("name", " = '" + out.name + "': expected at most 32 letters, digits, _ and -");
+    in.complain("name", " = " + in_quotes(out.name) + ": expected at most 32 letters, digits, _ and -");
   out.driver = in.required_text("driver", "the name of a driver, see `ifog drivers`");
   out.model = context.absolute(in.text("model").value_or(""));
   take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
@@ -177,7 +178,8 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
     TableReader reader(*options, "sensor.options", context.file, context.errors);
     for (const auto& [key, node] : *options) {
       if (node.is_table() || node.is_array())
-        reader.complain(key.str(), " = " + as_written(node) + ": expected a text, a number, true or false");
+        reader.complain(key.str(),
+                        " = " + printable(as_written(node)) + ": expected a text, a number, true or false");
       else
         out.options[std::string(key.str())] = node.is_string() ? node.as_string()->get() : as_written(node);
     }
@@ -192,7 +194,7 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
     const std::string& name = out.channels.back().name;
     if (!name.empty() && !names.insert(name).second)
       TableReader(*channel, "sensor.channel", context.file, context.errors)
-          .complain("name", " = '" + name + "': this sensor has a channel of that name already");
+          .complain("name", " = " + in_quotes(name) + ": this sensor has a channel of that name already");
   }
   in.refuse_the_rest();
   return out;
@@ -243,8 +245,8 @@ Config parse_config(const std::string& text, const std::string& path) {
     // By LCM channel, which has capitals only.
     if (!read.name.empty() && !channels.insert(read.lcm_channel()).second)
       TableReader(*sensor, "sensor", path, context.errors)
-          .complain("name",
-                    " = '" + read.name + "': another sensor publishes on " + read.lcm_channel() + " already");
+          .complain("name", " = " + in_quotes(read.name) + ": another sensor publishes on " +
+                                read.lcm_channel() + " already");
   }
   if (!in.has("sensor")) context.errors.push_back(path + ": no [[sensor]]: expected at least one");
   in.refuse_the_rest();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
 
 namespace ifog {
@@ -40,10 +41,7 @@ std::string as_written(const toml::node& node) {
     node.visit([&out](const auto& value) {
       if constexpr (toml::is_value<decltype(value)>) out << value;
     });
-  std::string text = out.str();
-  constexpr std::size_t kLongest = 60;
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
-  return text;
+  return out.str();
 }
 
 std::string TableReader::path(std::string_view key) const {
@@ -57,7 +55,8 @@ std::uint32_t TableReader::line(std::string_view key) const {
 }
 
 void TableReader::complain(std::string_view key, const std::string& what) {
-  errors_.push_back(file_ + ":" + std::to_string(line(key)) + ": " + one_line(path(key) + what));
+  errors_.push_back(file_ + ":" + std::to_string(line(key)) + ": " +
+                    printable(path(key) + what, kLongestMessage));
 }
 
 const toml::node* TableReader::find(std::string_view key) {
@@ -66,7 +65,7 @@ const toml::node* TableReader::find(std::string_view key) {
 }
 
 void TableReader::wrong(std::string_view key, const toml::node& node, const std::string& expected) {
-  complain(key, " = " + as_written(node) + ": expected " + expected);
+  complain(key, " = " + printable(as_written(node)) + ": expected " + expected);
 }
 
 std::optional<std::string> TableReader::text(std::string_view key) {
@@ -188,7 +187,7 @@ void TableReader::refuse_the_rest() {
     std::string known;
     for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
     errors_.push_back(file_ + ":" + std::to_string(key.source().begin.line) + ": " +
-                      one_line(path(key.str())) + ": unknown key; known here: " + known);
+                      printable(path(key.str())) + ": unknown key; known here: " + known);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -74,9 +75,11 @@ Housekeeping::Housekeeping(Config config) : config_(std::move(config)), log_(mak
                                                          .parts = std::move(parts),
                                                          .report = std::move(report),
                                                          .log = make_log(sensor.name)}));
+      for (const std::string& warning : sensors_.back()->parts.pipeline->reader().driver().warnings())
+        sensors_.back()->log->warn("{}", warning);
     } catch (const std::exception& error) {
       errors += (errors.empty() ? "" : "\n") + config_.file + ":" + std::to_string(sensor.line) +
-                ": sensor \"" + sensor.name + "\": " + error.what();
+                ": sensor \"" + printable(sensor.name) + "\": " + error.what();
     }
   }
   if (!errors.empty()) throw ConfigError(errors);

@@ -21,6 +21,9 @@ constexpr std::array kFaults{
     Named{"frames_crc", &status_t::frames_crc},
     Named{"frames_format", &status_t::frames_format},
     Named{"bytes_skipped", &status_t::bytes_skipped},
+    Named{"frames_repeated", &status_t::frames_repeated},
+    Named{"samples_repeated", &status_t::samples_repeated},
+    Named{"samples_incomplete", &status_t::samples_incomplete},
     Named{"sequence_gaps", &status_t::sequence_gaps},
     Named{"sequence_missing", &status_t::sequence_missing},
     Named{"ring_overflows", &status_t::ring_overflows},
@@ -127,6 +130,9 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.frames_crc = as_signed(reader.frames_crc.value());
   now_.frames_format = as_signed(reader.frames_format.value() + line.malformed);
   now_.bytes_skipped = as_signed(reader.bytes_skipped.value());
+  now_.frames_repeated = as_signed(reader.frames_repeated.value());
+  now_.samples_repeated = as_signed(reader.repeated.value());
+  now_.samples_incomplete = as_signed(reader.samples_incomplete.value());
   now_.sequence_gaps = as_signed(reader.gaps.value());
   now_.sequence_missing = as_signed(reader.missing.value());
   now_.ring_overflows = as_signed(pipeline.queue().overflows());

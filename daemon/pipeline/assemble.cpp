@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
 #include "drivers/transport/file.h"
 #include "drivers/transport/serial.h"
@@ -22,8 +23,8 @@ std::vector<CanId> wanted_ids(const ifog_description& description) {
 
 void require(bool fits, const SensorConfig& sensor, const char* type, const char* needs) {
   if (!fits)
-    throw std::runtime_error("driver \"" + sensor.driver + "\" cannot be fed from a transport of type \"" +
-                             type + "\": it takes " + needs);
+    throw std::runtime_error("driver \"" + printable(sensor.driver) +
+                             "\" cannot be fed from a transport of type \"" + type + "\": it takes " + needs);
 }
 
 std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const DriverInstance& driver) {
@@ -65,7 +66,7 @@ SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverIn
   SerialSettings settings = sensor.transport.serial;
   if (settings.baud == 0) settings.baud = driver.description().baud;
   if (settings.baud == 0)
-    throw std::runtime_error("sensor.transport.baud: missing, and driver \"" + sensor.driver +
+    throw std::runtime_error("sensor.transport.baud: missing, and driver \"" + printable(sensor.driver) +
                              "\" prescribes no speed; expected bits a second");
   return settings;
 }
@@ -105,14 +106,15 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
     if (of_frame && known == out.channels.end()) {
       std::string list;
       for (const std::string& name : out.channels) list += (list.empty() ? "" : ", ") + name;
-      throw std::runtime_error("sensor.channel \"" + channel.name + "\": the frames of driver \"" +
+      throw std::runtime_error("sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
                                sensor.driver + "\" carry " + (list.empty() ? "no channels" : list));
     }
     if (of_frame) {
       out.channel_max_age_s[static_cast<std::size_t>(known - out.channels.begin())] = channel.max_age_s;
     } else if (known != out.channels.end()) {
       throw std::runtime_error(
-          "sensor.channel \"" + channel.name + "\": the frames of driver \"" + sensor.driver +
+          "sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
+          printable(sensor.driver) +
           "\" carry a channel of that name; expected another name or source = \"frame\"");
     }
   }

@@ -78,6 +78,8 @@ void Reader::publish_counters() noexcept {
   counters_.frames_crc.set(driver.frames_crc);
   counters_.frames_format.set(driver.frames_format);
   counters_.bytes_skipped.set(driver.bytes_skipped);
+  counters_.frames_repeated.set(driver.frames_repeated);
+  counters_.samples_incomplete.set(driver.samples_incomplete);
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

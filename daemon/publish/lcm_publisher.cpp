@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "daemon/publish/publisher.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -12,7 +13,7 @@ class LcmPublisher final : public Publisher {
   explicit LcmPublisher(const std::string& url) : lcm_(lcm_create(url.c_str())) {
     if (lcm_ == nullptr)
       throw std::runtime_error(
-          "lcm_url = \"" + url +
+          "lcm_url = \"" + printable(url) +
           "\": LCM cannot use it; expected udpm://GROUP:PORT?ttl=N and a multicast route");
   }
   ~LcmPublisher() override { lcm_destroy(lcm_); }

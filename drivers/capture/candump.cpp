@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -69,11 +70,11 @@ class Cursor {
   std::string_view rest_;
 };
 
-bool parse_time(Cursor& in, std::int64_t& time_ns) {
+bool parse_time(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   std::uint64_t seconds = 0, fraction = 0;
   std::size_t digits = 0;
   constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
-  if (!in.literal('(') || !in.decimal(seconds, digits) || seconds > kMostSeconds) return false;
+  if (!in.literal('(') || !in.decimal(seconds, second_digits) || seconds > kMostSeconds) return false;
   if (!in.literal('.') || !in.decimal(fraction, digits) || digits > 9 || !in.literal(')')) return false;
   for (; digits < 9; ++digits) fraction *= 10;
   time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
@@ -92,30 +93,21 @@ bool parse_data(Cursor& in, std::size_t most, ifog_can_frame& frame) {
   return true;
 }
 
-}  // namespace
-
-CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexcept {
-  while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
-    line.remove_suffix(1);
-  if (line.empty() || line.front() == '#') return CandumpLine::blank;
-
-  ifog_can_frame& frame = entry.frame;
-  frame = ifog_can_frame{};
-  Cursor in(line);
-  if (!parse_time(in, frame.arrival_ns) || !in.blanks()) return CandumpLine::malformed;
-  entry.interface = in.word();
-  if (entry.interface.empty() || !in.blanks()) return CandumpLine::malformed;
-
+bool parse_id(Cursor& in, ifog_can_frame& frame, bool& error) {
   std::uint32_t id = 0, digit = 0;
   std::size_t digits = 0;
   for (; digits < 8 && in.hex(digit); ++digits) id = id << 4U | digit;
-  if ((digits != 3 && digits != 8) || !in.literal('#')) return CandumpLine::malformed;
-  const bool error = digits == 8 && (id & kErrorFlag) != 0;
-  if (digits == 3 ? id > 0x7FFU : (id & ~(kErrorFlag | kExtendedFlag)) > 0x1FFFFFFFU)
-    return CandumpLine::malformed;
+  if (digits != 3 && digits != 8) return false;
+  error = digits == 8 && (id & kErrorFlag) != 0;
+  if (digits == 3 ? id > 0x7FFU : (id & ~(kErrorFlag | kExtendedFlag)) > 0x1FFFFFFFU) return false;
   frame.id = id & 0x1FFFFFFFU;
   if (digits == 8) frame.flags |= IFOG_CAN_EXTENDED;
+  return true;
+}
 
+// Behind "#" of a line of the log.
+CandumpLine parse_log(Cursor& in, ifog_can_frame& frame) {
+  std::uint32_t digit = 0;
   bool remote = false;
   if (in.literal('#')) {
     if (!in.hex(digit)) return CandumpLine::malformed;
@@ -131,8 +123,90 @@ CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexc
   if (in.literal('_') && !in.hex(digit)) return CandumpLine::malformed;  // the raw DLC of newer can-utils
   // Newer can-utils end the line with the direction, T or R.
   if (!in.done() && (!in.blanks() || in.word().size() != 1 || !in.done())) return CandumpLine::malformed;
-  if (error) return CandumpLine::error;
   return remote ? CandumpLine::remote : CandumpLine::frame;
+}
+
+// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{F}" for a length of 8.
+CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
+  std::uint64_t length = 0;
+  std::size_t digits = 0;
+  std::uint32_t high = 0, low = 0;
+  if (in.literal('{')) {
+    if (!in.hex(high) || !in.literal('}')) return CandumpLine::malformed;
+    length = kClassicBytes;
+  } else if (!in.literal('[') || !in.decimal(length, digits) || !in.literal(']')) {
+    return CandumpLine::malformed;
+  }
+  if (digits == 2) frame.flags |= IFOG_CAN_FD;
+  if (digits > 2 || length > (digits == 2 ? kFdBytes : kClassicBytes)) return CandumpLine::malformed;
+  (void)in.blanks();
+  if (in.at('r')) {
+    const bool remote = in.word() == "remote" && in.blanks() && in.word() == "request";
+    return remote ? CandumpLine::remote : CandumpLine::malformed;
+  }
+  for (std::size_t i = 0; i < length; ++i) {
+    if ((i > 0 && !in.blanks()) || !in.hex(high) || !in.hex(low)) return CandumpLine::malformed;
+    frame.data[i] = static_cast<std::uint8_t>(high << 4U | low);
+  }
+  frame.length = static_cast<std::uint8_t>(length);
+  if (in.done()) return CandumpLine::frame;
+  if (length > 0 && !in.blanks()) return CandumpLine::malformed;
+  return in.at('\'') || in.word() == "ERRORFRAME" ? CandumpLine::frame : CandumpLine::malformed;
+}
+
+// "RX - -" or "TX B E" of candump -x.
+bool pass_direction(Cursor& in) {
+  Cursor ahead = in;
+  const std::string_view direction = ahead.word();
+  if (direction != "RX" && direction != "TX") return true;
+  for (int i = 0; i < 2; ++i)
+    if (!ahead.blanks() || ahead.word().size() != 1) return false;
+  in = ahead;
+  return in.blanks();
+}
+
+}  // namespace
+
+CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexcept {
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
+    line.remove_suffix(1);
+  // A tab begins what candump -e says of the error frame on the line before.
+  if (line.empty() || line.front() == '#' || line.front() == '\t') return CandumpLine::blank;
+
+  ifog_can_frame& frame = entry.frame;
+  frame = ifog_can_frame{};
+  entry.stamp = CandumpStamp::none;
+  Cursor in(line);
+  (void)in.blanks();
+  std::size_t digits = 0;
+  const bool timed = in.at('(');
+  if (timed && (!parse_time(in, frame.arrival_ns, digits) || !in.blanks())) return CandumpLine::malformed;
+  entry.interface = in.word();
+  if (entry.interface.empty() || !in.blanks() || !pass_direction(in)) return CandumpLine::malformed;
+
+  bool error = false;
+  if (!parse_id(in, frame, error)) return CandumpLine::malformed;
+  CandumpLine kind = CandumpLine::malformed;
+  constexpr std::size_t kEpochDigits = 10;
+  if (in.literal('#')) {
+    if (!timed) return CandumpLine::malformed;
+    entry.stamp = CandumpStamp::absolute;
+    kind = parse_log(in, frame);
+  } else if (in.blanks()) {
+    if (timed) entry.stamp = digits >= kEpochDigits ? CandumpStamp::absolute : CandumpStamp::since;
+    kind = parse_screen(in, frame);
+  }
+  return error && kind != CandumpLine::malformed ? CandumpLine::error : kind;
+}
+
+std::int64_t CandumpClock::time_ns(const CandumpEntry& entry) noexcept {
+  const std::int64_t stamp = entry.frame.arrival_ns;
+  if (entry.stamp != CandumpStamp::since) return stamp;
+  if (stamp < last_stamp_ns_) differences_ = true;
+  last_stamp_ns_ = stamp;
+  // A second on, because 0 means no time.
+  now_ns_ = differences_ ? now_ns_ + stamp : stamp;
+  return now_ns_ + 1'000'000'000;
 }
 
 std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view interface, char* out) noexcept {
@@ -165,22 +239,70 @@ std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view in
   return static_cast<std::size_t>(at - out);
 }
 
+namespace {
+
+// Hands out one line at a time; `ended` says whether it had an end.
+bool next_line(std::string_view& rest, std::string_view& line, bool& ended) {
+  if (rest.empty()) return false;
+  const std::size_t end = rest.find('\n');
+  ended = end != std::string_view::npos;
+  line = rest.substr(0, end);
+  rest.remove_prefix(ended ? end + 1 : rest.size());
+  return true;
+}
+
+// Times of candump -t d, told from those of -t z by the whole log.
+bool are_differences(std::string_view text) {
+  std::string_view line;
+  bool ended = false, all_same = true;
+  std::int64_t before = 0;
+  std::size_t n = 0;
+  while (next_line(text, line, ended)) {
+    CandumpEntry entry;
+    const CandumpLine kind = parse_candump_line(line, entry);
+    if (kind == CandumpLine::blank || kind == CandumpLine::malformed) continue;
+    if (entry.stamp != CandumpStamp::since) return false;
+    if (n > 0 && entry.frame.arrival_ns < before) return true;
+    if (n > 1 && entry.frame.arrival_ns != before) all_same = false;
+    before = entry.frame.arrival_ns;
+    ++n;
+  }
+  return n > 2 && all_same && before > 0;
+}
+
+// Without its end a line may have lost bytes and still read as a frame.
+bool shortened(const ifog_can_frame& last, const std::vector<ifog_can_frame>& frames) {
+  const auto same = std::find_if(frames.rbegin(), frames.rend(), [&](const ifog_can_frame& frame) {
+    return frame.id == last.id && frame.flags == last.flags;
+  });
+  return same != frames.rend() && last.length < same->length;
+}
+
+}  // namespace
+
 Candump read_candump(const std::string& path, std::string_view interface) {
   const std::string text = read_text_file(path);
   Candump log;
-  std::string_view rest = text;
-  for (std::size_t number = 1; !rest.empty(); ++number) {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  CandumpClock clock;
+  if (are_differences(text)) clock.assume_differences();
+  std::string_view rest = text, line;
+  bool ended = false, any = false;
+  for (std::size_t number = 1; next_line(rest, line, ended); ++number) {
     CandumpEntry entry;
     const CandumpLine kind = parse_candump_line(line, entry);
-    if (kind == CandumpLine::malformed) {
-      const char* why = rest.empty() && end == std::string_view::npos ? " (the file is cut off here)" : "";
-      throw std::runtime_error(path + ":" + std::to_string(number) + ": '" + std::string(line.substr(0, 60)) +
-                               "', " + kCandumpExpected + why);
+    if (kind == CandumpLine::malformed && (ended || !any))
+      throw std::runtime_error(path + ":" + std::to_string(number) + ": " + in_quotes(line) + ", " +
+                               kCandumpExpected);
+    if (kind == CandumpLine::malformed ||
+        (kind == CandumpLine::frame && !ended && shortened(entry.frame, log.frames))) {
+      log.cut_off = true;
+      break;
     }
-    if (kind == CandumpLine::blank || (!interface.empty() && entry.interface != interface)) continue;
+    if (kind == CandumpLine::blank) continue;
+    any = true;
+    // Every line's time counts: a difference is to the frame before, whatever its interface.
+    entry.frame.arrival_ns = clock.time_ns(entry);
+    if (!interface.empty() && entry.interface != interface) continue;
     if (kind == CandumpLine::remote) ++log.remote;
     if (kind == CandumpLine::error) ++log.error;
     if (kind != CandumpLine::frame) continue;

@@ -1,6 +1,13 @@
-// The log of can-utils' candump -l: "(1436509052.249713) can0 123#1122AABB", one frame a line.
-// CAN FD: "123##5AABB", the digit being the flags (1 bit-rate switch, 2 error state). Extended ids have 8
-// digits. Remote frames ("123#R4") and error frames (id with bit 29 set) are told apart from data.
+// What can-utils' candump writes, one frame a line, in both its formats.
+//   candump -l, -L   "(1436509052.249713) can0 123#1122AABB". CAN FD: "123##5AABB", the digit being the flags
+//   (1
+//                    bit-rate switch, 2 error state)
+//   on the screen    "  can0  123   [4]  11 22 AA BB", with a time in front (-t a, d, z), "RX - -" behind the
+//   interface
+//                    (-x) and the bytes as characters at the end (-a). CAN FD: the length has two digits,
+//                    "[08]"
+// Extended ids have 8 digits. Remote frames ("123#R4", "remote request") and error frames (id with bit 29
+// set) are told apart from data.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +22,16 @@ namespace ifog {
 
 enum class CandumpLine { frame, remote, error, blank, malformed };
 
-inline constexpr const char* kCandumpExpected = "expected '(seconds.micros) interface id#data'";
+inline constexpr const char* kCandumpExpected =
+    "expected '(seconds.micros) interface id#data' or 'interface id [length] bytes'";
+
+// candump -t d (since the frame before) and -t z (since the first) look alike: short, of 3 digits for the
+// seconds.
+enum class CandumpStamp { none, since, absolute };
 
 struct CandumpEntry {
-  ifog_can_frame frame{};      // arrival_ns is the log's time
+  ifog_can_frame frame{};  // arrival_ns is the line's time, 0 without one
+  CandumpStamp stamp = CandumpStamp::none;
   std::string_view interface;  // into the line
 };
 
@@ -33,14 +46,32 @@ inline constexpr std::size_t kCandumpLineMax = 224;
 // holds kCandumpLineMax bytes. Does not allocate.
 std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view interface, char* out) noexcept;
 
-struct Candump {
-  std::vector<ifog_can_frame> frames;  // data frames, as in the log
-  std::string interface;               // of the first of them
-  std::size_t remote = 0, error = 0;   // frames passed over
+// From the times on the lines to times that go on. Lines without one get 0. Short ones are taken for times
+// since the first frame until one is smaller than that before, which such times never are: from there on they
+// add up.
+class CandumpClock {
+ public:
+  std::int64_t time_ns(const CandumpEntry& entry) noexcept;
+  // Known from the start, by who has seen the whole log.
+  void assume_differences() noexcept { differences_ = true; }
+  [[nodiscard]] bool differences() const { return differences_; }
+
+ private:
+  bool differences_ = false;
+  std::int64_t last_stamp_ns_ = 0;
+  std::int64_t now_ns_ = 0;
 };
 
-// Reads a whole log, plain or gzip, frames of one interface only unless `interface` is empty. Throws
-// std::runtime_error with one line: file, line, what was expected.
+struct Candump {
+  std::vector<ifog_can_frame> frames;  // data frames, as in the log; arrival_ns 0 where lines have no time
+  std::string interface;               // of the first of them
+  std::size_t remote = 0, error = 0;   // frames passed over
+  bool cut_off = false;                // the last line has no end and is no whole frame: it was left out
+};
+
+// Reads a whole log, plain or gzip, frames of one interface only unless `interface` is empty. Short times are
+// differences if one is smaller than that before or all are the same. Throws std::runtime_error with one
+// line: file, line, what was expected.
 Candump read_candump(const std::string& path, std::string_view interface = {});
 
 }  // namespace ifog

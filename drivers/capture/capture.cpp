@@ -1,5 +1,6 @@
 #include "drivers/capture/capture.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -78,11 +80,11 @@ double number(const std::string& path, std::size_t line, const std::string& colu
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range)
-    fail(path, line, column + " is '" + std::string(cell) + "', outside what a double holds");
+    fail(path, line, printable(column) + " is " + in_quotes(cell) + ", outside what a double holds");
   if (error != std::errc() || end != digits.data() + digits.size())
-    fail(path, line, column + " is '" + std::string(cell) + "', expected a number, 'nan' or nothing");
+    fail(path, line, printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing");
   if (std::isinf(value))
-    fail(path, line, column + " is infinite, expected a finite number, 'nan' or nothing");
+    fail(path, line, printable(column) + " is infinite, expected a finite number, 'nan' or nothing");
   return value;
 }
 
@@ -116,12 +118,12 @@ Table parse_table(std::string_view text, const std::string& path) {
   if (names.empty()) throw std::runtime_error(path + ": no header line, expected 'time_s,rate_radps,…'");
   table.header_line = lines.number();
   if (names.front() != "time_s")
-    fail(path, lines.number(), "first column is '" + names.front() + "', expected 'time_s'");
+    fail(path, lines.number(), "first column is " + in_quotes(names.front()) + ", expected 'time_s'");
 
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (name.empty()) fail(path, lines.number(), "a column has no name");
-    if (!seen.insert(name).second) fail(path, lines.number(), "column '" + name + "' stands twice");
+    if (!seen.insert(name).second) fail(path, lines.number(), "column " + in_quotes(name) + " stands twice");
   }
 
   // Where each column's values go; nothing is added to table.columns once the addresses are taken.
@@ -132,7 +134,9 @@ Table parse_table(std::string_view text, const std::string& path) {
   // record.
   const std::size_t first_row = text.find('\n', static_cast<std::size_t>(line.data() - text.data()));
   if (first_row != std::string::npos) {
-    const std::size_t length = text.find('\n', first_row + 1) - first_row;
+    // A row has at least a separator a column: a short second line of a wide file must not ask for all
+    // memory.
+    const std::size_t length = std::max(text.find('\n', first_row + 1) - first_row, names.size());
     const std::size_t rows = length > 1 && length < text.size() ? (text.size() - first_row) / length + 1 : 1;
     for (std::vector<double>* values : target) values->reserve(rows + rows / 16);
   }
@@ -163,7 +167,7 @@ Table parse_table(std::string_view text, const std::string& path) {
     if (std::isnan(now)) fail(path, lines.number(), "time_s is missing, expected seconds");
     if (table.time_s.size() > 1 && now <= table.time_s[table.time_s.size() - 2])
       fail(path, lines.number(),
-           "time_s is " + std::string(trimmed(line.substr(0, line.find(',')))) +
+           "time_s is " + printable(trimmed(line.substr(0, line.find(',')))) +
                ", expected more than in the row before");
   }
   if (table.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
@@ -205,7 +209,8 @@ Capture parse_capture(std::string_view text, const std::string& path) {
   const auto index_of = [&](const std::string& name) {
     for (std::size_t i = 0; i < capture.axes.size(); ++i)
       if (capture.axes[i] == name) return i;
-    fail(path, table.header_line, "reference column of axis '" + name + "' has no rate column beside it");
+    fail(path, table.header_line,
+         "reference column of axis " + in_quotes(name) + " has no rate column beside it");
   };
   for (CaptureColumn& column : table.columns) {
     if (axis_of(column.name, "rate", axis))

@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 namespace {
 
@@ -30,7 +32,8 @@ std::string list_of_axes(const ifog_description& d) {
 std::size_t driver_axis(const ifog_description& d, const std::string& name) {
   for (std::uint32_t i = 0; i < d.axes; ++i)
     if (name == d.axis[i]) return i;
-  throw std::runtime_error("the driver has no axis '" + name + "', expected one of: " + list_of_axes(d));
+  throw std::runtime_error("the driver has no axis " + in_quotes(name) +
+                           ", expected one of: " + list_of_axes(d));
 }
 
 }  // namespace

@@ -40,15 +40,16 @@ RecordingCounts decode_recording(const std::string& path, DriverInstance& driver
     const Candump log = read_candump(path, interface);
     counts.remote_frames = log.remote;
     counts.error_frames = log.error;
+    counts.cut_off = log.cut_off;
     for (const ifog_can_frame& frame : log.frames) driver.decode_can(frame, take);
   } else {
-    const std::string bytes = read_text_file(path);
+    const std::string bytes = read_bytes_file(path);
     driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, 0, take);
-    // What the driver still waited for will never come.
-    const std::uint64_t before = driver.counters().bytes_skipped;
-    driver.reset();
-    counts.bytes_at_end = driver.counters().bytes_skipped - before;
   }
+  // What the driver still waited for will never come.
+  const std::uint64_t before = driver.counters().bytes_skipped;
+  driver.reset();
+  counts.bytes_at_end = driver.counters().bytes_skipped - before;
   counts.driver = driver.counters();
   return counts;
 }

@@ -27,6 +27,7 @@ struct RecordingCounts {
   ifog_driver_counters driver{};
   std::uint64_t bytes_at_end = 0;  // a frame that the file ends within; also in bytes_skipped
   std::size_t remote_frames = 0, error_frames = 0;  // of a candump log; passed over
+  bool cut_off = false;                             // a candump log that ends within a line, left out
 };
 
 // Feeds the whole recording to the driver, as `candump` if the driver takes CAN frames, else as bytes; of a

@@ -7,11 +7,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
+
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -47,20 +50,57 @@ std::string compressed(std::string_view text) {
   return out;
 }
 
-}  // namespace
+// A gzip file's content is held to this many times its size, beyond what any memory has room for.
+constexpr std::size_t kMostGrowth = 100;
+constexpr std::size_t kGrowthFree = 256U << 20U;
 
-std::string read_text_file(const std::string& path) {
+// Follows where the last line begins, block by block: no second look at each byte.
+class LineLength {
+ public:
+  // Of text, whose last n bytes are new. Throws when a line is too long, also one without its end so far.
+  void check(const std::string& path, std::string_view text, std::size_t n) {
+    const std::size_t from = text.size() - n;
+    const std::size_t first = std::min(text.find('\n', from), text.size());
+    if (first - line_ > kLongestLine) refuse(path, text);
+    const std::size_t last = text.rfind('\n');
+    if (last != std::string_view::npos && last >= from) line_ = last + 1;
+    if (text.size() - line_ > kLongestLine) refuse(path, text);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& path, std::string_view text) const {
+    const auto number = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(line_), '\n') + 1;
+    throw std::runtime_error(path + ":" + std::to_string(number) + ": a line of more than " +
+                             std::to_string(kLongestLine) + " bytes, begins " +
+                             in_quotes(text.substr(line_, kLongestQuote)));
+  }
+  std::size_t line_ = 0;
+};
+
+std::string content(const std::string& path, bool has_lines) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) throw std::runtime_error(path + ": cannot open: " + reason());
   if (S_ISDIR(info.st_mode)) throw std::runtime_error(path + ": is a folder, expected a file");
   const std::unique_ptr<gzFile_s, GzClose> file(gzopen(path.c_str(), "rbe"));
   if (!file) throw std::runtime_error(path + ": cannot open: " + reason());
   gzbuffer(file.get(), 1U << 18U);
+  const bool packed = S_ISREG(info.st_mode) && gzdirect(file.get()) == 0;
+  const std::size_t most =
+      packed ? std::max(kGrowthFree, static_cast<std::size_t>(info.st_size) * kMostGrowth) : SIZE_MAX;
   std::string text;
-  std::vector<char> block(1U << 20U);
+  LineLength lines;
+  // No larger than a line may be: then only lines that cross the end of a block can be too long.
+  std::vector<char> block(kLongestLine);
   for (;;) {
     const int n = gzread(file.get(), block.data(), static_cast<unsigned>(block.size()));
-    if (n > 0) text.append(block.data(), static_cast<std::size_t>(n));
+    if (n > 0) {
+      text.append(block.data(), static_cast<std::size_t>(n));
+      if (has_lines) lines.check(path, text, static_cast<std::size_t>(n));
+    }
+    if (text.size() > most)
+      throw std::runtime_error(path + ": grows to more than " + std::to_string(most >> 20U) + " MiB, " +
+                               std::to_string(kMostGrowth) +
+                               " times its size, when unpacked, expected a recording");
     if (n == static_cast<int>(block.size())) continue;
     // gzread also returns short at a truncated stream, and says so only through gzerror.
     int error = Z_OK;
@@ -73,6 +113,12 @@ std::string read_text_file(const std::string& path) {
     return text;
   }
 }
+
+}  // namespace
+
+std::string read_text_file(const std::string& path) { return content(path, true); }
+
+std::string read_bytes_file(const std::string& path) { return content(path, false); }
 
 void write_text_file(const std::string& path, std::string_view text) {
   std::string packed;

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 namespace {
 
@@ -67,8 +69,8 @@ std::shared_ptr<const Plugin> Plugin::load(const std::string& path) {
     refuse("built for interface version " + std::to_string(table->abi) + ", this program has version " +
            std::to_string(IFOG_DRIVER_ABI) + "; build the plugin against this version");
   if (table->name == nullptr || fs::path(path).stem() != table->name)
-    refuse("calls itself '" + std::string(table->name == nullptr ? "" : table->name) +
-           "', expected the name of its file");
+    refuse("calls itself " + in_quotes(table->name == nullptr ? "" : table->name) +
+           ", expected the name of its file");
   if (const char* missing = missing_function(*table))
     refuse(std::string("its table lacks '") + missing + "'");
   plugin->table_ = table;
@@ -115,9 +117,9 @@ std::shared_ptr<const Plugin> find_plugin(const std::string& name, const std::ve
   }
   std::string there;
   for (const std::string& each : known) there += (there.empty() ? "" : ", ") + each;
-  throw std::runtime_error("driver is '" + name +
-                           "', expected one of: " + (there.empty() ? "(none found)" : there) +
-                           " (looked in " + (searched.empty() ? "no folder: none exists" : searched) + ")");
+  throw std::runtime_error("driver is " + in_quotes(name) +
+                           ", expected one of: " + (there.empty() ? "(none found)" : there) + " (looked in " +
+                           (searched.empty() ? "no folder: none exists" : searched) + ")");
 }
 
 std::vector<FoundPlugin> list_plugins(const std::vector<std::string>& folders) {

@@ -193,6 +193,7 @@ class CandumpFile final : public FileTransport {
     pending_ = false;
     overlong_ = false;
     shift_ns_ = 0;
+    clock_ = CandumpClock();
   }
   Delivery take(std::int64_t until_ns) noexcept override;
   bool next_frame(std::int64_t until_ns) noexcept;
@@ -200,6 +201,7 @@ class CandumpFile final : public FileTransport {
   bool next_line(std::string_view& line, std::int64_t until_ns) noexcept;
 
   CandumpEntry entry_;
+  CandumpClock clock_;
   bool pending_ = false;   // entry_ is read and not yet delivered
   bool overlong_ = false;  // in a line longer than the buffer, reported already
   std::uint64_t line_ = 0;
@@ -242,7 +244,14 @@ bool CandumpFile::next_line(std::string_view& line, std::int64_t until_ns) noexc
 bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
   std::string_view line;
   while (!pending_ && next_line(line, until_ns)) {
-    switch (parse_candump_line(line, entry_)) {
+    const CandumpLine kind = parse_candump_line(line, entry_);
+    if (kind != CandumpLine::blank && kind != CandumpLine::malformed) {
+      const bool known = clock_.differences();
+      entry_.frame.arrival_ns = clock_.time_ns(entry_);
+      if (clock_.differences() != known)
+        report("times are differences (candump -t d), expected -t a or -t z", line_);
+    }
+    switch (kind) {
       case CandumpLine::frame:
         pending_ = wanted(entry_);
         break;
@@ -266,12 +275,14 @@ Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
     // With something in hand, only what is there already is added to it.
     const std::int64_t until = n == 0 ? until_ns : monotonic_ns();
     if (!next_frame(until)) break;
-    if (recorded()) {
+    const bool timed = entry_.stamp != CandumpStamp::none;
+    if (recorded() && timed) {
       if (!pace().started()) shift_ns_ = arrival_clock_ns() - monotonic_ns();
       if (!await(entry_.frame.arrival_ns, until)) break;
     }
     batch_[n] = entry_.frame;
-    if (recorded()) batch_[n].arrival_ns = pace().due_ns(entry_.frame.arrival_ns) + shift_ns_;
+    if (recorded() && timed) batch_[n].arrival_ns = pace().due_ns(entry_.frame.arrival_ns) + shift_ns_;
+    if (!timed) batch_[n].arrival_ns = arrival_clock_ns();
     ++n;
     pending_ = false;
   }

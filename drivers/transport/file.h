@@ -30,9 +30,10 @@ struct FileSettings {
   std::vector<CanId> ids;    // candump: frames of these ids only; empty: all
 };
 
-// Arrival times: a candump log's own, at recorded pace moved so that the first frame is now; bytes: the
-// moment of the read, or the moment of opening plus bytes / bytes_per_second where that is given. A .gz file
-// is read through zlib. Throws std::runtime_error on settings that contradict each other.
+// Arrival times: a candump log's own, at recorded pace moved so that the first frame is now; bytes, and
+// candump lines without a time: the moment of the read, or for bytes the moment of opening plus bytes /
+// bytes_per_second where that is given. A .gz file is read through zlib. Throws std::runtime_error on
+// settings that contradict each other.
 std::unique_ptr<Transport> make_file_transport(FileSettings settings);
 
 }  // namespace ifog

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/estimator/start_up.h"
 
 namespace ifog {
@@ -56,7 +57,7 @@ void ChainParts::use_effects(const ChainSettings& settings) {
       std::string known;
       for (const std::string& channel : settings.channels) known += (known.empty() ? "" : ", ") + channel;
       throw std::invalid_argument(
-          "the model uses channel \"" + name +
+          "the model uses channel \"" + printable(name) +
           "\", which this sensor does not have; it has: " + (known.empty() ? "none" : known));
     }
     const auto index = static_cast<std::size_t>(found - settings.channels.begin());

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 namespace {
 
@@ -30,14 +32,14 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
     const std::size_t first_row = row;
     row += effect.parameters.size();
     const auto form = form_named(effect.form);
-    if (!form) throw std::invalid_argument("effect form '" + effect.form + "' is unknown");
+    if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
     const std::string label = effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
     if (describes_noise(*form) || !carries_over(*form)) {
       left_out_.push_back(label);
       continue;
     }
     if (has_channel(*form) && effect.channel.empty()) {
-      throw std::invalid_argument("effect '" + effect.form + "' names no channel");
+      throw std::invalid_argument("effect " + in_quotes(effect.form) + " names no channel");
     }
     Term term;
     term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
@@ -69,7 +71,8 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
       placed = true;
     }
     if (!placed)
-      throw std::invalid_argument("effect " + label + ": the sensor has no axis '" + effect.axis + "'");
+      throw std::invalid_argument("effect " + label + ": the sensor has no axis " + in_quotes(effect.axis) +
+                                  "");
   }
 
   held_.resize(channels_.size());

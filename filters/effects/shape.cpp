@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 namespace {
 
@@ -36,7 +38,7 @@ double power(double c, Form form) noexcept {
 
 ShapeSettings shape_settings(const Effect& effect) {
   const auto form = form_named(effect.form);
-  if (!form) throw std::invalid_argument("effect form '" + effect.form + "' is unknown");
+  if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
   ShapeSettings settings;
   settings.form = *form == Form::kProduct || *form == Form::kEarthRate ? Form::kLinear : *form;
   settings.reference = effect.reference;
@@ -53,8 +55,8 @@ ShapeSettings shape_settings(const Effect& effect) {
 ShapeSettings with_shape_settings(const Effect& effect) {
   const auto form = form_named(effect.with_form);
   if (!form || *form == Form::kProduct || *form == Form::kLookup || !has_channel(*form)) {
-    throw std::invalid_argument("product with form '" + effect.with_form +
-                                "', expected a form of a channel other than product and lookup");
+    throw std::invalid_argument("product with form " + in_quotes(effect.with_form) +
+                                ", expected a form of a channel other than product and lookup");
   }
   ShapeSettings settings;
   settings.form = *form;
@@ -73,8 +75,8 @@ Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
     throw std::invalid_argument("a time constant is negative");
   }
   if (!has_channel(settings_.form) && settings_.form != Form::kWarmUp) {
-    throw std::invalid_argument("form '" + std::string(name_of(settings_.form)) +
-                                "' has no channel to be a shape of");
+    throw std::invalid_argument("form " + in_quotes(std::string(name_of(settings_.form))) +
+                                " has no channel to be a shape of");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/estimator/engine.h"
 
 namespace ifog {
@@ -31,7 +32,8 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require(settings.draws >= 1 && settings.draws <= 1000, "draws", settings.draws, "1 to 1000");
   require(settings.floor >= 0 && settings.floor < 1, "floor", settings.floor, "0 (off) or below 1");
   if (settings.weights != "kept" && settings.weights != "fresh" && settings.weights != "uniform") {
-    throw std::invalid_argument("weights: '" + settings.weights + "', expected kept, fresh or uniform");
+    throw std::invalid_argument("weights: " + in_quotes(settings.weights) +
+                                ", expected kept, fresh or uniform");
   }
 }
 

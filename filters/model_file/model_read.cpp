@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
 
@@ -21,13 +22,13 @@ class Table {
     text << file_;
     const auto line = (node ? node->source() : table_.source()).begin.line;
     if (line) text << ':' << line;
-    text << ": " << one_line(where_ + key);
+    text << ": " << printable(where_ + key);
     if (node) {
       std::ostringstream value;
       node->visit([&](const auto& n) {
         if constexpr (toml::is_value<decltype(n)>) value << n;
       });
-      text << (value.str().empty() ? "" : " = " + one_line(value.str()));
+      text << (value.str().empty() ? "" : " = " + printable(value.str()));
     }
     text << ": " << complaint;
     throw std::runtime_error(text.str());

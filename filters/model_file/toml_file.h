@@ -11,8 +11,4 @@ namespace ifog {
 // Throws std::runtime_error: "NAME:LINE: what is wrong".
 toml::table parse_toml(std::string_view text, const std::string& name);
 
-// Control characters as \n, \t or \xNN: a key or a value may hold any, and so does what the parser says of
-// them.
-std::string one_line(std::string_view text);
-
 }  // namespace ifog

@@ -1,6 +1,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/rules/rule.h"
 
 namespace ifog {
@@ -23,7 +24,7 @@ std::unique_ptr<Rule> make_rule(const FilterSettings& settings) {
     if (settings.rule == entry.name) return entry.make(settings);
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw std::invalid_argument("rule: '" + settings.rule + "', expected one of " + names);
+  throw std::invalid_argument("rule: " + in_quotes(settings.rule) + ", expected one of " + names);
 }
 
 }  // namespace ifog

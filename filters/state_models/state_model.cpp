@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
 #include "filters/state_models/arma.h"
 #include "filters/state_models/gauss_markov.h"
 #include "filters/state_models/harmonic.h"
@@ -14,7 +15,7 @@ namespace ifog {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& expected) {
-  throw std::invalid_argument("state: '" + name + "', expected " + expected);
+  throw std::invalid_argument("state: " + in_quotes(name) + ", expected " + expected);
 }
 
 // "arma(2,1)" -> {2, 1}; nothing when the text is not NAME(number[,number]).

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 namespace {
 
@@ -187,8 +189,8 @@ std::unique_ptr<Candidate> make_candidate(const std::string& state, double perio
   int p = 0, q = 0;
   if (state.starts_with(kSum) && orders(state.substr(kSum.size()), p, q))
     return std::make_unique<LevelAndArma>(period_s, p, q);
-  throw std::invalid_argument("state: '" + state +
-                              "', expected random-walk, random-walk + gauss-markov, random-walk + ar(p) or "
+  throw std::invalid_argument("state: " + in_quotes(state) +
+                              ", expected random-walk, random-walk + gauss-markov, random-walk + ar(p) or "
                               "random-walk + arma(p,q) with q < p <= 6");
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/commands.h"
 
 int main(int argc, char** argv) {
@@ -31,7 +32,7 @@ int main(int argc, char** argv) {
   } catch (const ifog::tools::Failed&) {
     return 1;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "ifog: %s\n", error.what());
+    std::fprintf(stderr, "ifog: %s\n", ifog::printable(error.what(), ifog::kLongestMessage).c_str());
     return 1;
   }
   return 0;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/commands.h"
@@ -54,7 +55,7 @@ void run(const Arguments& a) {
     rate.curves.push_back(std::move(curve));
   }
   if (rate.curves.size() != 2)
-    throw std::runtime_error(a.log + ": --axis '" + a.axis + "': expected " +
+    throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +
                              (axes.size() == 1 ? "none, the sensor has one axis" : "x, y or z"));
   AllanOptions options;
   options.axis = a.axis;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog::simulate {
 namespace {
 
@@ -148,7 +150,7 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
   if (kind == kinds.end()) {
     std::string known;
     for (const Kind& k : kinds) known += (known.empty() ? "" : ", ") + std::string(k.name);
-    throw std::invalid_argument("'" + recipe.kind + "' is unknown, expected one of " + known);
+    throw std::invalid_argument(in_quotes(recipe.kind) + " is unknown, expected one of " + known);
   }
   std::vector<Key> keys = kind->keys;
   keys.insert(keys.end(), common.begin(), common.end());
@@ -158,7 +160,8 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
     if (key == keys.end()) {
       std::string known;
       for (const Key& k : keys) known += (known.empty() ? "" : ", ") + std::string(k.name);
-      throw std::invalid_argument("key '" + name + "' is unknown for " + recipe.kind + ", expected " + known);
+      throw std::invalid_argument("key " + in_quotes(name) + " is unknown for " + recipe.kind +
+                                  ", expected " + known);
     }
     if (!(value >= key->low && value <= key->high))
       throw std::invalid_argument(
@@ -169,19 +172,19 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
   for (const Key& key : keys) {
     if (recipe.number.count(key.name) != 0) continue;
     if (std::isnan(key.fallback))
-      throw std::invalid_argument("key '" + std::string(key.name) + "' is missing for " + recipe.kind +
-                                  ", expected a number" +
+      throw std::invalid_argument("key " + in_quotes(std::string(key.name)) + " is missing for " +
+                                  recipe.kind + ", expected a number" +
                                   (*key.unit != '\0' ? " (" + std::string(key.unit) + ")" : ""));
     recipe.number[key.name] = key.fallback;
   }
   for (const auto& [name, values] : recipe.list) {
     if (std::none_of(kind->lists.begin(), kind->lists.end(), [&n = name](const char* l) { return n == l; }))
-      throw std::invalid_argument("key '" + name + "' is unknown for " + recipe.kind);
+      throw std::invalid_argument("key " + in_quotes(name) + " is unknown for " + recipe.kind);
     if (values.empty()) throw std::invalid_argument(name + " is empty, expected numbers");
   }
   for (const char* list : kind->lists)
     if (recipe.list.count(list) == 0)
-      throw std::invalid_argument("key '" + std::string(list) + "' is missing for " + recipe.kind +
+      throw std::invalid_argument("key " + in_quotes(std::string(list)) + " is missing for " + recipe.kind +
                                   ", expected a list of numbers");
   if (kind->channels >= 1 && recipe.channel.empty())
     throw std::invalid_argument("key 'channel' is missing for " + recipe.kind +

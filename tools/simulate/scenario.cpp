@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/simulate/simulator.h"
 
@@ -42,7 +43,7 @@ class Reader {
   [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& what) const {
     const auto line = node.source().begin.line;
     throw std::runtime_error(path_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
-                             one_line(key + " " + what));
+                             printable(key + " " + what, kLongestMessage));
   }
 
   std::uint64_t whole(const toml::node& node, const std::string& key) const {
@@ -172,7 +173,8 @@ class Reader {
       const std::string name = string(element, "axes");
       if (name.find_first_of("_, ") != std::string::npos || !seen.insert(name).second ||
           (name.empty() && array->size() > 1))
-        fail(element, "axes", "has '" + name + "', expected different names without '_', ',' or blanks");
+        fail(element, "axes",
+             "has " + in_quotes(name) + ", expected different names without '_', ',' or blanks");
       s_.axes.push_back(name);
     }
   }
@@ -250,7 +252,7 @@ class Reader {
         std::any_of(s_.channels.begin(), s_.channels.end(), [&](const Recipe& c) { return c.name == name; });
     if (name.empty() || name == "rate" || name == "time_s" ||
         name.find_first_of(", \"\n") != std::string::npos || name.find('_') == std::string::npos || taken)
-      fail(node, "channel.name", "is '" + name + "', expected NAME_UNIT, used once");
+      fail(node, "channel.name", "is " + in_quotes(name) + ", expected NAME_UNIT, used once");
   }
 
   std::string path_;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "drivers/ifog/quoted.h"
 #include "tools/simulate/signals.h"
 
 namespace ifog::simulate {
@@ -59,7 +60,7 @@ class Simulator {
   [[nodiscard]] std::size_t axis_index(const std::string& axis, const std::string& whose) const {
     for (std::size_t a = 0; a < s_.axes.size(); ++a)
       if (s_.axes[a] == axis) return a;
-    throw std::invalid_argument(whose + ": axis '" + axis + "' is not among the scenario's axes");
+    throw std::invalid_argument(whose + ": axis " + in_quotes(axis) + " is not among the scenario's axes");
   }
 
   [[nodiscard]] std::vector<double> motion(std::size_t axis) const {
@@ -80,8 +81,8 @@ class Simulator {
     if (name == "rate") return true_rate;
     for (std::size_t c = 0; c < s_.channels.size(); ++c)
       if (s_.channels[c].name == name) return channels_[c].physical;
-    throw std::invalid_argument(whose + ": channel '" + name +
-                                "' is not in the scenario, expected one of its channels or 'rate'");
+    throw std::invalid_argument(whose + ": channel " + in_quotes(name) +
+                                " is not in the scenario, expected one of its channels or 'rate'");
   }
 
   [[nodiscard]] std::vector<std::vector<double>> effects(std::size_t axis,

@@ -123,10 +123,15 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
     if (entry.role == Role::kCounter) counter = &entry;
   }
   if (brings != 0) {
-    const bool same_count = counter != nullptr && counted_ &&
-                            raw_bits(*counter->signal, data) % picks_.counter_modulus == sample_.sequence;
-    if (present_ != 0 && same_count && counter_moved_ && (present_ & brings) == brings &&
-        repeats(wanted, data)) {
+    const std::uint32_t count =
+        counter == nullptr
+            ? 0
+            : static_cast<std::uint32_t>(raw_bits(*counter->signal, data) % picks_.counter_modulus);
+    const bool same_count = counter != nullptr && counted_ && count == sample_.sequence;
+    const bool in_last = counter != nullptr && last_counted_ && count == last_sequence_;
+    if (present_ != 0 && counted_ && counter_moved_ &&
+        (same_count ? (present_ & brings) == brings && repeats(wanted, data, sample_.value)
+                    : in_last && repeats(wanted, data, last_value_.data()))) {
       ++counters_.frames_good;
       ++counters_.frames_repeated;
       return;
@@ -146,12 +151,13 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
   if (brings != 0 && present_ == all_axes_) complete(frame.arrival_ns, emit, sink);
 }
 
-// Whether the values of the frame's axes are those that are there already.
-bool Decoder::repeats(const Wanted& wanted, std::span<const std::uint8_t> data) const noexcept {
+// Whether the values of the frame's axes are those that are known already.
+bool Decoder::repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
+                      const double* known) const noexcept {
   for (const Entry& entry : wanted.entries) {
     if (entry.role != Role::kAxis || !selected(*entry.message, *entry.signal, data)) continue;
     const double value = physical(*entry.signal, raw_bits(*entry.signal, data)) * entry.si_per_unit;
-    if (!same(value, sample_.value[entry.index])) return false;
+    if (!same(value, known[entry.index])) return false;
   }
   return true;
 }

@@ -51,7 +51,8 @@ class Decoder {
   void learn_order();
   void take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
   void set(const Entry& entry, std::uint64_t bits) noexcept;
-  [[nodiscard]] bool repeats(const Wanted& wanted, std::span<const std::uint8_t> data) const noexcept;
+  [[nodiscard]] bool repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
+                             const double* known) const noexcept;
   [[nodiscard]] bool repeats_last() const noexcept;
   void begin_sample() noexcept;
   void give_up() noexcept;

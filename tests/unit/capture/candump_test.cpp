@@ -6,6 +6,8 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -87,16 +89,136 @@ TEST(CandumpFile, RefusesWithFileAndLine) {
   EXPECT_EQ(log.interface, "can0");
   EXPECT_EQ(log.remote, 1U);
   EXPECT_EQ(log.error, 1U);
-  std::ofstream(path) << "(1.0) can0 123#11\n(1.1) can0 123#2";
+  std::ofstream(path) << "(1.0) can0 123#11\n(1.1) can0 123#2\n";
   try {
     ifog::read_candump(path);
     ADD_FAILURE() << "accepted";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), path.string() +
-                                             ":2: '(1.1) can0 123#2', expected '(seconds.micros) interface "
-                                             "id#data' (the file is cut off here)");
+    EXPECT_EQ(std::string(error.what()),
+              path.string() +
+                  ":2: '(1.1) can0 123#2', expected '(seconds.micros) interface id#data' "
+                  "or 'interface id [length] bytes'");
   }
   fs::remove(path);
+}
+
+// What candump 2020.11 prints: candump [-t a|d|z] [-a] [-x] [-e] can0.
+TEST(CandumpParser, ReadsTheScreenFormat) {
+  CandumpEntry e;
+  ASSERT_EQ(ifog::parse_candump_line("  can0  123   [8]  11 22 33 44 55 66 77 88", e), CandumpLine::frame);
+  EXPECT_EQ(e.stamp, ifog::CandumpStamp::none);
+  EXPECT_EQ(e.frame.arrival_ns, 0);
+  EXPECT_EQ(e.interface, "can0");
+  EXPECT_EQ(e.frame.id, 0x123U);
+  EXPECT_EQ(e.frame.flags, 0U);
+  ASSERT_EQ(e.frame.length, 8U);
+  EXPECT_EQ(e.frame.data[0], 0x11);
+  EXPECT_EQ(e.frame.data[7], 0x88);
+  ASSERT_EQ(ifog::parse_candump_line(" (1436509052.249713)  vcan0  12345678   [3]  AB CD EF   '...'", e),
+            CandumpLine::frame);
+  EXPECT_EQ(e.stamp, ifog::CandumpStamp::absolute);
+  EXPECT_EQ(e.frame.arrival_ns, 1'436'509'052'249'713'000);
+  EXPECT_EQ(e.frame.id, 0x12345678U);
+  EXPECT_EQ(e.frame.flags, IFOG_CAN_EXTENDED);
+  EXPECT_EQ(e.frame.data[2], 0xEF);
+  ASSERT_EQ(ifog::parse_candump_line(" (000.000123)  can0  123   [2]  27 20   '' '", e), CandumpLine::frame);
+  EXPECT_EQ(e.stamp, ifog::CandumpStamp::since);
+  EXPECT_EQ(e.frame.arrival_ns, 123'000);
+  ASSERT_EQ(ifog::parse_candump_line("  can0  RX - -  123   [1]  0F", e), CandumpLine::frame);
+  ASSERT_EQ(ifog::parse_candump_line("  can0  TX B E  123   [1]  0F", e), CandumpLine::frame);
+  ASSERT_EQ(ifog::parse_candump_line("  can0  123   [0]", e), CandumpLine::frame);
+  EXPECT_EQ(e.frame.length, 0U);
+  ASSERT_EQ(ifog::parse_candump_line("  can0  123  [12]  00 01 02 03 04 05 06 07 08 09 0A 0B", e),
+            CandumpLine::frame);
+  EXPECT_EQ(e.frame.flags, IFOG_CAN_FD);
+  EXPECT_EQ(e.frame.length, 12U);
+  ASSERT_EQ(ifog::parse_candump_line("  can0  123  [08]  00 01 02 03 04 05 06 07", e), CandumpLine::frame);
+  EXPECT_EQ(e.frame.flags, IFOG_CAN_FD);
+  ASSERT_EQ(ifog::parse_candump_line("  can0  123   {F}  00 01 02 03 04 05 06 07", e), CandumpLine::frame);
+  EXPECT_EQ(e.frame.length, 8U);
+  EXPECT_EQ(ifog::parse_candump_line("  can0  123   [4]  remote request", e), CandumpLine::remote);
+  EXPECT_EQ(ifog::parse_candump_line("  can0  20000088   [8]  00 00 80 19 00 00 00 00   ERRORFRAME", e),
+            CandumpLine::error);
+  EXPECT_EQ(ifog::parse_candump_line("\tprotocol-violation{{tx-recessive-bit-error}{}}", e),
+            CandumpLine::blank);
+  for (const char* bad : {"  can0  123   [8]  11 22 33 44 55 66 77",
+                          "  can0  123   [8]  11 22 33 44 55 66 77 8",
+                          "  can0  123   [2]  11 22 33",
+                          "  can0  123   [9]  11 22 33 44 55 66 77 88 99",
+                          "  can0  123   [8]",
+                          "  can0  123   8  11",
+                          "  can0  123",
+                          "  can0",
+                          "  can0  12   [1]  11",
+                          "  can0  123   [2]  1122",
+                          "  can0  123   [1]  00010001",
+                          "  can0  123   [1]  11   x",
+                          "  can0  123   [65]  11",
+                          "  can0  123   []  11",
+                          " (0.1)  123   [1]  11",
+                          "  can0  RX -  123   [1]  0F",
+                          "  can0  800   [1]  11",
+                          "  can0  123   [3]  remote",
+                          "  can0  123   [1]  1`",
+                          "can0 123#11"})
+    EXPECT_EQ(ifog::parse_candump_line(bad, e), CandumpLine::malformed) << bad;
+}
+
+class CandumpScreen : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::temp_directory_path() / ("ifog-screen-" + std::to_string(getpid()) + ".log");
+  }
+  void TearDown() override { fs::remove(path_); }
+  ifog::Candump read(const std::string& text, std::string_view interface = {}) {
+    std::ofstream(path_) << text;
+    return ifog::read_candump(path_, interface);
+  }
+  std::vector<std::int64_t> micros(const ifog::Candump& log) {
+    std::vector<std::int64_t> out;
+    for (const ifog_can_frame& f : log.frames)
+      out.push_back((f.arrival_ns - log.frames[0].arrival_ns) / 1000);
+    return out;
+  }
+  fs::path path_;
+};
+
+using Micros = std::vector<std::int64_t>;
+
+TEST_F(CandumpScreen, TimesOfEachKindGoOn) {
+  const auto lines = [](const std::vector<const char*>& times, const char* interface = "can0") {
+    std::string text;
+    for (const char* time : times) text += std::string(" (") + time + ")  " + interface + "  123   [1]  11\n";
+    return text;
+  };
+  EXPECT_EQ(micros(read(lines({"1436509052.249713", "1436509052.259713"}))), (Micros{0, 10000}));
+  EXPECT_EQ(micros(read(lines({"000.000000", "000.010000", "000.010005", "000.030000"}))),
+            (Micros{0, 10000, 10005, 30000}));
+  // -t d: one is smaller than that before, or all are the same.
+  EXPECT_EQ(micros(read(lines({"000.000000", "000.010002", "000.009998", "000.020000"}))),
+            (Micros{0, 10002, 20000, 40000}));
+  EXPECT_EQ(micros(read(lines({"000.000000", "000.010000", "000.010000", "000.010000"}))),
+            (Micros{0, 10000, 20000, 30000}));
+  EXPECT_GT(read(lines({"000.000000"})).frames[0].arrival_ns, 0);  // 0 means no time
+  // A difference is to the frame before, whatever its interface.
+  const std::string both =
+      lines({"000.000000"}) + lines({"000.004000"}, "can1") + lines({"000.003000"}) + lines({"000.001000"});
+  EXPECT_EQ(micros(read(both, "can0")), (Micros{0, 7000, 8000}));
+  const ifog::Candump untimed = read("  can0  123   [1]  11\n  can0  123   [1]  12\n");
+  ASSERT_EQ(untimed.frames.size(), 2U);
+  EXPECT_EQ(untimed.frames[1].arrival_ns, 0);
+}
+
+// As candump writes them lines have an end; one without it may have lost bytes and still read as a frame.
+TEST_F(CandumpScreen, ALogThatIsCutOffKeepsItsFrames) {
+  const std::string whole = "(1.0) can0 123#1122334455667788\n(1.1) can0 123#1122334455667788";
+  for (std::size_t length = 33; length <= whole.size(); ++length) {
+    const ifog::Candump log = read(whole.substr(0, length));
+    const bool complete = length == whole.size();
+    ASSERT_EQ(log.frames.size(), complete ? 2U : 1U) << length;
+    ASSERT_EQ(log.cut_off, !complete && length > 32) << length;
+  }
+  EXPECT_THROW(read("(1.0) can0 12"), std::runtime_error);  // no log at all
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog::tools {
 namespace {
 
@@ -242,7 +244,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, Table table, con
     throw std::runtime_error(
         name + ": no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`");
   if (records.empty())
-    throw std::runtime_error(name + ": no axis '" + options.axis + "', expected one of " + known);
+    throw std::runtime_error(name + ": no axis " + in_quotes(options.axis) + ", expected one of " + known);
   return records;
 }
 

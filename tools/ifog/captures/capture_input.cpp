@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/capture_builder.h"
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/captures/lcm_log.h"
 
 namespace ifog::tools {
@@ -27,16 +28,20 @@ DriverSettings CaptureInput::settings() const {
   for (const std::string& option : options) {
     const std::size_t equals = option.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw CLI::ValidationError("--option", "is '" + option + "', expected KEY=VALUE");
+      throw CLI::ValidationError("--option", "is " + in_quotes(option) + ", expected KEY=VALUE");
     if (!out.emplace(option.substr(0, equals), option.substr(equals + 1)).second)
-      throw CLI::ValidationError("--option", "gives '" + option.substr(0, equals) + "' twice");
+      throw CLI::ValidationError("--option", "gives " + in_quotes(option.substr(0, equals)) + " twice");
   }
   if (!dbc.empty() && !out.emplace("dbc", dbc).second)
     throw CLI::ValidationError("--dbc", "stands beside --option dbc=…, expected one of them");
   return out;
 }
 
-DriverInstance CaptureInput::make_driver() const { return ifog::make_driver(driver_name(), settings()); }
+DriverInstance CaptureInput::make_driver() const {
+  DriverInstance driver = ifog::make_driver(driver_name(), settings());
+  for (const std::string& warning : driver.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
+  return driver;
+}
 
 bool CaptureInput::is_csv(const std::string& path) const {
   const FileKind kind = file_kind(path);
@@ -88,6 +93,9 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
   say(counts.driver.frames_format, "frames or samples that are not as the format or the options say");
   say(counts.driver.bytes_skipped - counts.bytes_at_end, "bytes that are part of no frame");
   say(counts.bytes_at_end, "bytes at the end are no whole frame (is the file cut off?)");
+  say(counts.driver.frames_repeated, "frames left out because they came twice");
+  say(counts.driver.samples_incomplete, "samples left out because some of their frames are missing");
+  say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
   say(counts.remote_frames, "CAN remote frames passed over");
   say(counts.error_frames, "CAN error frames passed over");
   return lines;

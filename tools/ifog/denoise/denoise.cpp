@@ -14,6 +14,7 @@
 #include "daemon/pipeline/assemble.h"
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
@@ -162,8 +163,9 @@ OfflineSettings settings_of(Options& options) {
         });
     if (found == config.sensors.end())
       throw std::runtime_error(options.config + ": " +
-                               (options.sensor.empty() ? "has several sensors; expected --sensor NAME"
-                                                       : "has no sensor \"" + options.sensor + "\""));
+                               (options.sensor.empty()
+                                    ? "has several sensors; expected --sensor NAME"
+                                    : "has no sensor \"" + printable(options.sensor) + "\""));
     out.sensor = *found;
     if (file_kind(options.capture) != FileKind::capture && !options.input.has_driver()) {
       options.input.driver = out.sensor.driver;

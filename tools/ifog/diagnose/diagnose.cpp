@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensator.h"
 #include "filters/model_file/sha256.h"
@@ -54,7 +55,8 @@ void compensate(Capture& capture, const Model& model) {
       if (column.name == name) found = &column;
     }
     if (!found)
-      throw std::runtime_error("the model wants channel '" + name + "', which the capture does not have");
+      throw std::runtime_error("the model wants channel " + in_quotes(name) +
+                               ", which the capture does not have");
     columns.push_back(found);
   }
   CompensatorInput in;
@@ -173,7 +175,7 @@ Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& argumen
   std::string contents;
   for (const std::string& path : arguments.captures) {
     model.source.capture += (model.source.capture.empty() ? "" : ", ") + path;
-    contents += sha256_hex(read_text_file(path));
+    contents += sha256_hex(read_bytes_file(path));
   }
   model.source.sha256 = arguments.captures.size() == 1 ? contents : sha256_hex(contents);
   model.source.date = today();

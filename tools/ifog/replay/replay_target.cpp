@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/capture/candump.h"
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/can_socket.h"
 #include "tools/ifog/console/interrupt.h"
 
@@ -124,8 +125,8 @@ ReplayDestination ReplayDestination::parse(const std::string& text) {
                                      {"fifo:", Kind::fifo}})
     if (text.starts_with(prefix) && text.size() > std::string(prefix).size())
       return {kind, text.substr(std::string(prefix).size())};
-  throw std::runtime_error("--to is '" + text +
-                           "', expected can:INTERFACE, serial:DEVICE, file:PATH, fifo:PATH or -");
+  throw std::runtime_error("--to is " + in_quotes(text) +
+                           ", expected can:INTERFACE, serial:DEVICE, file:PATH, fifo:PATH or -");
 }
 
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,

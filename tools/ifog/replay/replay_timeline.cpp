@@ -28,6 +28,8 @@ ReplayTimeline from_candump(const ReplaySource& source) {
   if (log.remote + log.error > 0)
     std::fprintf(stderr, "%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(),
                  log.remote, log.error);
+  if (log.cut_off)
+    std::fprintf(stderr, "%s: the last line is no whole frame and is not sent\n", source.path.c_str());
   ReplayTimeline timeline;
   timeline.frames = std::move(log.frames);
   timeline.interface = std::move(log.interface);
@@ -75,7 +77,7 @@ ReplayTimeline from_bytes(const ReplaySource& source) {
   if (!even && !source.input.has_driver())
     throw std::runtime_error(
         source.path + ": raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME");
-  const std::string text = read_text_file(source.path);
+  const std::string text = read_bytes_file(source.path);
   ReplayTimeline timeline;
   timeline.bytes.assign(text.begin(), text.end());
   if (timeline.bytes.empty()) return timeline;

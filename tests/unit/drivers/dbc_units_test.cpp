@@ -1,0 +1,170 @@
+// Units as DBC files spell them, against factors worked out by hand.
+#include "drivers/plugins/dbc/units.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace {
+
+using ifog::dbc::angle_unit;
+
+constexpr double kDegree = 0.017453292519943295;  // π / 180
+constexpr double kTurn = 6.283185307179586;       // 2 π
+
+struct Case {
+  const char* text;
+  double rad_per_s;
+};
+
+TEST(DbcUnits, RatesAsTheyAreSpelled) {
+  const Case cases[] = {{"rad/s", 1.0},
+                        {"rad/sec", 1.0},
+                        {"RAD/S", 1.0},
+                        {"rads/s", 1.0},
+                        {"radian/second", 1.0},
+                        {"radians/s", 1.0},
+                        {"rad/second", 1.0},
+                        {"radps", 1.0},
+                        {"rad s^-1", 1.0},
+                        {"rad*s^-1", 1.0},
+                        {"rad.s-1", 1.0},
+                        {"rad\xC2\xB7s\xE2\x81\xBB\xC2\xB9", 1.0},
+                        {"rad per second", 1.0},
+                        {"[rad/s]", 1.0},
+                        {" rad / s ", 1.0},
+                        {"rad/sec.", 1.0},
+                        {"mrad/s", 1e-3},
+                        {"mrad/sec", 1e-3},
+                        {"urad/s", 1e-6},
+                        {"\xC2\xB5rad/s", 1e-6},
+                        {"\xCE\xBCrad/s", 1e-6},
+                        {"\xB5rad/s", 1e-6},
+                        {"nrad/s", 1e-9},
+                        {"rad/min", 1.0 / 60.0},
+                        {"rad/h", 1.0 / 3600.0},
+                        {"deg/s", kDegree},
+                        {"Deg/s", kDegree},
+                        {"DEG/S", kDegree},
+                        {"Deg/Sec", kDegree},
+                        {"deg/sec", kDegree},
+                        {"degs/s", kDegree},
+                        {"degree/s", kDegree},
+                        {"degree/second", kDegree},
+                        {"degrees/s", kDegree},
+                        {"degrees/sec", kDegree},
+                        {"degrees per second", kDegree},
+                        {"deg_per_s", kDegree},
+                        {"(deg/s)", kDegree},
+                        {"deg s-1", kDegree},
+                        {"dps", kDegree},
+                        {"DPS", kDegree},
+                        {"degps", kDegree},
+                        {"mdps", kDegree / 1e3},
+                        {"\xC2\xB0/s", kDegree},
+                        {"\xB0/s", kDegree},
+                        {"\xB0/sec", kDegree},
+                        {"\xC2\xB0/sec", kDegree},
+                        {"\xC2\xBA/s", kDegree},
+                        {"\xBA/s", kDegree},
+                        {"\xC3\x82\xC2\xB0/s", kDegree},
+                        {"\xA1\xC6/s", kDegree},
+                        {"\xA1\xE3/s", kDegree},
+                        {"\x81\x8B/s", kDegree},
+                        {"\xC2\xB0 / s", kDegree},
+                        {"m\xC2\xB0/s", kDegree / 1e3},
+                        {"Grad/s", kDegree},
+                        {"Grad/Sek", kDegree},
+                        {"Unit_DegreOfArcPerSecon", kDegree},
+                        {"mdeg/s", kDegree / 1e3},
+                        {"cdeg/s", kDegree / 1e2},
+                        {"deg/min", kDegree / 60.0},
+                        {"deg/h", kDegree / 3600.0},
+                        {"deg/hr", kDegree / 3600.0},
+                        {"\xC2\xB0/h", kDegree / 3600.0},
+                        {"deg/hour", kDegree / 3600.0},
+                        {"dph", kDegree / 3600.0},
+                        {"arcsec/s", kDegree / 3600.0},
+                        {"arcmin/s", kDegree / 60.0},
+                        {"gon/s", kTurn / 400.0},
+                        {"rpm", kTurn / 60.0},
+                        {"RPM", kTurn / 60.0},
+                        {"1/min", kTurn / 60.0},
+                        {"min-1", kTurn / 60.0},
+                        {"min^-1", kTurn / 60.0},
+                        {"U/min", kTurn / 60.0},
+                        {"r/min", kTurn / 60.0},
+                        {"rev/min", kTurn / 60.0},
+                        {"rev/s", kTurn},
+                        {"Unit_MinutInver", kTurn / 60.0},
+                        {"deg/ms", kDegree * 1e3}};
+  for (const Case& c : cases) {
+    const std::optional<double> found = angle_unit(c.text, true, false);
+    ASSERT_TRUE(found) << c.text;
+    EXPECT_NEAR(*found, c.rad_per_s, 1e-12 * c.rad_per_s) << c.text;
+  }
+}
+
+TEST(DbcUnits, WhatIsNoRateOrTwoIsRefused) {
+  for (const char* text : {"",
+                           " ",
+                           "deg",
+                           "rad",
+                           "\xC2\xB0",
+                           "s",
+                           "1",
+                           "/s",
+                           "deg/",
+                           "deg/s^2",
+                           "deg/s/s",
+                           "rad/s2",
+                           "rad/s-1",
+                           "rad s^-2",
+                           "deg/m",
+                           "m/s",
+                           "m/s^2",
+                           "g",
+                           "km/h",
+                           "%",
+                           "V",
+                           "\xC2\xB0"
+                           "C",
+                           "deg*s",
+                           "0.01 deg/s",
+                           "deg/s %",
+                           "grad/s",
+                           "grad",
+                           "1/s",
+                           "s^-1",
+                           "Hz",
+                           "rps",
+                           "Mrad/s",
+                           "Mdeg/s",
+                           "MRAD/S",
+                           "dBm",
+                           "furlong/s",
+                           "per",
+                           "per s",
+                           "\xEF\xBF\xBD/s",
+                           "-1",
+                           "^-1",
+                           "[",
+                           "()",
+                           "r/s"})
+    EXPECT_FALSE(angle_unit(text, true, false)) << text;
+}
+
+TEST(DbcUnits, AngleAndTime) {
+  EXPECT_NEAR(*angle_unit("\xB0", false, false), kDegree, 1e-15);
+  EXPECT_NEAR(*angle_unit("Degrees", false, false), kDegree, 1e-15);
+  EXPECT_NEAR(*angle_unit("Grad", false, false), kDegree, 1e-15);
+  EXPECT_FALSE(angle_unit("deg/s", false, false));
+  EXPECT_NEAR(*angle_unit("deg", true, true), kDegree, 1e-15);
+  EXPECT_NEAR(*angle_unit("deg/h", true, true), kDegree / 3600.0, 1e-18);
+  EXPECT_EQ(ifog::dbc::time_unit("us"), 1e-6);
+  EXPECT_EQ(ifog::dbc::time_unit("\xC2\xB5s"), 1e-6);
+  EXPECT_EQ(ifog::dbc::time_unit("Sec"), 1.0);
+  EXPECT_FALSE(ifog::dbc::time_unit("deg"));
+}
+
+}  // namespace
