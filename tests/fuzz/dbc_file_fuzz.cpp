@@ -1,5 +1,5 @@
-// Any text as a DBC file: refused with one line, or read; and then every signal that fits its message decodes
-// and encodes any frame without touching a byte that is not there.
+// Any text as a DBC file: refused with one line, or read with warnings of one printable line each; and then
+// every signal that fits its message decodes and encodes any frame without touching a byte that is not there.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -19,6 +19,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (std::string(error.what()).find('\n') != std::string::npos) std::abort();
     return 0;
   }
+  for (const std::string& warning : database.warnings)
+    if (warning.size() > 4000 || std::any_of(warning.begin(), warning.end(), [](char c) {
+          return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+        }))
+      std::abort();
   for (const Message& message : database.messages)
     for (const Signal& signal : message.signals) {
       try {

@@ -254,15 +254,17 @@ void Monitor::show(double interval_s) {
     }
     if (sensor.has_status) {
       std::array<char, 512> row{};
-      std::snprintf(
-          row.data(), row.size(),
-          "  latency p50 %.0f p99 %.0f max %.0f us  crc %lld  skipped %lld bytes  missing %lld  merged %lld  "
-          "kernel drops %lld  stale %lld  clock %s",
-          status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
-          static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
-          static_cast<long long>(status.sequence_missing), static_cast<long long>(status.samples_merged),
-          static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
-          clock_text(status.clock_offset_ppm).c_str());
+      std::snprintf(row.data(), row.size(),
+                    "  latency p50 %.0f p99 %.0f max %.0f us  crc %lld  skipped %lld bytes  missing %lld  "
+                    "repeated %lld  incomplete %lld  merged %lld  kernel drops %lld  stale %lld  clock %s",
+                    status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
+                    static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
+                    static_cast<long long>(status.sequence_missing),
+                    static_cast<long long>(status.frames_repeated + status.samples_repeated),
+                    static_cast<long long>(status.samples_incomplete),
+                    static_cast<long long>(status.samples_merged),
+                    static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
+                    clock_text(status.clock_offset_ppm).c_str());
       line(row.data());
       if (const std::string channels = channels_text(status); !channels.empty()) line("  " + channels);
       if (!status.fault.empty()) line("  " + status.fault);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """A second decoder, in another language and by the definitions, against `ifog convert`.
 
-Takes a made-up capture through `ifog convert` to KVH bytes and to candump logs, decodes those here (the KVH manual's
+Packs CAN frames here, one bit at a time, from a DBC file as people write it by hand, in both formats of candump, and
+compares what `ifog convert` reads from them. Takes a made-up capture through `ifog convert` to KVH bytes and to candump logs, decodes those here (the KVH manual's
 table, CRC by long division, DBC signals one bit at a time), and compares with the capture and with what `ifog convert`
 makes of the same files.   usage: run.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -167,7 +168,95 @@ def check_dbc(name, options, axes, temperature, counter, scale):
         same(f"{name} {column} by ifog", found[key], back[column], 1e-15)
 
 
+# A bus described as people write it by hand: comments, several signals on a line, nodes and receivers on further lines,
+# statements without their ';', a half float, a line that cannot be read, a name by attribute.
+BY_HAND = """// a bench
+VERSION "1"
+BU_:
+  Box // on the next line
+BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX
+BO_ 291 Rates: 8 Box SG_ Which M : 0|8@1+ (1,0) [0|0] "" X SG_ Count : 8|8@1+ (1,0) [0|0] ""
+  X,
+  Y
+ SG_ Yaw_Rate_0001 m1 : 16|16@1- (1,0) [0|0] "\xb0/sec" X
+ SG_ Pitch_Rate m : 23|20@0- (0.002,0) [0|0] "mrad/s" X // Motorola
+ SG_ Broken : 0|33x@1- (1,0) [0|0] "rad/s" X
+CM_ BO_ 291 "no end here"
+BO_ 292 More: 8 Box
+ SG_ Temperature : 7|12@0- (0.1,5) [0|0] "degC" X
+BA_ "SystemSignalLongSymbol" SG_ 291 Yaw_Rate_0001 "Yaw_Rate_Of_The_Bench_With_A_Long_Name";
+SG_MUL_VAL_ 291 Pitch_Rate Which 2-2, 7-7
+SIG_VALTYPE_ 291 Yaw_Rate_0001 : 1"""
+
+
+def pack(data, start, length, little, value):
+    """Writes the low bits of value into a bytearray, one at a time."""
+    at = start
+    for i in range(length):
+        bit = value >> i & 1 if little else value >> (length - 1 - i) & 1
+        data[at // 8] = data[at // 8] & ~(1 << at % 8) | bit << at % 8
+        at = at + 1 if little else (at + 15 if at % 8 == 0 else at - 1)
+
+
+def screen_line(stamp, can_id, data, characters):
+    """As candump prints it: sprintf in can-utils' lib.c."""
+    text = "".join(chr(byte) if 0x20 < byte < 0x7F else "." for byte in data)
+    return (f" ({stamp:010.6f})" if stamp is not None else "") + f"  can0  {can_id:03X}   [{len(data)}]  " + \
+        " ".join(f"{byte:02X}" for byte in data) + (f"   '{text}'" if characters else "") + "\n"
+
+
+def check_by_hand():
+    path = folder / "by_hand.dbc"
+    path.write_bytes(BY_HAND.encode("latin-1"))
+    rng = random.Random(12)
+    yaw, pitch, temperature, sent = [], [], [], []
+    for k in range(600):
+        half = struct.unpack("<H", struct.pack("<e", rng.gauss(0.0, 20.0)))[0]
+        steps, tenths = rng.randrange(-1 << 19, 1 << 19), rng.randrange(-300, 600)
+        yaw.append(math.radians(struct.unpack("<e", struct.pack("<H", half))[0]))
+        pitch.append(steps * 0.002 * 1e-3)
+        temperature.append(tenths * 0.1 + 5)
+        warm, first, second = bytearray(8), bytearray(8), bytearray(8)
+        pack(warm, 7, 12, False, tenths)
+        for data, which in ((first, 1), (second, rng.choice((2, 7)))):
+            pack(data, 0, 8, True, which)
+            pack(data, 8, 8, True, k)
+        pack(first, 16, 16, True, half)
+        pack(second, 23, 20, False, steps)
+        sent.append((0.004 * k, 292, warm))
+        sent.append((0.004 * k + 0.0005, 291, first))
+        sent.append((0.004 * k + 0.001, 291, second))
+    arguments = ["--dbc", path, "--option", "x=Yaw_Rate_Of_The_Bench_With_A_Long_Name", "--option", "y=Rates.Pitch_Rate",
+                 "--option", "counter=Count", "--option", f"rate_hz={RATE_HZ}",
+                 "--option", "environment=temperature_degC=Temperature"]
+    for kind in ("log", "zero", "difference", "absolute", "none"):
+        log, before = folder / f"{kind}.candump", 0.0
+        with open(log, "w") as file:
+            for i, (time, can_id, data) in enumerate(sent):
+                stamp = {"zero": time, "difference": time - before, "absolute": 1436509052 + time, "none": None}.get(kind)
+                before = time
+                if kind == "log":
+                    file.write(f"({1436509052 + time:.6f}) can0 {can_id:03X}#{data.hex().upper()}\n")
+                else:
+                    file.write(screen_line(stamp, can_id, data, i % 2 == 0))
+        convert(log, folder / f"{kind}.csv", *arguments)
+        back = columns(folder / f"{kind}.csv")
+        same(f"{kind} yaw", yaw, back["rate_x_radps"], 1e-15)
+        same(f"{kind} pitch", pitch, back["rate_y_radps"], 1e-15)
+        same(f"{kind} temperature", temperature, back["temperature_degC"], 1e-15)
+        # Without the counter the lines' own times show: from the first sample's last frame on.
+        timed = [option for pair in zip(arguments[::2], arguments[1::2]) if pair[1] not in
+                 ("counter=Count", f"rate_hz={RATE_HZ}") for option in pair]
+        if kind != "none":
+            convert(log, folder / "timed.csv", *timed)
+            same(f"{kind} time", [0.004 * k for k in range(600)], columns(folder / "timed.csv")["time_s"], 1e-6)
+    refused = subprocess.run([ifog, "convert", log, folder / "no.csv", "--dbc", path, "--option", "x=Broken"],
+                             capture_output=True, text=True)
+    assert refused.returncode == 1 and f"{path}:11: " in refused.stderr, refused.stderr
+
+
 check_kvh()
+check_by_hand()
 check_dbc("ifogd_gyro.dbc", ["x=Rate_x", "y=Rate_y", "z=Rate_z", "counter=Counter",
                              "environment=temperature_degC=Temperature"],
           [("x", 256, "Rate_x"), ("y", 257, "Rate_y"), ("z", 258, "Rate_z")], (272, "Temperature"), (256, "Counter"), 1.0)

@@ -38,9 +38,9 @@ DriverSettings CaptureInput::settings() const {
 }
 
 DriverInstance CaptureInput::make_driver() const {
-  DriverInstance driver = ifog::make_driver(driver_name(), settings());
-  for (const std::string& warning : driver.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
-  return driver;
+  DriverInstance made = ifog::make_driver(driver_name(), settings());
+  for (const std::string& warning : made.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
+  return made;
 }
 
 bool CaptureInput::is_csv(const std::string& path) const {
