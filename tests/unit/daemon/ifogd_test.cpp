@@ -173,6 +173,48 @@ TEST_F(Ifogd, AFaultInALogIsToldWhereItIs) {
   EXPECT_EQ(lines_with("250 samples read, 250 published"), 1) << all_said();
 }
 
+std::size_t line_length(const std::string& log) { return log.find('\n') + 1; }
+
+// A sample of three frames: one frame twice, a whole sample twice, the last sample unfinished; and a slip in
+// the DBC file.
+TEST_F(Ifogd, WhatComesTwiceOrUnfinishedIsCounted) {
+  std::string bus;
+  for (int axis = 0; axis < 3; ++axis)
+    bus += "BO_ " + std::to_string(256 + axis) + " M" + std::to_string(axis) + ": 8 X\n SG_ R" +
+           std::to_string(axis) +
+           " : 0|32@1- (1e-6,0) [0|0] \"rad/s\" X\n SG_ Count : 32|16@1+ (1,0) [0|0] \"\" X\n";
+  write("bus.dbc", bus + " SG_ Slip : 48|8@3+ (1,0) [0|0] \"\" X\n");
+  configure(
+      "[sensor.options]\ndbc = \"" + path("bus.dbc") +
+          "\"\nx = \"R0\"\ny = \"R1\"\nz = \"R2\"\ncounter = \"Count\"\nrate_hz = 100\n[sensor.transport]\n"
+          "type = \"file\"\npath = \"gyro.log\"\nformat = \"candump\"\n",
+      "dbc");
+  std::string log;
+  const auto frame = [&](int sample, int axis) {
+    char line[80];
+    std::snprintf(line, sizeof line, "(1700000000.%06d) can0 %03X#%02X%02X0000%02X%02X0000\n",
+                  sample * 4000 + axis * 100, static_cast<unsigned>(256 + axis),
+                  static_cast<unsigned>(sample % 251), static_cast<unsigned>(axis),
+                  static_cast<unsigned>(sample & 0xFF), static_cast<unsigned>(sample >> 8));
+    log += line;
+  };
+  for (int k = 0; k < 200; ++k)
+    for (int axis = 0; axis < 3; ++axis) frame(k, axis);
+  const auto place = [&](int sample, int axis) {
+    return static_cast<std::size_t>(sample * 3 + axis) * line_length(log);
+  };
+  log.insert(place(120, 0), log.substr(place(119, 0), 3 * line_length(log)));
+  log.insert(place(60, 2), log.substr(place(60, 1), line_length(log)));
+  log.resize(log.size() - line_length(log));
+  write("gyro.log", log);
+  ifogd();
+  EXPECT_EQ(lines_with("frames_repeated +1"), 1) << all_said();
+  EXPECT_EQ(lines_with("samples_repeated +1"), 1) << all_said();
+  EXPECT_EQ(lines_with("samples_incomplete +1"), 1) << all_said();
+  EXPECT_EQ(lines_with("199 samples read, 199 published"), 1) << all_said();
+  EXPECT_EQ(lines_with("bus.dbc:10: '3+ (1,0) [0|0] \"\" X', expected one of 01"), 1) << all_said();
+}
+
 // The status messages of the daemon while it runs, with an eye on one of them.
 struct Listener {
   Listener() : lcm(lcm_create("udpm://239.255.76.67:7667?ttl=0")) {
