@@ -58,7 +58,8 @@ void Scanner::fail(const std::string& expected) {
   constexpr std::size_t kShown = 24;
   skip_space();
   const std::string_view here = rest_of_line();
-  throw ScanError(line_, (here.empty() ? "the file ends" : in_quotes(here, kShown)) + ", expected " + expected);
+  throw ScanError(line_,
+                  (here.empty() ? "the file ends" : in_quotes(here, kShown)) + ", expected " + expected);
 }
 
 std::string_view Scanner::peek_word() {

@@ -74,9 +74,10 @@ TEST(DbcBadLines, SeveralSignalsOnALine) {
   // The first of them broken.
   const Database b =
       parse("BO_ 1 A: 8 X SG_ R : 0|x@1+ (1,0) [0|0] \"\" X SG_ Q : 8|8@1+ (1,0) [0|0] \"\" X\n");
-  EXPECT_EQ(b.warnings,
-            Strings{"f.dbc:1: 'x@1+ (1,0) [0|0] \"\" X SG… (53 bytes)', expected the length of a signal, 1 to "
-                    "64 bits"});
+  EXPECT_EQ(
+      b.warnings,
+      Strings{"f.dbc:1: 'x@1+ (1,0) [0|0] \"\" X SG… (53 bytes)', expected the length of a signal, 1 to "
+              "64 bits"});
   EXPECT_EQ(why_not(b, "A.R"), b.warnings[0]);
   EXPECT_EQ(why_not(b, "A.Q"), "usable");
 }
