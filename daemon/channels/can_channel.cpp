@@ -13,7 +13,7 @@ CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
   const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, signal);
   if (found.empty())
     throw std::runtime_error(
-        dbc_file + ": no signal " + in_quotes(signal) + "; expected SIGNAL or MESSAGE.SIGNAL" +
+        dbc_file + ": no signal \"" + printable(signal) + "\"; expected SIGNAL or MESSAGE.SIGNAL" +
         (database.warnings.empty() ? "" : " (a bad line: " + database.warnings.front() + ")"));
   if (found.size() > 1)
     throw std::runtime_error(dbc_file + ": signal \"" + printable(signal) +
