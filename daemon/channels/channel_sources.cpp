@@ -18,6 +18,7 @@
 #include "daemon/channels/lcm_field.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
+#include "drivers/transport/clock.h"
 
 namespace ifog {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 namespace {

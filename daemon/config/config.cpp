@@ -11,6 +11,7 @@
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
+#include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
@@ -92,19 +93,7 @@ FilterChoice read_filter(const toml::table& table, const std::string& where, dou
                          Context& context) {
   TableReader in(table, where, context.file, context.errors);
   FilterChoice out;
-  out.rule = in.text("rule");
-  out.state = in.text("state");
-  out.weights = in.choice("weights", {"kept", "fresh", "uniform"});
-  out.process_noise = in.number("process_noise", kNotNegative);
-  out.measurement_noise = in.number("measurement_noise", kNotNegative);
-  out.state_parameters = in.numbers("state_parameters");
-  out.floor = in.number("floor", {0.0, 1.0});
-  if (const auto window = in.integer("window", 2, 100'000)) out.window = static_cast<int>(*window);
-  if (const auto draws = in.integer("draws", 1, 1000)) out.draws = static_cast<int>(*draws);
-  out.follow_manoeuvres = in.boolean("follow_manoeuvres");
-  out.conserve_angle = in.boolean("conserve_angle");
-  if (const auto seed = in.integer("seed", 0, std::numeric_limits<std::int64_t>::max()))
-    out.seed = static_cast<std::uint64_t>(*seed);
+  for (const FilterSetting& setting : filter_table()) in.filter_setting(setting, out);
   take(in.number("start_up_s", {0.01, 3600.0}), start_up_s);
   in.refuse_the_rest();
   return out;

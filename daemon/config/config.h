@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "drivers/transport/serial_port.h"
-#include "filters/chain/filter_choice.h"
+#include "filters/settings/filter_settings.h"
 
 namespace ifog {
 

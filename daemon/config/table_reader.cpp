@@ -128,20 +128,11 @@ std::optional<bool> TableReader::boolean(std::string_view key) {
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> TableReader::numbers(std::string_view key) {
-  const toml::node* const node = find(key);
-  if (node == nullptr) return std::nullopt;
-  std::vector<double> out;
-  const auto* const array = node->as_array();
-  bool good = array != nullptr;
-  if (good)
-    for (const toml::node& element : *array) {
-      good = good && element.is_number() && std::isfinite(element.value<double>().value_or(std::nan("")));
-      if (good) out.push_back(element.value<double>().value_or(0.0));
-    }
-  if (good) return out;
-  wrong(key, *node, "a list of numbers");
-  return std::nullopt;
+void TableReader::filter_setting(const FilterSetting& setting, FilterChoice& choice) {
+  const toml::node* const node = find(setting.key);
+  if (node == nullptr) return;
+  const std::optional<SettingValue> value = setting_value(*node);
+  if (!value || !choose(setting, *value, choice)) wrong(setting.key, *node, expected(setting));
 }
 
 std::optional<std::vector<int>> TableReader::integers(std::string_view key, int least, int most) {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "filters/settings/filter_table.h"
+
 namespace ifog {
 
 struct Range {
@@ -29,7 +31,8 @@ class TableReader {
   std::optional<double> number(std::string_view key, Range range);
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t least, std::int64_t most);
   std::optional<bool> boolean(std::string_view key);
-  std::optional<std::vector<double>> numbers(std::string_view key);
+  // One row of the table of filter settings, into `choice` where the key is there.
+  void filter_setting(const FilterSetting& setting, FilterChoice& choice);
   std::optional<std::vector<int>> integers(std::string_view key, int least, int most);
   // As text() and number(), and an error when it is not there.
   std::string required_text(std::string_view key, const char* expected);

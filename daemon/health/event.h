@@ -1,12 +1,8 @@
-// What the hot path has to say, without formatting it: plain data through a ring, drained and worded by
-// housekeeping.
+// What the hot path has to say, without formatting it: plain data that housekeeping words later.
 #pragma once
 
 #include <cstdint>
 #include <string>
-
-#include "daemon/health/counter.h"
-#include "daemon/pipeline/ring.h"
 
 namespace ifog {
 
@@ -32,32 +28,5 @@ struct Event {
 
 // One line for the log, without the sensor's name.
 std::string describe(const Event& event);
-
-// From one thread of a pipeline to housekeeping.
-class EventQueue {
- public:
-  EventQueue() : ring_(256) {}
-  void report(const Event& event) noexcept {
-    Event* const slot = ring_.claim();
-    if (slot == nullptr) {
-      lost_.add(1);
-      return;
-    }
-    *slot = event;
-    ring_.commit();
-  }
-  bool take(Event& out) noexcept {
-    const Event* const event = ring_.front();
-    if (event == nullptr) return false;
-    out = *event;
-    ring_.pop();
-    return true;
-  }
-  [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.value(); }
-
- private:
-  Ring<Event> ring_;
-  Counter lost_;
-};
 
 }  // namespace ifog

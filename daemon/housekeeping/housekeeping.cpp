@@ -12,6 +12,8 @@
 
 #include "daemon/realtime/realtime.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/transport/clock.h"
+#include "msgs/state_name.h"
 
 namespace ifog {
 namespace {

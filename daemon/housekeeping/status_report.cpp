@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/transport/clock.h"
 #include "drivers/transport/transport.h"
 
 namespace ifog {
@@ -76,25 +77,6 @@ std::string fault_of(const Reader& reader) {
 }
 
 }  // namespace
-
-const char* state_name(std::int32_t state) {
-  switch (state) {
-    case status_t::STATE_STARTING:
-      return "starting";
-    case status_t::STATE_RUNNING:
-      return "running";
-    case status_t::STATE_NO_DATA:
-      return "no data";
-    case status_t::STATE_REOPENING:
-      return "device gone";
-    case status_t::STATE_ENDED:
-      return "ended";
-    case status_t::STATE_FAILED:
-      return "failed";
-    default:
-      return "unknown";
-  }
-}
 
 StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels,
                            const std::vector<std::string>& axes)

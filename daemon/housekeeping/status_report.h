@@ -25,6 +25,4 @@ class StatusReport {
   ifog::status_t before_, now_;
 };
 
-const char* state_name(std::int32_t state);
-
 }  // namespace ifog

@@ -1,5 +1,4 @@
-// From a sensor's configuration to the parts of its pipeline. `ifog denoise --config` goes the same way, so
-// that it filters as the daemon does.
+// From a sensor's configuration to its pipeline.
 #pragma once
 
 #include <memory>
@@ -8,32 +7,8 @@
 
 #include "daemon/config/config.h"
 #include "daemon/pipeline/pipeline.h"
-#include "drivers/host/driver_instance.h"
-#include "drivers/transport/transport.h"
-#include "filters/chain/signal_chain.h"
-#include "filters/model_file/model.h"
 
 namespace ifog {
-
-// All throw std::runtime_error with one line.
-
-DriverInstance make_sensor_driver(const SensorConfig& sensor, const std::vector<std::string>& plugin_folders);
-
-// The line as configured; its speed from the driver where the configuration has none.
-SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver);
-
-std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, const DriverInstance& driver);
-
-// Channels: those of the driver's frames first, then the configured ones that come from elsewhere. Null
-// model: none.
-ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_description& description,
-                                    std::shared_ptr<const Model> model);
-
-// Null when the sensor has none.
-std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor);
-
-// Channels that do not come in the sensor's frames, in the order of the chain's.
-std::vector<ChannelConfig> outside_channels(const SensorConfig& sensor);
 
 struct AssembledSensor {
   std::unique_ptr<Pipeline> pipeline;
@@ -42,6 +17,7 @@ struct AssembledSensor {
   std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
 };
 
+// Throws std::runtime_error with one line.
 AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
                          std::unique_ptr<Publisher> publisher);
 

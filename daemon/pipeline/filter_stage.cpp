@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "drivers/transport/transport.h"
+#include "drivers/transport/clock.h"
 
 namespace ifog {
 namespace {
@@ -132,7 +132,6 @@ void FilterStage::answer() noexcept {
   const ChainParts& parts = chain_.parts();
   current_.has_health = parts.health() != nullptr;
   if (current_.has_health) current_.health = *parts.health();
-  current_.angle_rad = out_.angle_rad;
   current_.allan_period_s = intervals_ > 0 ? mean_interval_s_ : 1.0 / facts_.nominal_rate_hz;
   current_.allan_octaves = StreamingAllan::kOctaves;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {

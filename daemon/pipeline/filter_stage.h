@@ -9,12 +9,12 @@
 #include <memory>
 #include <string>
 
-#include "daemon/health/counter.h"
-#include "daemon/health/event.h"
 #include "daemon/health/latency.h"
+#include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
+#include "drivers/transport/counter.h"
 #include "filters/allan/streaming.h"
 #include "filters/chain/signal_chain.h"
 
@@ -27,7 +27,6 @@ struct FilterSnapshot {
   LatencyHistogram latency;  // since the snapshot before
   std::array<double, kMaxChannels> channel{};
   std::array<float, kMaxChannels> channel_age_s{};
-  std::array<double, kMaxAxes> angle_rad{};
   std::array<char, 64> model{};
   // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.
   double allan_period_s = 0.0;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drivers/transport/transport.h"
+#include "drivers/transport/clock.h"
 
 namespace ifog {
 namespace {

@@ -13,9 +13,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "daemon/health/counter.h"
 #include "daemon/pipeline/filter_stage.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "drivers/transport/counter.h"
 
 namespace ifog {
 

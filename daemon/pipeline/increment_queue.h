@@ -9,9 +9,9 @@
 #include <atomic>
 #include <cstddef>
 
-#include "daemon/health/counter.h"
 #include "daemon/pipeline/ring.h"
 #include "daemon/pipeline/wakeup.h"
+#include "drivers/transport/counter.h"
 #include "filters/chain/reading.h"
 
 namespace ifog {

@@ -13,7 +13,6 @@
 namespace ifog {
 
 struct PipelinePlan {
-  std::string name;         // of the sensor
   std::string lcm_channel;  // of rate_t
   SensorFacts facts;
   std::size_t ring_slots = 1024;

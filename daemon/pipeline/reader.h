@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "daemon/channels/channel_table.h"
-#include "daemon/health/counter.h"
-#include "daemon/health/event.h"
+#include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
+#include "drivers/transport/counter.h"
 #include "drivers/transport/transport.h"
 #include "filters/chain/incrementer.h"
 

@@ -56,8 +56,7 @@ std::span<const std::uint8_t> RateEncoder::encode(const Increment& in, const Cha
   message_.merged = static_cast<std::int32_t>(in.samples);
   message_.flags = flags(in, out);
   message_.status = static_cast<std::int32_t>(in.status);
-  const auto copy = [n = message_.raw.size()](const std::array<double, kMaxAxes>& from,
-                                              std::vector<double>& to) {
+  const auto copy = [n = message_.raw.size()](const Axes& from, std::vector<double>& to) {
     std::copy_n(from.begin(), n, to.begin());
   };
   copy(in.rate_radps, message_.raw);

@@ -1,4 +1,5 @@
 #include "drivers/transport/can.h"
+#include "drivers/transport/clock.h"
 
 #include <linux/errqueue.h>
 #include <linux/net_tstamp.h>
@@ -124,7 +125,7 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexc
   for (std::size_t i = 0; i < received; ++i) {
     const CanControl said = can_control(messages_[i].msg_hdr);
     if (said.has_drops) {
-      add(kernel_drops_, said.drops - drops_);  // modulo 2^32, as the kernel counts
+      kernel_drops_.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
       drops_ = said.drops;
     }
     ifog_can_frame& frame = frames_[kept];
@@ -134,7 +135,7 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexc
         ++kept;
         break;
       case CanKind::error:
-        add(error_frames_, 1);
+        error_frames_.add(1);
         break;
       case CanKind::remote:
       case CanKind::unknown:

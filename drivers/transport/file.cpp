@@ -1,4 +1,5 @@
 #include "drivers/transport/file.h"
+#include "drivers/transport/clock.h"
 
 #include <poll.h>
 
@@ -256,7 +257,7 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
         pending_ = wanted(entry_);
         break;
       case CandumpLine::error:
-        add(error_frames_, 1);
+        error_frames_.add(1);
         break;
       case CandumpLine::malformed:
         report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_);

@@ -1,4 +1,5 @@
 #include "drivers/transport/serial.h"
+#include "drivers/transport/clock.h"
 
 #include <linux/serial.h>
 #include <poll.h>
@@ -104,8 +105,8 @@ void SerialTransport::count_line_errors(std::int64_t now_ns) noexcept {
   const auto more = [](int after, int before) {
     return static_cast<std::uint64_t>(static_cast<unsigned>(after) - static_cast<unsigned>(before));
   };
-  add(kernel_drops_, more(now.overrun, errors_.overrun) + more(now.buf_overrun, errors_.buf_overrun));
-  add(error_frames_, more(now.frame, errors_.frame) + more(now.parity, errors_.parity));
+  kernel_drops_.add(more(now.overrun, errors_.overrun) + more(now.buf_overrun, errors_.buf_overrun));
+  error_frames_.add(more(now.frame, errors_.frame) + more(now.parity, errors_.parity));
   errors_ = now;
 }
 

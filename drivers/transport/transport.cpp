@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "drivers/transport/clock.h"
+
 namespace ifog {
 OpenError::OpenError(const std::string& device, const std::string& what, int error,
                      const std::string& expected)
@@ -74,10 +76,10 @@ Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
   delivery.restarted = std::exchange(returning_, false);
   if (state() == TransportState::gone) {
     enter(TransportState::open, 0);
-    add(reopened_, 1);
+    reopened_.add(1);
   }
-  add(bytes_, delivery.bytes.size());
-  add(frames_, delivery.frames.size());
+  bytes_.add(delivery.bytes.size());
+  frames_.add(delivery.frames.size());
   return delivery;
 }
 
@@ -101,7 +103,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     enter(TransportState::open, 0);
     if (std::exchange(once_, true)) {
       returning_ = true;
-      add(reopened_, 1);
+      reopened_.add(1);
     }
     return true;
   }
@@ -143,13 +145,12 @@ void Transport::enter(TransportState state, int reason) noexcept {
 void Transport::report(const char* what, std::uint64_t line) noexcept {
   fault_line_.store(line, std::memory_order_relaxed);
   fault_.store(what, std::memory_order_release);
-  add(malformed_, 1);
+  malformed_.add(1);
 }
 
 TransportCounters Transport::counters() const {
-  const auto value = [](const Counter& counter) { return counter.load(std::memory_order_relaxed); };
-  return {value(bytes_),        value(frames_),   value(kernel_drops_),
-          value(error_frames_), value(reopened_), value(malformed_)};
+  return {bytes_.value(),        frames_.value(),   kernel_drops_.value(),
+          error_frames_.value(), reopened_.value(), malformed_.value()};
 }
 
 TransportFault Transport::fault() const {

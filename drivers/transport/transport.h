@@ -17,7 +17,7 @@
 #include "drivers/ifog/driver.h"
 #include "drivers/transport/backlog.h"
 #include "drivers/transport/backoff.h"
-#include "drivers/transport/clock.h"
+#include "drivers/transport/counter.h"
 
 namespace ifog {
 
@@ -126,14 +126,9 @@ class Transport {
   void left() noexcept;
   void end(int reason) noexcept { enter(TransportState::ended, reason); }
 
-  // One writer, so that a plain load and store do and no locked instruction is needed.
-  using Counter = std::atomic<std::uint64_t>;
-  static void add(Counter& counter, std::uint64_t n) noexcept {
-    counter.store(counter.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
-  }
   void report(const char* what, std::uint64_t line) noexcept;  // counts it as malformed, too
 
-  Counter kernel_drops_{0}, error_frames_{0};
+  Counter kernel_drops_, error_frames_;
 
  private:
   bool regain(std::int64_t until_ns) noexcept;
@@ -150,12 +145,14 @@ class Transport {
   bool returning_ = false;  // the next delivery is the first since the device came back
   Backlog backlog_;
   int stop_event_;
+  // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person;
+  // stop() wakes a waiting read() by the event, not by this flag. The fault's line is published by the fault.
   std::atomic<bool> stopped_{false};
   std::atomic<TransportState> state_{TransportState::gone};
   std::atomic<int> reason_{0};
   std::atomic<const char*> fault_{nullptr};
   std::atomic<std::uint64_t> fault_line_{0};
-  Counter bytes_{0}, frames_{0}, reopened_{0}, malformed_{0};
+  Counter bytes_, frames_, reopened_, malformed_;
 };
 
 }  // namespace ifog

@@ -65,8 +65,8 @@ class Incrementer {
   std::int64_t known_arrival_ns_ = 0;  // latest arrival time that is known; 0: none yet
   double counted_s_ = 0.0;             // steps since then
   std::uint64_t sequence_ = 0;
-  std::array<double, kMaxAxes> angle_{};          // last valid, SensorKind::angle
-  std::array<double, kMaxAxes> since_angle_s_{};  // time since it; < 0: there is none yet
+  Axes angle_{};          // last valid, SensorKind::angle
+  Axes since_angle_s_{};  // time since it; < 0: there is none yet
   std::array<double, kMaxChannels> channel_{};
   std::array<float, kMaxChannels> channel_age_s_{};
   IncrementerCounts counts_;

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 
@@ -38,7 +38,7 @@ struct Reading {
   bool has_sequence = false;
   std::uint32_t status = 0;
   std::uint32_t valid_axes = 0;  // bit i
-  std::array<double, kMaxAxes> value{};
+  Axes value{};
   std::uint32_t fresh_channels = 0;            // bit i: frame channel i came with this sample
   std::array<double, kMaxChannels> channel{};  // NaN until known
   // Ages of channels that do not come in the sensor's frames, s; those of its own frames are counted here.
@@ -58,11 +58,11 @@ struct Increment {
   std::int64_t arrival_ns = 0;     // as in Reading
   std::int64_t wall_shift_ns = 0;  // likewise
   std::int64_t device_time_ns = -1;
-  std::uint64_t sequence = 0;                      // unwrapped; starts at the device's first counter value
-  double dt_s = 0.0;                               // since the sample before, gap included
-  std::array<double, kMaxAxes> delta_theta_rad{};  // only what the device sent: a gap adds nothing
-  std::array<double, kMaxAxes> covered_s{};        // time delta_theta covers: dt less gap and invalid samples
-  std::array<double, kMaxAxes> rate_radps{};       // delta_theta / covered; NaN where the axis is not valid
+  std::uint64_t sequence = 0;  // unwrapped; starts at the device's first counter value
+  double dt_s = 0.0;           // since the sample before, gap included
+  Axes delta_theta_rad{};      // only what the device sent: a gap adds nothing
+  Axes covered_s{};            // time delta_theta covers: dt less gap and invalid samples
+  Axes rate_radps{};           // delta_theta / covered; NaN where the axis is not valid
   std::uint32_t valid_axes = 0;
   std::uint32_t status = 0;
   std::uint32_t flags = 0;

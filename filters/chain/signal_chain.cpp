@@ -7,6 +7,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/start_up.h"
+#include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {

@@ -13,12 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "filters/chain/filter_choice.h"
 #include "filters/chain/reading.h"
 #include "filters/effects/compensator.h"
 #include "filters/estimator/estimator.h"
-#include "filters/estimator/settings.h"
 #include "filters/model_file/model.h"
+#include "filters/settings/filter_settings.h"
 
 namespace ifog {
 
@@ -38,12 +37,12 @@ enum ChainFlags : std::uint32_t {
 };
 
 struct ChainOutput {
-  std::array<double, kMaxAxes> compensated_radps{};
-  std::array<double, kMaxAxes> delta_theta_rad{};  // compensated, unfiltered
-  std::array<double, kMaxAxes> angle_rad{};        // running sum of delta_theta
-  EstimatorOutput estimate;                        // its variance includes the correction's
-  std::uint32_t flags = 0;                         // ChainFlags
-  std::uint32_t compensator_flags = 0;             // CompensatorFlags
+  Axes compensated_radps{};
+  Axes delta_theta_rad{};               // compensated, unfiltered
+  Axes angle_rad{};                     // running sum of delta_theta
+  EstimatorOutput estimate;             // its variance includes the correction's
+  std::uint32_t flags = 0;              // ChainFlags
+  std::uint32_t compensator_flags = 0;  // CompensatorFlags
 };
 
 // A sum that loses nothing: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher
@@ -93,7 +92,7 @@ class ChainParts {
   std::size_t start_up_size_ = 0;  // samples of an axis wanted
   std::size_t collected_ = 0;
   std::unique_ptr<Estimator> estimator_;
-  std::array<double, kMaxAxes> owed_{};  // by the estimator before, until this one is there
+  Axes owed_{};  // by the estimator before, until this one is there
   bool first_ = true;
 };
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "filters/estimator/estimator.h"
-#include "filters/estimator/settings.h"
+#include "filters/settings/filter_settings.h"
 
 namespace ifog {
 

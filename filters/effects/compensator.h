@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "filters/effects/shape.h"
-#include "filters/estimator/estimator.h"
 #include "filters/model_file/model.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 
@@ -29,16 +29,15 @@ enum CompensatorFlags : std::uint32_t {
 
 struct CompensatorInput {
   double dt_s = 0.0;  // time covered by this sample; after a gap, the whole gap
-  std::array<double, kMaxAxes> rate_radps{};
+  Axes rate_radps{};
   std::span<const double> channels{};  // in the order of Compensator::channels(); NaN: missing now
   std::span<const double> age_s{};     // of each channel's value; empty: all are as old as the sample
 };
 
 struct CompensatorOutput {
-  std::array<double, kMaxAxes> compensated_radps{};
-  std::array<double, kMaxAxes> correction_radps{};  // what was subtracted
-  std::array<double, kMaxAxes>
-      variance_rad2ps2{};   // of the correction: parameter covariance, and leaving the range
+  Axes compensated_radps{};
+  Axes correction_radps{};  // what was subtracted
+  Axes variance_rad2ps2{};  // of the correction: parameter covariance, and leaving the range
   std::uint32_t flags = 0;  // CompensatorFlags
   std::array<bool, kMaxAxes> axis_touched{};  // a flag concerns this axis
 };

@@ -14,14 +14,12 @@
 #include <algorithm>
 #include <array>
 
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 
 class AngleLedger {
  public:
-  using Axes = std::array<double, kMaxAxes>;
-
   explicit AngleLedger(double period_s) : period_s_(period_s) {}
 
   // Rate to be added to the output of this sample. lag_s: tau of the filter at rest.

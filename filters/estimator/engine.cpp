@@ -226,7 +226,7 @@ void Engine::remember(const Axes& rate, std::uint32_t valid) noexcept {
 }
 
 // The last `count` measurements, oldest first.
-std::span<const Engine::Axes> Engine::recent(std::size_t count) noexcept {
+std::span<const Axes> Engine::recent(std::size_t count) noexcept {
   count = std::min(count, history_length_);
   for (std::size_t i = 0; i < count; ++i)
     recent_[i] = history_[(history_at_ + kHistory - count + i) % kHistory];

@@ -21,12 +21,11 @@ class Engine {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
-  [[nodiscard]] std::array<double, kMaxAxes> owed() const noexcept;
-  void owe(const std::array<double, kMaxAxes>& angle_rad) noexcept;
+  [[nodiscard]] Axes owed() const noexcept;
+  void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
 
  private:
-  using Axes = std::array<double, kMaxAxes>;
   // Measurements kept for starting the trackers at the beginning of a change.
   static constexpr std::size_t kHistory = 16;
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "drivers/ifog/quoted.h"
 #include "filters/estimator/engine.h"
+#include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
@@ -27,14 +27,7 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
           settings.process_noise, "a positive spectral density in (rad/s)^2/s");
   require(std::isfinite(settings.measurement_noise) && settings.measurement_noise > 0, "measurement_noise",
           settings.measurement_noise, "a positive variance in (rad/s)^2");
-  require(settings.window >= 2 && settings.window <= 100000, "window", settings.window,
-          "2 to 100000 samples");
-  require(settings.draws >= 1 && settings.draws <= 1000, "draws", settings.draws, "1 to 1000");
-  require(settings.floor >= 0 && settings.floor < 1, "floor", settings.floor, "0 (off) or below 1");
-  if (settings.weights != "kept" && settings.weights != "fresh" && settings.weights != "uniform") {
-    throw std::invalid_argument("weights: " + in_quotes(settings.weights) +
-                                ", expected kept, fresh or uniform");
-  }
+  require_in_range(settings);
 }
 
 }  // namespace

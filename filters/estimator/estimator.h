@@ -8,20 +8,19 @@
 #include <cstdint>
 #include <memory>
 
-#include "filters/estimator/settings.h"
+#include "filters/settings/axes.h"
+#include "filters/settings/filter_settings.h"
 
 namespace ifog {
 
-inline constexpr int kMaxAxes = 3;
-
 struct EstimatorInput {
-  std::uint64_t sequence = 0;                 // unwrapped; also the counter of the random weights
-  double dt_s = 0.0;                          // time covered by this sample; after a gap, the whole gap
-  std::array<double, kMaxAxes> rate_radps{};  // compensated mean rate over dt
-  std::uint32_t valid_axes = 0;               // bit i; an axis that is not valid is only predicted
+  std::uint64_t sequence = 0;    // unwrapped; also the counter of the random weights
+  double dt_s = 0.0;             // time covered by this sample; after a gap, the whole gap
+  Axes rate_radps{};             // compensated mean rate over dt
+  std::uint32_t valid_axes = 0;  // bit i; an axis that is not valid is only predicted
   // By axis, of dt the time in which the rate was measured: what a gap hides is no angle, and none is owed
   // for it. 0: all of dt.
-  std::array<double, kMaxAxes> covered_s{};
+  Axes covered_s{};
   double averaged_s = 0.0;  // time the rate is a mean over (white noise falls with it); 0: the nominal period
 };
 
@@ -35,21 +34,20 @@ enum EstimatorFlags : std::uint32_t {
 };
 
 struct EstimatorOutput {
-  std::array<double, kMaxAxes> denoised_radps{};
-  std::array<double, kMaxAxes> variance_rad2ps2{};
-  std::array<double, kMaxAxes> innovation_radps{};
-  std::array<double, kMaxAxes> innovation_variance{};
-  std::array<double, kMaxAxes> gain{};
+  Axes denoised_radps{};
+  Axes variance_rad2ps2{};
+  Axes innovation_radps{};
+  Axes innovation_variance{};
+  Axes gain{};
   std::uint32_t flags = 0;
 };
 
 // Figures for the status message; counters only grow. NIS and whiteness are of the filter at rest, and stand
 // still in a manoeuvre.
 struct EstimatorHealth {
-  std::array<double, kMaxAxes>
-      nis_mean{};  // exponentially averaged, 1 when the filter believes itself rightly
-  std::array<double, kMaxAxes> whiteness{};  // lag-1 autocorrelation of the innovations
-  std::array<double, kMaxAxes> measurement_noise{};
+  Axes nis_mean{};   // exponentially averaged, 1 when the filter believes itself rightly
+  Axes whiteness{};  // lag-1 autocorrelation of the innovations
+  Axes measurement_noise{};
   double group_delay_s = 0.0;
   double correlation_time_s = 0.0;
   std::uint64_t gated = 0, manoeuvres = 0, floor_hits = 0, divergences = 0, restarts = 0;
@@ -69,8 +67,8 @@ class Estimator {
   // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
   // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
   // step, so that a reload in a turn loses none.
-  [[nodiscard]] std::array<double, kMaxAxes> owed() const noexcept;
-  void owe(const std::array<double, kMaxAxes>& angle_rad) noexcept;
+  [[nodiscard]] Axes owed() const noexcept;
+  void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept;
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/random/logarithm.h"
+#include "filters/random/log_exp.h"
 
 namespace ifog {
 namespace {

@@ -13,14 +13,12 @@
 #include <cstdint>
 #include <span>
 
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 
 class FadingTrackers {
  public:
-  using Axes = std::array<double, kMaxAxes>;
-
   FadingTrackers();
 
   // Starts afresh from the last measurements, oldest first.

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <span>
 
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 
@@ -87,9 +87,9 @@ class InnovationMonitor {
   void learn_colour(std::size_t axis) noexcept;
 
   std::array<std::array<double, kRing>, kMaxAxes> sums_{};  // of clipped innovations, up to each sample
-  std::array<double, kMaxAxes> variance_{};
-  std::array<double, kMaxAxes> learned_{};
-  std::array<double, kMaxAxes> allowed_{};  // variance that was seen to be noise
+  Axes variance_{};
+  Axes learned_{};
+  Axes allowed_{};  // variance that was seen to be noise
   struct Colour {
     std::array<double, kLadder.size()> variance;  // of each sum over that of white noise
     std::array<double, kLadder.size()> widening;  // the part of it that is certain, 1 to `most`

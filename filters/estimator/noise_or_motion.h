@@ -16,7 +16,7 @@
 #include <array>
 #include <cstddef>
 
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 

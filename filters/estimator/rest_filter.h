@@ -6,17 +6,15 @@
 #include <array>
 #include <memory>
 
-#include "filters/estimator/estimator.h"
 #include "filters/kalman/settled.h"
 #include "filters/rules/rule.h"
+#include "filters/settings/axes.h"
 #include "filters/state_models/state_model.h"
 
 namespace ifog {
 
 class RestFilter {
  public:
-  using Axes = std::array<double, kMaxAxes>;
-
   virtual ~RestFilter() = default;
 
   virtual void restart() noexcept = 0;

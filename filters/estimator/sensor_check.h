@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "filters/estimator/estimator.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 

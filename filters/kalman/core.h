@@ -2,18 +2,20 @@
 // state vector per axis. One gain for all axes because different gains turn coning into drift: the axes would
 // see the same cone with different lags.
 //
-// Gauge of the equations: Narasimhappa et al., "An innovation based random weighting estimation mechanism for
+// Equations: Narasimhappa et al., "An innovation based random weighting estimation mechanism for
 // denoising fiber optic gyro drift signal", eqs. (9)-(13). The innovation covariance C comes from the
 // adaptation rule; with C = h'P h + R this is the conventional filter.
 #pragma once
 
 #include <Eigen/Dense>
 
+#include "filters/settings/axes.h"
+
 namespace ifog {
 
 template <int n>
 struct KalmanCore {
-  static constexpr int kAxes = 3;
+  static constexpr int kAxes = kMaxAxes;
   using Vector = Eigen::Matrix<double, n, 1>;
   using Matrix = Eigen::Matrix<double, n, n>;
 

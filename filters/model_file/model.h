@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "filters/estimator/settings.h"
+#include "filters/settings/filter_settings.h"
 
 namespace ifog {
 

@@ -7,6 +7,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
+#include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
@@ -68,15 +69,6 @@ class Table {
     if (!node) return otherwise;
     const auto value = node->value_exact<bool>();
     if (!value) fail(key, node, "expected true or false");
-    return *value;
-  }
-
-  std::int64_t whole(const std::string& key, std::int64_t otherwise, std::int64_t least) {
-    const toml::node* node = find(key);
-    if (!node) return otherwise;
-    const auto value = node->value_exact<std::int64_t>();
-    if (!value || *value < least)
-      fail(key, node, "expected a whole number of at least " + std::to_string(least));
     return *value;
   }
 
@@ -154,21 +146,16 @@ void read_noise(Table table, Model& model) {
 }
 
 FilterSettings read_filter(Table table) {
-  FilterSettings filter;
-  if (table.find("rule")) filter.rule = table.words("rule");
-  if (table.find("state")) filter.state = table.words("state");
-  filter.process_noise = table.number("process_noise", filter.process_noise);
-  filter.measurement_noise = table.number("measurement_noise", filter.measurement_noise);
-  filter.state_parameters = table.numbers("state_parameters");
-  filter.window = static_cast<int>(table.whole("window", filter.window, 1));
-  if (table.find("weights")) filter.weights = table.words("weights");
-  filter.draws = static_cast<int>(table.whole("draws", filter.draws, 1));
-  filter.floor = table.number("floor", filter.floor);
-  filter.follow_manoeuvres = table.yes("follow_manoeuvres", filter.follow_manoeuvres);
-  filter.conserve_angle = table.yes("conserve_angle", filter.conserve_angle);
-  filter.seed = static_cast<std::uint64_t>(table.whole("seed", static_cast<std::int64_t>(filter.seed), 0));
+  FilterChoice choice;
+  for (const FilterSetting& setting : filter_table()) {
+    const toml::node* const node = table.find(setting.key);
+    if (node == nullptr) continue;
+    const std::optional<SettingValue> value = setting_value(*node);
+    if (!value || !choose(setting, *value, choice))
+      table.fail(setting.key, node, "expected " + expected(setting));
+  }
   table.done();
-  return filter;
+  return settings_in_force(choice, FilterSettings{});
 }
 
 Effect read_effect(Table table) {

@@ -7,9 +7,11 @@
 #include <cstdio>
 #include <stdexcept>
 #include <system_error>
+#include <type_traits>
 
 #include "filters/model_file/model.h"
 #include "filters/model_file/sha256.h"
+#include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
@@ -69,20 +71,31 @@ void write_noise(Text& text, const std::string& axis, const NoiseTerms& noise) {
   }
 }
 
+std::string as_toml(const SettingValue& value) {
+  return std::visit(
+      [](const auto& v) -> std::string {
+        using T = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<T, bool>)
+          return v ? "true" : "false";
+        else if constexpr (std::is_same_v<T, std::int64_t>)
+          return std::to_string(v);
+        else if constexpr (std::is_same_v<T, double>)
+          return number(v);
+        else if constexpr (std::is_same_v<T, std::string>)
+          return quoted(v);
+        else
+          return list(v);
+      },
+      value);
+}
+
 void write_filter(Text& text, const FilterSettings& filter) {
   text.table("filter");
-  text.words("rule", filter.rule);
-  text.words("state", filter.state);
-  text.line("process_noise", number(filter.process_noise));
-  text.line("measurement_noise", number(filter.measurement_noise));
-  if (!filter.state_parameters.empty()) text.line("state_parameters", list(filter.state_parameters));
-  text.line("window", std::to_string(filter.window));
-  text.words("weights", filter.weights);
-  text.line("draws", std::to_string(filter.draws));
-  text.line("floor", number(filter.floor));
-  text.line("follow_manoeuvres", filter.follow_manoeuvres ? "true" : "false");
-  text.line("conserve_angle", filter.conserve_angle ? "true" : "false");
-  text.line("seed", std::to_string(filter.seed));
+  for (const FilterSetting& setting : filter_table()) {
+    const SettingValue value = value_of(setting, filter);
+    const auto* const items = std::get_if<std::vector<double>>(&value);
+    if (items == nullptr || !items->empty()) text.line(setting.key, as_toml(value));
+  }
 }
 
 void write_effect(Text& text, const Effect& effect) {

@@ -3,12 +3,18 @@
 
 #include <toml++/toml.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "filters/settings/filter_table.h"
 
 namespace ifog {
 
 // Throws std::runtime_error: "NAME:LINE: what is wrong".
 toml::table parse_toml(std::string_view text, const std::string& name);
+
+// As a filter's setting is read; nothing for a node of a type that no setting has.
+std::optional<SettingValue> setting_value(const toml::node& node);
 
 }  // namespace ifog

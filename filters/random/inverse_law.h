@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "filters/random/logarithm.h"
+#include "filters/random/log_exp.h"
 
 namespace ifog {
 

@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "filters/random/exponential.h"
+#include "filters/random/deviates.h"
 #include "filters/rules/rule.h"
 
 namespace ifog {

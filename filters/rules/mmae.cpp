@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "filters/random/logarithm.h"
+#include "filters/random/log_exp.h"
 #include "filters/rules/rule.h"
 
 namespace ifog {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/estimator/settings.h"
+#include "filters/settings/filter_settings.h"
 
 namespace ifog {
 

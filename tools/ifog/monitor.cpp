@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/housekeeping/status_report.h"
+#include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 
 namespace ifog::tools {

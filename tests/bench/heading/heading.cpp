@@ -130,7 +130,7 @@ struct Sensor {
   Sensor(const Block& block, std::uint64_t frames) {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
-    plan.name = plan.lcm_channel = "IFOG_DAY";
+    plan.lcm_channel = "IFOG_DAY";
     plan.facts = sensor_facts(driver.description(), kRate_hz, 0);
     plan.ring_slots = kSlots;
     plan.reader.name = "read";

@@ -19,6 +19,7 @@
 
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
+#include "drivers/transport/clock.h"
 #include "drivers/transport/file.h"
 
 namespace {

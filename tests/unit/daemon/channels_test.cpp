@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "daemon/channels/lcm_field.h"
+#include "drivers/transport/clock.h"
 #include "tests/unit/daemon/private_network.h"
 
 namespace ifog {

@@ -14,6 +14,7 @@
 
 #include "daemon/housekeeping/status_report.h"
 #include "drivers/host/driver_instance.h"
+#include "drivers/transport/clock.h"
 
 namespace ifog {
 namespace {
@@ -103,7 +104,6 @@ struct Rig {
       std::chrono::microseconds pause = 0us, bool direct = true) {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
-    plan.name = "test";
     plan.lcm_channel = "IFOG_TEST";
     plan.facts = sensor_facts(driver.description(), 1000.0, 0);
     plan.ring_slots = slots;

@@ -38,8 +38,9 @@ TEST(EstimatorSettings, AreRefusedByNameAndValue) {
   EXPECT_EQ(refusal([](FilterSettings& s) { s.measurement_noise = -1; }),
             "measurement_noise: -1, expected a positive variance in (rad/s)^2");
   EXPECT_EQ(refusal([](FilterSettings& s) { s.weights = "none"; }),
-            "weights: 'none', expected kept, fresh or uniform");
-  EXPECT_EQ(refusal([](FilterSettings& s) { s.window = 1; }), "window: 1, expected 2 to 100000 samples");
+            "weights: 'none', expected \"kept\" | \"fresh\" | \"uniform\"");
+  EXPECT_EQ(refusal([](FilterSettings& s) { s.window = 1; }),
+            "window: 1, expected a whole number 2 ... 100000");
   EXPECT_EQ(refusal([](FilterSettings&) {}, 4), "axes: 4, expected 1 to 3");
   EXPECT_NE(refusal([](FilterSettings& s) { s.rule = "wizard"; }).find("rule: 'wizard', expected one of ckf"),
             std::string::npos);

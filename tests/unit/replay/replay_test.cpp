@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/transport/clock.h"
 #include "drivers/transport/pace.h"
-#include "drivers/transport/transport.h"
 #include "tools/ifog/replay/lateness.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "filters/random/exponential.h"
+#include "filters/random/deviates.h"
 #include "filters/rules/rule.h"
 
 namespace {

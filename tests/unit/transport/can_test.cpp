@@ -1,6 +1,7 @@
 // What of the CAN transport can be seen without a kernel that has CAN: the two forms of a frame, what the
 // kernel says beside it, and the refusals. The rest runs on vcan in tests/system.
 #include "drivers/transport/can.h"
+#include "drivers/transport/clock.h"
 
 #include <gtest/gtest.h>
 #include <linux/can/raw.h>

@@ -1,4 +1,5 @@
 #include "drivers/transport/file.h"
+#include "drivers/transport/clock.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

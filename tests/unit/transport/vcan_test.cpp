@@ -16,6 +16,7 @@
 
 #include "drivers/transport/can.h"
 #include "drivers/transport/can_socket.h"
+#include "drivers/transport/clock.h"
 
 namespace {
 

@@ -15,6 +15,7 @@
 #include "filters/estimator/start_up.h"
 #include "filters/model_file/model.h"
 #include "filters/rules/rule.h"
+#include "filters/settings/filter_table.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/compare_picture.h"

@@ -9,7 +9,7 @@
 
 #include "filters/allan/deviation.h"
 #include "filters/allan/stretches.h"
-#include "filters/estimator/settings.h"
+#include "filters/settings/filter_settings.h"
 #include "tools/ifog/plot.h"
 
 namespace ifog::tools {

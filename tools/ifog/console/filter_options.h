@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "filters/chain/filter_choice.h"
+#include "filters/settings/filter_settings.h"
 
 namespace CLI {
 class App;
@@ -12,9 +12,8 @@ class App;
 
 namespace ifog::tools {
 
-// Adds --filter, --state, --process-noise, --measurement-noise, --state-parameter, --window, --weights,
-// --draws,
-// --floor, --seed, --no-follow and --no-conserve. `choice` must outlive the parse. `with_rule`: --filter too.
+// An option for each row of filters/settings/filter_table.h. `choice` must outlive the parse. `with_rule`:
+// --filter too.
 void add_filter_options(CLI::App& app, FilterChoice& choice, bool with_rule = true);
 
 }  // namespace ifog::tools

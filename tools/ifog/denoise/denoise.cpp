@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/pipeline/assemble.h"
+#include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/settings/filter_table.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
@@ -173,22 +174,7 @@ OfflineSettings settings_of(Options& options) {
     }
   }
   // What is said on the command line stands over the configuration.
-  FilterChoice& choice = out.sensor.filter;
-  const auto over = [](auto& base, const auto& said) {
-    if (said) base = said;
-  };
-  over(choice.rule, options.filter.rule);
-  over(choice.state, options.filter.state);
-  over(choice.weights, options.filter.weights);
-  over(choice.process_noise, options.filter.process_noise);
-  over(choice.measurement_noise, options.filter.measurement_noise);
-  over(choice.floor, options.filter.floor);
-  over(choice.state_parameters, options.filter.state_parameters);
-  over(choice.window, options.filter.window);
-  over(choice.draws, options.filter.draws);
-  over(choice.follow_manoeuvres, options.filter.follow_manoeuvres);
-  over(choice.conserve_angle, options.filter.conserve_angle);
-  over(choice.seed, options.filter.seed);
+  out.sensor.filter = over(options.filter, std::move(out.sensor.filter));
   if (!options.model.empty()) out.sensor.model = options.model;
   if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
   if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "daemon/pipeline/assemble.h"
 #include "daemon/sensor/facts.h"
+#include "daemon/sensor/sensor_parts.h"
 
 namespace ifog::tools {
 namespace {

@@ -18,8 +18,8 @@
 #include <system_error>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/transport/clock.h"
 #include "drivers/transport/pace.h"
-#include "drivers/transport/transport.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/progress.h"

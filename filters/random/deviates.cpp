@@ -1,4 +1,4 @@
-#include "filters/random/exponential.h"
+#include "filters/random/deviates.h"
 
 #include <algorithm>
 #include <cstring>

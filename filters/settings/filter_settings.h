@@ -1,25 +1,25 @@
 // What a sensor's filter is told: state model, noise, adaptation rule. Read from [sensor.filter] of the
-// daemon's configuration, from [filter] of a model file, or from the command line; one structure for all
-// three.
+// daemon's configuration, from [filter] of a model file and from the command line by one table,
+// filter_table.h, which also says what each of these may be.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace ifog {
 
 struct FilterSettings {
-  std::string rule = "irwe-akfg";  // a name from the list in filters/rules
-  std::string state =
-      "random-walk";  // a name from the list in filters/models, or a sum: "random-walk + harmonic"
+  std::string rule = "irwe-akfg";     // a name from the list in filters/rules
+  std::string state = "random-walk";  // a name from the list in filters/state_models, or a sum of them
 
   // Variances per second of the driving noise and per sample of the measurement. For the random walk: process
   // noise spectral density of the rate, (rad/s)^2/s; measurement variance at the nominal period, (rad/s)^2.
   double process_noise = 0.0;      // 0: not given; taken from the model file, else from start-up data
   double measurement_noise = 0.0;  // 0: not given, likewise
-  std::vector<double>
-      state_parameters;  // of the state model: AR/MA coefficients, correlation time, line frequency…
+  // Of the state model: AR/MA coefficients, correlation time, line frequency…
+  std::vector<double> state_parameters;
 
   int window = 50;                // N of IRWE, IAE, RAE
   std::string weights = "kept";   // "kept" | "fresh" | "uniform"
@@ -29,6 +29,16 @@ struct FilterSettings {
   bool conserve_angle = true;     // integral of (denoised - compensated) returns to zero
   double range_radps = 0.0;       // full scale of the sensor, for kSaturated; 0: not known
   std::uint64_t seed = 1;         // of the weights
+};
+
+// What one source says of it. Empty: not said. Meanings and units as in FilterSettings.
+struct FilterChoice {
+  std::optional<std::string> rule, state, weights;
+  std::optional<double> process_noise, measurement_noise, floor;
+  std::optional<std::vector<double>> state_parameters;
+  std::optional<int> window, draws;
+  std::optional<bool> follow_manoeuvres, conserve_angle;
+  std::optional<std::uint64_t> seed;
 };
 
 }  // namespace ifog

@@ -1,6 +1,6 @@
 // Our logarithm and exponential against the C library's in extended precision; the deviates against the
 // moments of their laws.
-#include "filters/random/exponential.h"
+#include "filters/random/deviates.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "filters/random/inverse_law.h"
-#include "filters/random/logarithm.h"
+#include "filters/random/log_exp.h"
 
 namespace {
 

@@ -1,0 +1,38 @@
+// From a sensor's configuration to its driver, transport and signal chain: no threads, no LCM. The command
+// line goes the same way, so that it filters as the daemon does.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/sensor/facts.h"
+#include "drivers/host/driver_instance.h"
+#include "drivers/transport/transport.h"
+#include "filters/chain/signal_chain.h"
+#include "filters/model_file/model.h"
+
+namespace ifog {
+
+// All throw std::runtime_error with one line.
+
+DriverInstance make_sensor_driver(const SensorConfig& sensor, const std::vector<std::string>& plugin_folders);
+
+// The line as configured; its speed from the driver where the configuration has none.
+SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver);
+
+std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, const DriverInstance& driver);
+
+// Channels: those of the driver's frames first, then the configured ones that come from elsewhere. Null
+// model: none.
+ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_description& description,
+                                    std::shared_ptr<const Model> model);
+
+// Null when the sensor has none.
+std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor);
+
+// Channels that do not come in the sensor's frames, in the order of the chain's.
+std::vector<ChannelConfig> outside_channels(const SensorConfig& sensor);
+
+}  // namespace ifog

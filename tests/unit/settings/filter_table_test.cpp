@@ -1,0 +1,158 @@
+// The table of filter settings, and that what reads by it agrees: the configuration, the model file, the
+// example.
+#include "filters/settings/filter_table.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "daemon/config/config.h"
+#include "filters/model_file/model.h"
+#include "filters/model_file/toml_file.h"
+
+namespace {
+
+using namespace ifog;
+
+const std::string kSensor =
+    "[[sensor]]\nname = \"n\"\ndriver = \"d\"\n[sensor.transport]\ntype = \"file\"\npath = \"p\"\n"
+    "[sensor.filter]\n";
+
+// What a source says of KEY = VALUE: "" where it takes it, its complaint where not.
+std::string by_configuration(const std::string& line) {
+  try {
+    static_cast<void>(parse_config(kSensor + line + "\n", "f"));
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string by_model(const std::string& line) {
+  try {
+    static_cast<void>(parse_model("version = 1\n[filter]\n" + line + "\n", "f"));
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FilterTable, BothFilesTakeAndRefuseTheSame) {
+  for (const char* const good :
+       {"window = 2", "window = 100000", "draws = 1", "draws = 1000", "floor = 0", "floor = 0.999",
+        "process_noise = 0", "process_noise = 1", "seed = 0", "seed = 9223372036854775807",
+        "weights = \"fresh\"", "state_parameters = [1, -0.5]", "conserve_angle = false"}) {
+    EXPECT_EQ(by_configuration(good), "") << good;
+    EXPECT_EQ(by_model(good), "") << good;
+  }
+  // 2^32 + 50 is 50 once narrowed.
+  for (const char* const bad : {"window = 1",
+                                "window = 100001",
+                                "window = 4294967346",
+                                "window = 50.0",
+                                "window = true",
+                                "draws = 0",
+                                "draws = 1001",
+                                "draws = 4294967297",
+                                "floor = 1",
+                                "floor = -0.1",
+                                "floor = nan",
+                                "process_noise = -1",
+                                "process_noise = inf",
+                                "measurement_noise = nan",
+                                "measurement_noise = \"1\"",
+                                "seed = -1",
+                                "seed = 1.5",
+                                "weights = \"some\"",
+                                "weights = 1",
+                                "rule = \"\"",
+                                "state = 3",
+                                "state_parameters = [nan]",
+                                "state_parameters = 1",
+                                "follow_manoeuvres = 1"}) {
+    const std::string key = std::string(bad).substr(0, std::string(bad).find(' '));
+    const std::string should = ": expected " + expected(filter_setting(key));
+    EXPECT_NE(by_configuration(bad).find(should), std::string::npos) << bad << by_configuration(bad);
+    EXPECT_NE(by_model(bad).find(should), std::string::npos) << bad << by_model(bad);
+  }
+}
+
+TEST(FilterTable, AModelFileKeepsEverySetting) {
+  Model model;
+  model.filter = FilterSettings{};
+  model.filter->rule = "vb";
+  model.filter->state = "gauss-markov";
+  model.filter->weights = "uniform";
+  model.filter->process_noise = 1e-15;
+  model.filter->measurement_noise = 2e-9;
+  model.filter->state_parameters = {300.0};
+  model.filter->window = 77;
+  model.filter->draws = 3;
+  model.filter->floor = 0.25;
+  model.filter->follow_manoeuvres = false;
+  model.filter->conserve_angle = false;
+  model.filter->seed = 5;
+  const Model back = parse_model(model_text(model), "f");
+  ASSERT_TRUE(back.filter.has_value());
+  const FilterSettings standard;
+  for (const FilterSetting& setting : filter_table()) {
+    EXPECT_EQ(value_of(setting, *back.filter), value_of(setting, *model.filter)) << setting.key;
+    EXPECT_NE(value_of(setting, *back.filter), value_of(setting, standard)) << setting.key;
+  }
+}
+
+TEST(FilterTable, WhatOneSourceSaysStandsOverAnother) {
+  FilterChoice above, below;
+  above.window = 9;
+  below.window = 8;
+  below.floor = 0.5;
+  const FilterChoice both = over(above, below);
+  EXPECT_EQ(both.window, 9);
+  EXPECT_EQ(both.floor, 0.5);
+  EXPECT_FALSE(both.draws.has_value());
+  const FilterSettings in_force = settings_in_force(both, FilterSettings{});
+  EXPECT_EQ(in_force.window, 9);
+  EXPECT_EQ(in_force.floor, 0.5);
+  EXPECT_EQ(in_force.draws, FilterSettings{}.draws);
+}
+
+// The example shows every key, with its default where it has one.
+TEST(FilterTable, TheExampleShowsIt) {
+  std::ifstream file(IFOG_SOURCE_DIR "/daemon/examples/reference.toml");
+  ASSERT_TRUE(file);
+  std::ostringstream text;
+  text << file.rdbuf();
+  const toml::table root = parse_toml(text.str(), "reference.toml");
+  const toml::table* const filter = root["sensor"][0]["filter"].as_table();
+  ASSERT_NE(filter, nullptr);
+  std::set<std::string> shown;
+  for (const auto& [key, node] : *filter) shown.emplace(key.str());
+  const FilterSettings standard;
+  // Noise has no default: what is shown is an example.
+  const std::set<std::string> examples{"process_noise", "measurement_noise"};
+  for (const FilterSetting& setting : filter_table()) {
+    ASSERT_EQ(shown.erase(setting.key), 1U) << setting.key << " is not shown";
+    const std::optional<SettingValue> value = setting_value(*filter->get(setting.key));
+    ASSERT_TRUE(value.has_value()) << setting.key;
+    FilterChoice choice;
+    ASSERT_TRUE(choose(setting, *value, choice)) << setting.key;
+    if (!examples.contains(setting.key)) {
+      EXPECT_EQ(*value, value_of(setting, standard)) << setting.key;
+    }
+    // What it may be stands beside it, range and choices.
+    if (!setting.choices.empty() || setting.range.most < 1e9) {
+      const std::size_t line = text.str().find("\n  " + std::string(setting.key) + " = ");
+      ASSERT_NE(line, std::string::npos) << setting.key;
+      const std::string row = text.str().substr(line + 1, text.str().find('\n', line + 1) - line - 1);
+      EXPECT_NE(row.find(expected(setting)), std::string::npos) << row << " lacks: " << expected(setting);
+    }
+  }
+  shown.erase("start_up_s");  // of the daemon, not of the filter
+  EXPECT_TRUE(shown.empty()) << *shown.begin() << " is in no table";
+}
+
+}  // namespace
