@@ -13,6 +13,7 @@
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
+#include "drivers/transport/clock.h"
 #include "drivers/transport/counter.h"
 #include "drivers/transport/transport.h"
 #include "filters/chain/incrementer.h"
