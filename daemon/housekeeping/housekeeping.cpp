@@ -11,7 +11,10 @@
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
+#include "daemon/sensor/sensor_parts.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/transport/clock.h"
+#include "msgs/state_name.h"
 #include "drivers/transport/clock.h"
 #include "msgs/state_name.h"
 

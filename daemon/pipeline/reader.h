@@ -20,7 +20,7 @@
 
 namespace ifog {
 
-// Any thread may read them.
+// Any thread may read them; relaxed, for each stands for itself.
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter frames_good, frames_crc, frames_format, bytes_skipped, frames_repeated, samples_incomplete;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "daemon/pipeline/assemble.h"
+#include "daemon/sensor/sensor_parts.h"
 
 namespace ifog {
 namespace {
