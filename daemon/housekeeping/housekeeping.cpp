@@ -15,8 +15,6 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "msgs/state_name.h"
-#include "drivers/transport/clock.h"
-#include "msgs/state_name.h"
 
 namespace ifog {
 namespace {
