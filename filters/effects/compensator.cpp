@@ -44,9 +44,11 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
     Term term;
     term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
     term.parameter = kNone;
+    term.coefficient_error = 0.0;
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (effect.parameters[i].name == "coefficient" && *form != Form::kLookup)
-        term.parameter = first_row + i;
+      if (effect.parameters[i].name != "coefficient" || *form == Form::kLookup) continue;
+      term.parameter = first_row + i;
+      term.coefficient_error = effect.parameters[i].std_error;
     }
     const auto add = [&](ShapeSettings settings, const std::string& channel) {
       const bool rate = is_reference_rate(channel);
@@ -100,49 +102,46 @@ void Compensator::hold_channels(const CompensatorInput& in, CompensatorOutput& o
     held.stale = !std::isfinite(value) || age > stale_after_s_;
     if (std::isfinite(value)) {
       held.seen = true;
-      held.value = std::clamp(value, ranges_[i].low, ranges_[i].high);
-      held.excess = value - held.value;
+      held.reach = reach_of(value, ranges_[i]);
     }
     if (held.stale) out.flags |= kStaleChannel;
     if (!held.seen) out.flags |= kNoChannelYet;
-    if (held.seen && held.excess != 0.0) out.flags |= kOutOfRange;
+    if (held.seen && held.reach.outside()) out.flags |= kOutOfRange;
   }
 }
 
-void Compensator::evaluate(Term& term, double dt_s, CompensatorOutput& out) noexcept {
-  term.value = 1.0;
-  term.moved = 0.0;
+void Compensator::Value::times(double factor, const Shape& shape, const Reach& reach) noexcept {
+  if (reach.outside() || left_behind != 0.0 || unseen_curvature != 0.0) {
+    left_behind = std::abs(left_behind * factor) + std::abs(value) * shape.left_behind(reach);
+    unseen_curvature = std::abs(unseen_curvature * factor) + std::abs(value) * shape.unseen_curvature(reach);
+  }
+  value *= factor;
+}
+
+void Compensator::evaluate(Term& term, double dt_s) noexcept {
+  term.channels = {};
   term.usable = true;
   for (Factor& factor : term.factors) {
     if (factor.of_rate) continue;
     if (factor.channel == kNone) {
-      term.value *= factor.shape.step(0.0, dt_s);
+      term.channels.value *= factor.shape.step(0.0, dt_s);
       continue;
     }
     const Held& held = held_[factor.channel];
-    if (held.stale || held.excess != 0.0) out.axis_touched[term.axis] = true;
     if (!held.seen) {
       term.usable = false;
       return;
     }
-    const double value = factor.shape.step(held.value, dt_s);
-    if (held.excess != 0.0) {
-      term.moved = std::abs(term.moved * value) +
-                   std::abs(term.value * factor.shape.moves_by(held.value, held.excess));
-    } else {
-      term.moved *= value;
-    }
-    term.value *= value;
+    term.channels.times(factor.shape.step(held.reach, dt_s), factor.shape, held.reach);
   }
 }
 
-double Compensator::of_rate(const Term& term, double rate, bool* outside) const noexcept {
-  double value = 1.0;
+Compensator::Value Compensator::at_rate(const Term& term, double rate) const noexcept {
+  Value value = term.channels;
   for (const Factor& factor : term.factors) {
     if (!factor.of_rate) continue;
-    const double inside = std::clamp(rate, rate_range_.low, rate_range_.high);
-    if (outside && inside != rate) *outside = true;
-    value *= factor.shape.at(inside);
+    const Reach reach = reach_of(rate, rate_range_);
+    value.times(factor.shape.at(reach), factor.shape, reach);
   }
   return value;
 }
@@ -152,11 +151,10 @@ double Compensator::parameter_variance(std::size_t axis, double rate) const noex
   double variance = 0.0;
   for (const Term& a : terms_) {
     if (a.axis != axis || !a.usable || a.parameter == kNone) continue;
-    const double ga = a.value * of_rate(a, rate, nullptr);
+    const double ga = at_rate(a, rate).value;
     for (const Term& b : terms_) {
       if (b.axis != axis || !b.usable || b.parameter == kNone) continue;
-      variance +=
-          ga * covariance_[a.parameter * parameters_ + b.parameter] * b.value * of_rate(b, rate, nullptr);
+      variance += ga * covariance_[a.parameter * parameters_ + b.parameter] * at_rate(b, rate).value;
     }
   }
   return std::max(variance, 0.0);
@@ -164,9 +162,8 @@ double Compensator::parameter_variance(std::size_t axis, double rate) const noex
 
 void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexcept {
   out.flags = 0;
-  out.axis_touched = {};
   hold_channels(in, out);
-  for (Term& term : terms_) evaluate(term, in.dt_s, out);
+  for (Term& term : terms_) evaluate(term, in.dt_s);
 
   for (std::size_t axis = 0; axis < axes_; ++axis) {
     const double measured = in.rate_radps[axis];
@@ -179,24 +176,18 @@ void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexc
     for (int round = 0; round < (of_the_rate ? kRounds : 1); ++round) {
       correction = 0.0;
       for (const Term& term : terms_) {
-        if (term.axis == axis && term.usable)
-          correction += term.coefficient * term.value * of_rate(term, rate, nullptr);
+        if (term.axis == axis && term.usable) correction += term.coefficient * at_rate(term, rate).value;
       }
       rate = measured - correction;
     }
-    bool outside = false;
+    if (of_the_rate && reach_of(rate, rate_range_).outside()) out.flags |= kOutOfRange;
     double inflation = 0.0;
     for (const Term& term : terms_) {
       if (term.axis != axis || !term.usable) continue;
-      const double moved = term.coefficient * term.moved * of_rate(term, rate, &outside);
-      inflation += moved * moved;
-    }
-    if (outside) {
-      out.flags |= kOutOfRange;
-      out.axis_touched[axis] = true;
-      // Beyond the rates it was fitted on the scale factor is a guess: as uncertain as the correction is
-      // large.
-      inflation += correction * correction;
+      const Value value = at_rate(term, rate);
+      const double left = term.coefficient * value.left_behind;
+      const double bent = term.coefficient_error * value.unseen_curvature;
+      inflation += left * left + bent * bent;
     }
     out.correction_radps[axis] = correction;
     out.compensated_radps[axis] = rate;
@@ -215,10 +206,8 @@ void Compensator::take_over(const Compensator& previous) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     for (std::size_t j = 0; j < previous.channels_.size(); ++j) {
       if (channels_[i] != previous.channels_[j] || !previous.held_[j].seen) continue;
-      const double value = previous.held_[j].value + previous.held_[j].excess;
       held_[i].seen = true;
-      held_[i].value = std::clamp(value, ranges_[i].low, ranges_[i].high);
-      held_[i].excess = value - held_[i].value;
+      held_[i].reach = reach_of(previous.held_[j].reach.value + previous.held_[j].reach.beyond, ranges_[i]);
     }
   }
   for (Term& term : terms_) {

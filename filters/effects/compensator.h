@@ -22,8 +22,7 @@ namespace ifog {
 
 enum CompensatorFlags : std::uint32_t {
   kStaleChannel = 1,  // a channel is missing or older than allowed: held at its last value
-  kOutOfRange =
-      2,  // a channel is outside the range the model was fitted on: held at the edge, variance inflated
+  kOutOfRange = 2,  // a channel is outside the range the model was fitted on: see reach.h; variance inflated
   kNoChannelYet = 4,  // a channel has never had a value: its effects are left out
 };
 
@@ -39,7 +38,6 @@ struct CompensatorOutput {
   Axes correction_radps{};  // what was subtracted
   Axes variance_rad2ps2{};  // of the correction: parameter covariance, and leaving the range
   std::uint32_t flags = 0;  // CompensatorFlags
-  std::array<bool, kMaxAxes> axis_touched{};  // a flag concerns this axis
 };
 
 class Compensator {
@@ -51,7 +49,6 @@ class Compensator {
 
   // The environment channels step() wants, in this order. Reference rates are not among them.
   [[nodiscard]] const std::vector<std::string>& channels() const noexcept { return channels_; }
-  [[nodiscard]] std::size_t effects() const noexcept { return terms_.size(); }
   // Effects of the model that are not corrected online, see carries_over().
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
 
@@ -69,25 +66,30 @@ class Compensator {
     std::size_t channel;  // kNone: the rate itself, or time
     bool of_rate;
   };
+  // A product of shapes, and by how much it may be wrong outside the range, as Shape has it.
+  struct Value {
+    double value = 1.0, left_behind = 0.0, unseen_curvature = 0.0;
+    void times(double factor, const Shape& shape, const Reach& reach) noexcept;
+  };
   struct Term {
     std::size_t axis;
     double coefficient;
+    double coefficient_error;
     std::size_t parameter;  // row of the coefficient in the covariance, kNone without
     std::vector<Factor> factors;
-    double value = 0.0;  // of the factors that do not depend on the rate, per unit coefficient
-    double moved = 0.0;  // by how much leaving the range would have changed it
+    Value channels{};  // of the factors that do not depend on the rate
     bool usable = false;
   };
   struct Held {
-    double value = 0.0;
-    double excess = 0.0;  // beyond the range the model was fitted on
+    Reach reach;
     bool seen = false;
     bool stale = false;
   };
 
   void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
-  void evaluate(Term& term, double dt_s, CompensatorOutput& out) noexcept;
-  [[nodiscard]] double of_rate(const Term& term, double rate, bool* outside) const noexcept;
+  void evaluate(Term& term, double dt_s) noexcept;
+  // The whole term at a rate; the channels' part alone for a term that does not depend on it.
+  [[nodiscard]] Value at_rate(const Term& term, double rate) const noexcept;
   [[nodiscard]] double parameter_variance(std::size_t axis, double rate) const noexcept;
   std::size_t channel_index(const std::string& name);
 

@@ -147,20 +147,53 @@ double Shape::step(double value, double dt_s) noexcept {
   }
 }
 
-double Shape::moves_by(double value, double excess) const noexcept {
-  if (settings_.angle) return 0.0;  // periodic: every value is inside
-  if (!has_memory(settings_.form)) return at(value + excess) - at(value);
+double Shape::slope(double value) const noexcept {
+  const int power_here = power_of(settings_.form);
+  if (power_here > 0)
+    return power_here * std::pow(value - settings_.reference, static_cast<double>(power_here - 1));
+  if (settings_.form != Form::kLookup || settings_.period > 0.0) return 0.0;
+  const auto& x = settings_.table_x;
+  const auto& y = settings_.table_y;
+  const std::size_t n = x.size();
+  const std::size_t i = value < 0.5 * (x.front() + x.back()) ? 1 : n - 1;
+  return (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
+}
+
+double Shape::at(const Reach& channel) const noexcept {
+  if (!goes_on() || !channel.outside()) return at(channel.edge);
+  return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
+}
+
+double Shape::step(const Reach& channel, double dt_s) noexcept {
+  if (power_of(settings_.form) > 1 && channel.outside()) return at(channel);
+  return step(goes_on() ? channel.value : channel.edge, dt_s);
+}
+
+double Shape::left_behind(const Reach& channel) const noexcept {
+  if (settings_.angle || !channel.outside()) return 0.0;  // periodic: every value is inside
+  const double past = channel.past_the_edge();
+  if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
+  if (power_of(settings_.form) > 0) {
+    return std::abs(at(channel.value) - at(channel)) + std::abs(slope(channel.edge) * channel.beyond);
+  }
   const double tau = std::max(settings_.time_constant_s, 1e-3);
   switch (settings_.form) {
     case Form::kRate:
-      return excess / tau;
+      return std::abs(channel.beyond) / tau;
     case Form::kSecondRate:
-      return excess / (tau * tau);
+      return std::abs(channel.beyond) / (tau * tau);
     case Form::kBandPower:
-      return excess * excess;
+      return channel.beyond * channel.beyond;
     default:
-      return excess;
+      return std::abs(channel.beyond);
   }
+}
+
+double Shape::unseen_curvature(const Reach& channel) const noexcept {
+  const double past = std::abs(channel.past_the_edge());
+  if (past == 0.0 || !goes_on()) return 0.0;
+  const double steepness = settings_.form == Form::kLagged ? 1.0 : std::abs(slope(channel.edge));
+  return std::sqrt(15.0) * steepness * (past + past * past / channel.span);
 }
 
 bool Shape::take_over(const Shape& previous) noexcept {

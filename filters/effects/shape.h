@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filters/effects/form.h"
+#include "filters/effects/reach.h"
 
 namespace ifog {
 
@@ -34,10 +35,21 @@ class Shape {
   double step(double value, double dt_s) noexcept;
   void restart() noexcept { started_ = false; }
 
+  // One sample of a channel that may have left the range the shape was fitted on; see reach.h.
+  double step(const Reach& channel, double dt_s) noexcept;
+
   // Of a form without memory: its value at one value of the channel.
   [[nodiscard]] double at(double value) const noexcept;
-  // How much the shape moves when the channel moves by `excess` beyond `value`, to first order.
-  [[nodiscard]] double moves_by(double value, double excess) const noexcept;
+  // Likewise, going on beyond the range as far as a fit may.
+  [[nodiscard]] double at(const Reach& channel) const noexcept;
+  // By how much the shape may be wrong outside the range, per unit of its coefficient: what it does not
+  // follow, and of a higher power the difference between the power and its tangent.
+  [[nodiscard]] double left_behind(const Reach& channel) const noexcept;
+  // Likewise by a curvature that the fit could not see, per unit of the coefficient's standard error. Over a
+  // range of width S evenly visited a linear term is known to s/(S sqrt(n/12)) and a quadratic one,
+  // orthogonal to it, to s/(S^2 sqrt(n/180)): sqrt(15)/S times as well. By x beyond the edge it has grown by
+  // S x + x^2.
+  [[nodiscard]] double unseen_curvature(const Reach& channel) const noexcept;
 
   [[nodiscard]] const ShapeSettings& settings() const noexcept { return settings_; }
   // The same shape of another compensator goes on where that one is. False when it is not the same shape.
@@ -45,6 +57,8 @@ class Shape {
 
  private:
   [[nodiscard]] double table(double value) const noexcept;
+  [[nodiscard]] double slope(double value) const noexcept;
+  [[nodiscard]] bool goes_on() const noexcept { return settings_.form != Form::kLookup; }
 
   ShapeSettings settings_;
   double first_ = 0.0, second_ = 0.0, elapsed_ = 0.0, dt_ = 0.0, alpha_ = 1.0, beta_ = 1.0;

@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/residual/hysteresis.h"
+#include "filters/effects/reach.h"
 
 namespace ifog {
 namespace {
@@ -77,12 +78,16 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
   return candidate;
 }
 
-// A capture as the correction sees it: channels held at the edge of what they were fitted on.
-BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges) {
+// A capture as the correction sees it: channels held at the edge of what they were fitted on, or as far
+// beyond it as a polynomial form goes on.
+BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges, bool goes_on) {
   for (FineChannel& channel : data.channels) {
     for (const ChannelRange& range : ranges) {
       if (range.channel != channel.name) continue;
-      for (double& value : channel.values) value = std::clamp(value, range.low, range.high);
+      for (double& value : channel.values) {
+        const Reach reach = reach_of(value, range);
+        value = goes_on ? reach.value : reach.edge;
+      }
     }
   }
   return data;
@@ -97,7 +102,10 @@ struct Effects {
   std::vector<Effect> lines;  // not corrected, phase unknown
 };
 
-Effects effects_on(const BlockData& next, const BlockData& held, const std::vector<Effect>& effects) {
+// held: the channels at the edge of their ranges; followed: as far as a linear form goes. Of a higher power,
+// which goes on by its tangent, the larger error of being held is taken.
+Effects effects_on(const BlockData& next, const BlockData& held, const BlockData& followed,
+                   const std::vector<Effect>& effects) {
   const auto n = static_cast<Eigen::Index>(next.grid.size());
   std::size_t parameters = 0;
   for (const Effect& effect : effects) parameters += effect.parameters.size();
@@ -124,7 +132,8 @@ Effects effects_on(const BlockData& next, const BlockData& held, const std::vect
     }
     on.gradient.col(at) = column;
     on.total += coefficient * column;
-    on.left += coefficient * (column - regressors(held, *candidate).col(0));
+    const bool tangent = power_of(candidate->form) > 1 || candidate->form == Form::kLookup;
+    on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
     if (!candidate->searched()) continue;
     const Columns by_logarithm =
         searched_columns(next, {*candidate}, Eigen::VectorXd::Constant(1, coefficient), 0);
@@ -193,13 +202,14 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   std::vector<Effect> mine;
   for (const FoundEffect& found : diagnosis.effects) mine.push_back(found.effect);
   const BlockData data = cut_to_blocks({next});
-  const BlockData held = held_in_range(data, diagnosis.ranges);
-  Effects on = effects_on(data, held, mine);
+  const BlockData held = held_in_range(data, diagnosis.ranges, false);
+  const BlockData followed = held_in_range(data, diagnosis.ranges, true);
+  Effects on = effects_on(data, held, followed, mine);
   if (diagnosis.hysteresis) add_loop(data, *diagnosis.hysteresis, on.left);
   std::vector<Effects> others;
   double all = 1.0;
   for (const OtherExplanation& other : diagnosis.others) {
-    others.push_back(effects_on(data, held, other.effects));
+    others.push_back(effects_on(data, held, followed, other.effects));
     if (other.hysteresis) add_loop(data, *other.hysteresis, others.back().going_on);
     all += other.weight;
   }
