@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/diagnosis.h"
 
 namespace ifog {
 

@@ -14,6 +14,10 @@ constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 // Scale factor errors are below a tenth, so each round gains a digit or more; twelve reach the last bit.
 constexpr int kRounds = 12;
 
+std::string label_of(const Effect& effect) {
+  return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+}
+
 }  // namespace
 
 Compensator::Compensator(const Model& model, const std::vector<std::string>& axes, double stale_after_s)
@@ -21,69 +25,77 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
   if (axes.empty() || axes.size() > kMaxAxes) {
     throw std::invalid_argument("a compensator has 1 to 3 axes, not " + std::to_string(axes.size()));
   }
-  for (const Effect& effect : model.effects) parameters_ += effect.parameters.size();
+  for (const Effect& effect : model.effects) {
+    add_effect(effect, parameters_, axes);
+    parameters_ += effect.parameters.size();
+  }
   if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
-  for (const ChannelRange& range : model.ranges) {
+  held_.resize(channels_.size());
+  read_ranges(model.ranges);
+}
+
+void Compensator::read_ranges(const std::vector<ChannelRange>& known) {
+  for (const ChannelRange& range : known) {
     if (is_reference_rate(range.channel)) rate_range_ = range;
   }
-
-  std::size_t row = 0;
-  for (const Effect& effect : model.effects) {
-    const std::size_t first_row = row;
-    row += effect.parameters.size();
-    const auto form = form_named(effect.form);
-    if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
-    const std::string label = effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
-    if (describes_noise(*form) || !carries_over(*form)) {
-      left_out_.push_back(label);
-      continue;
-    }
-    if (has_channel(*form) && effect.channel.empty()) {
-      throw std::invalid_argument("effect " + in_quotes(effect.form) + " names no channel");
-    }
-    Term term;
-    term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
-    term.parameter = kNone;
-    term.coefficient_error = 0.0;
-    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (effect.parameters[i].name != "coefficient" || *form == Form::kLookup) continue;
-      term.parameter = first_row + i;
-      term.coefficient_error = effect.parameters[i].std_error;
-    }
-    const auto add = [&](ShapeSettings settings, const std::string& channel) {
-      const bool rate = is_reference_rate(channel);
-      if (rate && (has_memory(settings.form) || settings.angle)) {
-        throw std::invalid_argument(label + ": a form with memory cannot be a function of the rate");
-      }
-      const bool timed = settings.form == Form::kWarmUp;
-      term.factors.push_back(
-          {Shape(std::move(settings)), rate || timed ? kNone : channel_index(channel), rate});
-    };
-    try {
-      add(shape_settings(effect), effect.channel);
-      if (*form == Form::kProduct) add(with_shape_settings(effect), effect.with_channel);
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("effect " + label + ": " + error.what());
-    }
-    bool placed = false;
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
-      term.axis = axis;
-      terms_.push_back(term);
-      placed = true;
-    }
-    if (!placed)
-      throw std::invalid_argument("effect " + label + ": the sensor has no axis " + in_quotes(effect.axis) +
-                                  "");
-  }
-
-  held_.resize(channels_.size());
   for (const std::string& name : channels_) {
     ChannelRange range{name, -kEverywhere, kEverywhere};
-    for (const ChannelRange& known : model.ranges) {
-      if (known.channel == name) range = known;
+    for (const ChannelRange& each : known) {
+      if (each.channel == name) range = each;
     }
     ranges_.push_back(range);
+  }
+}
+
+void Compensator::add_effect(const Effect& effect, std::size_t first_row,
+                             const std::vector<std::string>& axes) {
+  const auto form = form_named(effect.form);
+  if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
+  if (describes_noise(*form) || !carries_over(*form)) {
+    left_out_.push_back(label_of(effect));
+    return;
+  }
+  if (has_channel(*form) && effect.channel.empty()) {
+    throw std::invalid_argument("effect " + in_quotes(effect.form) + " names no channel");
+  }
+  Term term;
+  term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
+  term.parameter = kNone;
+  term.coefficient_error = 0.0;
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+    if (effect.parameters[i].name != "coefficient" || *form == Form::kLookup) continue;
+    term.parameter = first_row + i;
+    term.coefficient_error = effect.parameters[i].std_error;
+  }
+  try {
+    add_factor(term, shape_settings(effect), effect.channel);
+    if (*form == Form::kProduct) add_factor(term, with_shape_settings(effect), effect.with_channel);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
+  }
+  place(std::move(term), effect, axes);
+}
+
+void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel) {
+  const bool rate = is_reference_rate(channel);
+  if (rate && (has_memory(settings.form) || settings.angle)) {
+    throw std::invalid_argument("a form with memory cannot be a function of the rate");
+  }
+  const bool timed = settings.form == Form::kWarmUp;
+  term.factors.push_back({Shape(std::move(settings)), rate || timed ? kNone : channel_index(channel), rate});
+}
+
+void Compensator::place(Term term, const Effect& effect, const std::vector<std::string>& axes) {
+  bool placed = false;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
+    term.axis = axis;
+    terms_.push_back(term);
+    placed = true;
+  }
+  if (!placed) {
+    throw std::invalid_argument("effect " + label_of(effect) + ": the sensor has no axis " +
+                                in_quotes(effect.axis));
   }
 }
 

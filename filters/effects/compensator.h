@@ -86,6 +86,10 @@ class Compensator {
     bool stale = false;
   };
 
+  void read_ranges(const std::vector<ChannelRange>& known);
+  void add_effect(const Effect& effect, std::size_t first_row, const std::vector<std::string>& axes);
+  void add_factor(Term& term, ShapeSettings settings, const std::string& channel);
+  void place(Term term, const Effect& effect, const std::vector<std::string>& axes);
   void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   void evaluate(Term& term, double dt_s) noexcept;
   // The whole term at a rate; the channels' part alone for a term that does not depend on it.

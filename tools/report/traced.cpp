@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "filters/effects/compensator.h"
+#include "filters/diagnosis/record/compensated_error.h"
 #include "filters/effects/meaning.h"
 #include "filters/effects/shape.h"
 #include "tools/report/words.h"
@@ -32,26 +32,13 @@ Series error_without(const Record& record, const Diagnosis& diagnosis, std::size
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
     if (i != kept) others.effects.push_back(diagnosis.effects[i].effect);
   for (Effect& e : others.effects) e.axis.clear();
-  Compensator compensator(others, {""});
-  std::vector<std::span<const double>> columns;
-  for (const std::string& name : compensator.channels()) columns.push_back(column(record, name));
-  Series now(columns.size());
-  Series error(record.rate_radps.size());
-  CompensatorInput in;
-  CompensatorOutput out;
+  Series error = compensated_error(record, others);
   double sum = 0.0;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < error.size(); ++k) {
-    for (std::size_t c = 0; c < now.size(); ++c) now[c] = columns[c].empty() ? std::nan("") : columns[c][k];
-    in.dt_s = step_s(record, k);
-    in.rate_radps[0] = record.rate_radps[k];
-    in.channels = now;
-    compensator.step(in, out);
-    error[k] = out.compensated_radps[0] - (record.reference_radps.empty() ? 0.0 : record.reference_radps[k]);
-    if (std::isfinite(error[k])) {
-      sum += error[k];
-      ++count;
-    }
+  for (const double value : error) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
   }
   for (double& value : error) value -= sum / static_cast<double>(std::max<std::size_t>(count, 1));
   return error;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "filters/diagnosis/regression/projection.h"
+
 namespace ifog {
 namespace {
 
@@ -11,9 +13,9 @@ double quadratic_form(const BlockGrid& grid, const NoiseShape& shape, const Eige
   double sum = w.squaredNorm();
   const auto add_markov = [&](double variance, double blocks) {
     const double f = std::exp(-1.0 / blocks);
-    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+    for (const BlockRange& record : grid.records) {
       double past = 0.0;  // sum over earlier blocks of f^distance w
-      for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+      for (std::size_t b = record.first; b < record.end; ++b) {
         const double now = w[static_cast<Eigen::Index>(b)];
         sum += variance * now * (now + 2.0 * past);
         past = f * (past + now);
@@ -24,9 +26,10 @@ double quadratic_form(const BlockGrid& grid, const NoiseShape& shape, const Eige
     for (const double tau : flicker_bank(grid)) add_markov(shape.flicker, tau);
   }
   if (shape.markov > 0.0) add_markov(shape.markov, shape.markov_s / grid.block_s);
-  for (std::size_t r = 0; shape.walk > 0.0 && r + 1 < grid.starts.size(); ++r) {
+  for (const BlockRange& record : grid.records) {
+    if (!(shape.walk > 0.0)) break;
     double rest = 0.0;  // what a step of the walk adds to w' y
-    for (std::size_t b = grid.starts[r + 1]; b-- > grid.starts[r];) {
+    for (std::size_t b = record.end; b-- > record.first;) {
       rest += w[static_cast<Eigen::Index>(b)];
       sum += shape.walk * rest * rest;
     }
@@ -42,16 +45,16 @@ double disagreement(const BlockGrid& grid, const NoiseFit& noise, const Columns&
   const Eigen::Index p = columns.cols() - 1 - nuisances;
   Eigen::MatrixXd centred(columns.rows(), p + 1);
   centred << columns.col(0), columns.rightCols(p);
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
+  for (const BlockRange& record : grid.records) {
     Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(p + 1);
     double count = 0.0;
-    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+    for (std::size_t b = record.first; b < record.end; ++b) {
       if (!grid.valid[b]) continue;
       mean += centred.row(static_cast<Eigen::Index>(b));
       count += 1.0;
     }
     if (count > 0.0) mean /= count;
-    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+    for (std::size_t b = record.first; b < record.end; ++b) {
       const auto row = static_cast<Eigen::Index>(b);
       if (grid.valid[b]) {
         centred.row(row) -= mean;
@@ -62,11 +65,7 @@ double disagreement(const BlockGrid& grid, const NoiseFit& noise, const Columns&
   }
   const Eigen::MatrixXd x = centred.rightCols(p);
   Eigen::VectorXd last = x.col(p - 1);
-  if (p > 1) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(x.leftCols(p - 1));
-    const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(x.rows(), p - 1);
-    last -= q * (q.transpose() * last);
-  }
+  if (p > 1) Projection(x.leftCols(p - 1)).take_out_of(last);
   const double square = last.squaredNorm();
   if (!(square > 1e-12 * x.col(p - 1).squaredNorm())) return 0.0;
   const Eigen::VectorXd w = last / square;

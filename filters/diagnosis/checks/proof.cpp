@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "filters/diagnosis/checks/hausman_test.h"
+#include "filters/diagnosis/regression/projection.h"
 
 namespace ifog {
 namespace {
@@ -22,11 +23,11 @@ double left_over(const BlockData& data, const Claimed& claimed) {
   Eigen::VectorXd left = columns.col(0);
   if (p > 0) left -= columns.rightCols(p) * c.tail(p);
   double sum = 0.0;
-  for (std::size_t r = 0; r + 1 < data.grid.starts.size(); ++r) {
+  for (const BlockRange& record : data.grid.records) {
     double mean = 0.0;
     double square = 0.0;
     double n = 0.0;
-    for (std::size_t b = data.grid.starts[r]; b < data.grid.starts[r + 1]; ++b) {
+    for (std::size_t b = record.first; b < record.end; ++b) {
       if (!data.grid.valid[b]) continue;
       const double value = left[static_cast<Eigen::Index>(b)];
       n += 1.0;
@@ -45,11 +46,10 @@ bool gradual(const BlockData& data, const Claimed& claimed) {
   const Candidate& step = claimed.model.back();
   Columns columns = design(data, claimed.model);
   const double sudden = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
-  const std::size_t from = grid.starts[step.record];
-  const std::size_t to = grid.starts[step.record + 1];
+  const BlockRange& record = grid.records[step.record];
   for (const double share : {0.005, 0.02, 0.06}) {
-    const double width_s = std::max(4.0, share * static_cast<double>(to - from)) * grid.block_s;
-    for (std::size_t b = from; b < to; ++b) {
+    const double width_s = std::max(4.0, share * static_cast<double>(record.size())) * grid.block_s;
+    for (std::size_t b = record.first; b < record.end; ++b) {
       columns(static_cast<Eigen::Index>(b), columns.cols() - 1) =
           std::clamp(0.5 + (grid.time_s[b] - step.time_s) / width_s, 0.0, 1.0);
     }
@@ -61,17 +61,15 @@ bool gradual(const BlockData& data, const Claimed& claimed) {
 
 }  // namespace
 
-bool predicts(const BlockData& data, const Claimed& claimed) {
+bool predicts_held_out(const BlockData& data, const Claimed& claimed) {
   Columns white = design(data, claimed.model);
   Whitening(data.grid, claimed.noise.shape).apply(white);
   const Eigen::Index last = white.cols() - 1;
-  const Columns others = white.middleCols(1, last - 1);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(others);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(others.rows(), others.cols());
+  const Projection others(white.middleCols(1, last - 1));
   Eigen::VectorXd y = white.col(0);
   Eigen::VectorXd x = white.col(last);
-  y -= q * (q.transpose() * y);
-  x -= q * (q.transpose() * x);
+  others.take_out_of(y);
+  others.take_out_of(x);
   constexpr int kFolds = 4;
   const std::vector<int> fold = folds_of(data.grid, kFolds);
   std::array<double, kFolds> xy{};
@@ -92,19 +90,18 @@ bool predicts(const BlockData& data, const Claimed& claimed) {
   return gain > 0.0;
 }
 
-bool stays(const BlockData& data, const Claimed& claimed) {
+bool step_persists(const BlockData& data, const Claimed& claimed) {
   if (gradual(data, claimed)) return false;
   const BlockGrid& grid = data.grid;
   const Candidate& step = claimed.model.back();
   const Columns columns = design(data, claimed.model);
   const Eigen::VectorXd c = solve(grid, claimed.noise.shape, columns);
   const Eigen::Index last = columns.cols() - 1;
-  const std::size_t from = grid.starts[step.record];
-  const std::size_t to = grid.starts[step.record + 1];
-  const std::size_t window = std::max<std::size_t>(8, (to - from) / 20);
+  const BlockRange& record = grid.records[step.record];
+  const std::size_t window = std::max<std::size_t>(8, record.size() / 20);
   std::array<double, 2> sum{};
   std::array<double, 2> count{};
-  for (std::size_t b = from; b < to; ++b) {
+  for (std::size_t b = record.first; b < record.end; ++b) {
     const double away = std::abs(grid.time_s[b] - step.time_s) / grid.block_s;
     if (!grid.valid[b] || away < 3.0 || away > static_cast<double>(window)) continue;
     const auto row = static_cast<Eigen::Index>(b);
@@ -117,7 +114,7 @@ bool stays(const BlockData& data, const Claimed& claimed) {
   return found * c[last - 1] > 0.0 && std::abs(found) > 0.4 * std::abs(c[last - 1]);
 }
 
-bool holds_for_slow(const BlockData& data, const Claimed& claimed, const Claimed& without) {
+bool agrees_with_plain_fit(const BlockData& data, const Claimed& claimed, const Claimed& without) {
   if (left_over(data, claimed) <= kWorse * left_over(data, without)) return true;
   const Columns columns = design(data, claimed.model);
   Eigen::MatrixXd covariance;

@@ -14,15 +14,15 @@ struct Claimed {
 
 // Whether the last effect's coefficient from the other folds makes the innovations of each fold smaller, all
 // folds together. Constants and the effects before it are projected out on all blocks first.
-bool predicts(const BlockData& data, const Claimed& claimed);
+bool predicts_held_out(const BlockData& data, const Claimed& claimed);
 
 // A knock makes innovations like a step's. A step is still there later: the means before and after differ by
 // it. And it is sudden: a change spread over a part of the record must not explain more.
-bool stays(const BlockData& data, const Claimed& claimed);
+bool step_persists(const BlockData& data, const Claimed& claimed);
 
 // A correction must not make the error larger than slow noise makes it by chance: where it does grow against
 // the model without the last effect, the coefficient that plain least squares finds has to agree with the one
 // found in innovations.
-bool holds_for_slow(const BlockData& data, const Claimed& claimed, const Claimed& without);
+bool agrees_with_plain_fit(const BlockData& data, const Claimed& claimed, const Claimed& without);
 
 }  // namespace ifog

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <stdexcept>
 
 namespace ifog {
@@ -115,16 +114,9 @@ void describe(FineChannel& channel) {
   channel.varies = channel.high - channel.low > 1e-9 * scale;
 }
 
-}  // namespace
-
-std::size_t BlockGrid::used() const {
-  return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), std::uint8_t{1}));
-}
-
-BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
-  check(records);
-  BlockData data;
-  BlockGrid& grid = data.grid;
+// Lengths of blocks and of the fine grid's steps, so that there are at most so many blocks.
+BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
+  BlockGrid grid;
   grid.sample_s = median_period(records);
   grid.white_variance = white_variance(records);
   double span = 0.0;
@@ -135,71 +127,82 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   grid.fine = (a_block + a_step - 1) / a_step;
   grid.fine_s = static_cast<double>(a_step) * grid.sample_s;
   grid.block_s = static_cast<double>(grid.fine) * grid.fine_s;
+  return grid;
+}
 
-  std::vector<double> error;
-  std::vector<std::size_t> blocks_of;
-  for (const Record& record : records) {
-    grid.starts.push_back(grid.valid.size());
-    const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
-    const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
-    blocks_of.push_back(blocks);
-    std::vector<double> sum(blocks, 0.0);
-    std::vector<double> count(blocks, 0.0);
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-      double value = record.rate_radps[i];
-      if (!record.reference_radps.empty()) value -= record.reference_radps[i];
-      if (!std::isfinite(value)) continue;
-      const std::size_t b = fine_index(record, i, grid.fine_s) / grid.fine;
-      sum[b] += value;
-      count[b] += 1.0;
-    }
-    const double full = grid.block_s / grid.sample_s;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      const bool enough = count[b] >= std::max(1.0, kLeastShare * full);
-      grid.valid.push_back(enough ? 1 : 0);
-      error.push_back(enough ? sum[b] / count[b] : 0.0);
-      grid.time_s.push_back(record.time_s[0] + (static_cast<double>(b) + 0.5) * grid.block_s -
-                            0.5 * grid.fine_s);
-    }
+void add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
+  const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
+  const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
+  grid.records.push_back({grid.size(), grid.size() + blocks});
+  std::vector<double> sum(blocks, 0.0);
+  std::vector<double> count(blocks, 0.0);
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    double value = record.rate_radps[i];
+    if (!record.reference_radps.empty()) value -= record.reference_radps[i];
+    if (!std::isfinite(value)) continue;
+    const std::size_t b = fine_index(record, i, grid.fine_s) / grid.fine;
+    sum[b] += value;
+    count[b] += 1.0;
   }
-  grid.starts.push_back(grid.valid.size());
-  grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
-  if (grid.used() < 32) throw std::invalid_argument(too_few(grid.used()));
+  const double full = grid.block_s / grid.sample_s;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const bool enough = count[b] >= std::max(1.0, kLeastShare * full);
+    grid.valid.push_back(enough ? 1 : 0);
+    error.push_back(enough ? sum[b] / count[b] : 0.0);
+    grid.time_s.push_back(record.time_s[0] + (static_cast<double>(b) + 0.5) * grid.block_s -
+                          0.5 * grid.fine_s);
+  }
+}
 
-  const Record& first = records.front();
-  const bool several = a_step > 1;
-  const auto add = [&](const std::string& name, auto&& values_of) {
-    FineChannel channel;
-    channel.name = name;
-    for (std::size_t r = 0; r < records.size(); ++r) {
-      const std::span<const double> values = values_of(records[r]);
-      fill(records[r], values, grid.fine_s, blocks_of[r] * grid.fine, channel.values,
-           several ? &channel.power : nullptr);
-    }
-    describe(channel);
-    data.channels.push_back(std::move(channel));
-  };
-  for (const RecordChannel& channel : first.channels) {
-    bool everywhere = true;
-    for (const Record& record : records) {
-      everywhere =
-          everywhere && std::any_of(record.channels.begin(), record.channels.end(),
-                                    [&](const RecordChannel& other) { return other.name == channel.name; });
-    }
-    if (!everywhere) continue;
-    add(channel.name, [&](const Record& record) {
-      for (const RecordChannel& other : record.channels) {
-        if (other.name == channel.name) return other.values;
-      }
-      return std::span<const double>{};
-    });
+template <class ValuesOf>
+FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& grid, const std::string& name,
+                         ValuesOf&& values_in) {
+  FineChannel channel;
+  channel.name = name;
+  const bool several = grid.fine_s > grid.sample_s;  // samples a step
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    fill(records[r], values_in(records[r]), grid.fine_s, grid.records[r].size() * grid.fine, channel.values,
+         several ? &channel.power : nullptr);
+  }
+  describe(channel);
+  return channel;
+}
+
+}  // namespace
+
+std::size_t BlockGrid::used() const {
+  return static_cast<std::size_t>(std::count(valid.begin(), valid.end(), std::uint8_t{1}));
+}
+
+std::size_t BlockGrid::longest() const {
+  std::size_t most = 0;
+  for (const BlockRange& record : records) most = std::max(most, record.size());
+  return most;
+}
+
+BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
+  check(records);
+  BlockData data;
+  data.grid = steps_and_blocks(records, most_blocks);
+  std::vector<double> error;
+  for (const Record& record : records) add_blocks_of(record, data.grid, error);
+  data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
+  if (data.grid.used() < 32) throw std::invalid_argument(too_few(data.grid.used()));
+
+  for (const RecordChannel& channel : records.front().channels) {
+    const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };
+    if (!std::all_of(records.begin(), records.end(), has_it)) continue;
+    data.channels.push_back(fine_channel(records, data.grid, channel.name, [&](const Record& record) {
+      return values_of(record, channel.name);
+    }));
   }
   if (std::all_of(records.begin(), records.end(),
                   [](const Record& r) { return !r.reference_radps.empty(); })) {
     data.reference = static_cast<std::ptrdiff_t>(data.channels.size());
-    add(first.reference_name, [](const Record& record) { return record.reference_radps; });
+    data.channels.push_back(fine_channel(records, data.grid, records.front().reference_name,
+                                         [](const Record& record) { return record.reference_radps; }));
     // Averages of seconds at rates that were set: whatever drifts between them is not sampled as drift.
-    grid.dwells = grid.sample_s > 1.0 && data.channels.back().varies;
+    data.grid.dwells = data.grid.sample_s > 1.0 && data.channels.back().varies;
   }
   return data;
 }
@@ -210,11 +213,11 @@ template <class Step>
 Eigen::VectorXd block_means(const BlockGrid& grid, Step&& step) {
   Eigen::VectorXd means(static_cast<Eigen::Index>(grid.size()));
   const double share = 1.0 / static_cast<double>(grid.fine);
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+  for (const BlockRange& record : grid.records) {
+    for (std::size_t b = record.first; b < record.end; ++b) {
       double sum = 0.0;
       for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k)
-        sum += step(k, k == grid.starts[r] * grid.fine);
+        sum += step(k, k == record.first * grid.fine);
       means[static_cast<Eigen::Index>(b)] = sum * share;
     }
   }

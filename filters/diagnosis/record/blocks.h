@@ -9,16 +9,26 @@
 #include <string>
 #include <vector>
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record.h"
 #include "filters/effects/shape.h"
 
 namespace ifog {
+
+// Blocks first … end - 1 of the grid, all of one record.
+struct BlockRange {
+  std::size_t first = 0, end = 0;
+
+  [[nodiscard]] std::size_t size() const { return end - first; }
+  // The same as rows of a matrix that has one for each block.
+  [[nodiscard]] Eigen::Index row() const { return static_cast<Eigen::Index>(first); }
+  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(size()); }
+};
 
 struct BlockGrid {
   double block_s = 0.0;             // length of a block
   double fine_s = 0.0;              // of a step of the fine grid
   std::size_t fine = 1;             // steps a block
-  std::vector<std::size_t> starts;  // first block of each record, and one past the last block at the end
+  std::vector<BlockRange> records;  // one behind the other
   std::vector<std::uint8_t> valid;  // by block: enough samples in it
   std::vector<double> time_s;       // middle of the block, in its record's time
   Eigen::VectorXd error;            // by block: mean of rate - reference, 0 where not valid
@@ -27,8 +37,23 @@ struct BlockGrid {
   double white_variance = 0.0;      // of one sample, from differences of neighbours
 
   [[nodiscard]] std::size_t size() const { return valid.size(); }
-  [[nodiscard]] std::size_t used() const;  // valid blocks
+  [[nodiscard]] std::size_t used() const;     // valid blocks
+  [[nodiscard]] std::size_t longest() const;  // blocks of the longest record
+  [[nodiscard]] Eigen::Index constants() const { return static_cast<Eigen::Index>(records.size()); }
+  // Steps of the fine grid that a record's blocks are made of.
+  [[nodiscard]] BlockRange fine_steps(const BlockRange& record) const {
+    return {record.first * fine, record.end * fine};
+  }
 };
+
+// Takes from the rows of each record, one a block, their mean.
+template <class Rows>
+void centre_records(const BlockGrid& grid, Rows& values) {
+  for (const BlockRange& record : grid.records) {
+    auto rows = values.middleRows(record.row(), record.rows());
+    rows.rowwise() -= rows.colwise().mean().eval();
+  }
+}
 
 struct FineChannel {
   std::string name;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/record/even_grid.h"
 
 namespace ifog {
@@ -73,45 +74,22 @@ std::vector<double> means_over(std::span<const double> error, std::size_t count)
   return means;
 }
 
-double allan_deviation(std::span<const double> error, std::size_t count) {
-  if (count == 0 || error.size() < 3 * count) return kMissing;
-  // Running sums, above the first value there is, and numbers of values.
-  std::vector<double> sum(error.size() + 1, 0.0);
-  std::vector<double> there(error.size() + 1, 0.0);
-  const auto first = std::find_if(error.begin(), error.end(), [](double v) { return std::isfinite(v); });
-  const double offset = first == error.end() ? 0.0 : *first;
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    const bool finite = std::isfinite(error[i]);
-    sum[i + 1] = sum[i] + (finite ? error[i] - offset : 0.0);
-    there[i + 1] = there[i] + (finite ? 1.0 : 0.0);
-  }
-  double square = 0.0;
-  double n = 0.0;
-  const double least = 0.5 * static_cast<double>(count);
-  for (std::size_t i = 0; i + 2 * count < sum.size(); ++i) {
-    const double one = there[i + count] - there[i];
-    const double other = there[i + 2 * count] - there[i + count];
-    if (one < least || other < least) continue;
-    const double d = (sum[i + 2 * count] - sum[i + count]) / other - (sum[i + count] - sum[i]) / one;
-    square += d * d;
-    n += 1.0;
-  }
-  if (n == 0.0) return kMissing;
-  return std::sqrt(0.5 * square / n);
-}
-
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s) {
   std::map<std::string, double> figures;
   figures["residual_rms_radps"] = rms_about_mean(error);
-  for (const double tau : {0.1, 1.0, 10.0, 100.0}) {
+  std::vector<std::string> names;
+  std::vector<std::size_t> counts;
+  for (const auto& [tau, name] : {std::pair{0.1, "0.1s_radps"}, std::pair{1.0, "1s_radps"},
+                                  std::pair{10.0, "10s_radps"}, std::pair{100.0, "100s_radps"}}) {
     const auto count = static_cast<std::size_t>(std::floor(tau / period_s + 0.5));
     if (count < 1 || error.size() < 10 * count) continue;
-    std::string name = std::to_string(tau);
-    name.erase(name.find_last_not_of('0') + 1);
-    if (name.ends_with('.')) name.pop_back();
-    name += "s_radps";
-    figures["rms_" + name] = rms_about_mean(means_over(error, count));
-    figures["adev_" + name] = allan_deviation(error, count);
+    names.emplace_back(name);
+    counts.push_back(count);
+  }
+  const std::vector<double> deviations = gapped_deviation(error, counts);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    figures["rms_" + names[i]] = rms_about_mean(means_over(error, counts[i]));
+    figures["adev_" + names[i]] = deviations[i];
   }
   figures["heading_drift_rad"] = heading_drift(error, period_s);
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));

@@ -21,8 +21,4 @@ std::map<std::string, double> pooled(const std::vector<std::map<std::string, dou
 // Means over `count` samples, NaN where fewer than half are there.
 std::vector<double> means_over(std::span<const double> error, std::size_t count);
 
-// Overlapping Allan deviation at one averaging time of `count` samples, NaN when the record is too short for
-// it. Means of fewer than half of their samples do not count.
-double allan_deviation(std::span<const double> error, std::size_t count);
-
 }  // namespace ifog

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "filters/effects/meaning.h"
@@ -86,13 +87,6 @@ void each_sample(const Record& record, std::span<const double> ramp, double peri
   }
 }
 
-// Probability of a chi-square this large (Wilson and Hilferty 1931).
-double chi_square_tail(double value, double degrees) {
-  const double z =
-      (std::cbrt(value / degrees) - (1.0 - 2.0 / (9.0 * degrees))) / std::sqrt(2.0 / (9.0 * degrees));
-  return 0.5 * std::erfc(z / std::sqrt(2.0));
-}
-
 Eigen::VectorXd solved(const Sums& sums) {
   const double ridge = 1e-9 * sums.gram.trace() / static_cast<double>(sums.gram.rows());
   Eigen::MatrixXd gram = sums.gram;
@@ -104,11 +98,100 @@ double explained(const Sums& sums, const Eigen::VectorXd& table) {
   return 2.0 * table.dot(sums.moment) - table.dot(sums.gram * table);
 }
 
-std::span<const double> channel_of(const Record& record, const std::string& name) {
-  for (const RecordChannel& channel : record.channels) {
-    if (channel.name == name) return channel.values;
+using PartSums = std::vector<Sums>;  // kParts
+
+Sums all_of(const PartSums& parts) {
+  Sums all(parts.front().gram.rows());
+  for (const Sums& sums : parts) all += sums;
+  return all;
+}
+
+PartSums sums_by_part(const std::vector<Record>& records, const std::string& channel, double period,
+                      Eigen::Index knots) {
+  PartSums parts(kParts, Sums(knots));
+  for (const Record& record : records) {
+    each_sample(record, values_of(record, channel), period, knots,
+                [&](std::size_t, int part, const Hats& hats, double e) {
+                  Sums& sums = parts[static_cast<std::size_t>(part)];
+                  for (std::size_t a = 0; a < hats.count; ++a) {
+                    sums.moment[hats.entry[a].first] += hats.entry[a].second * e;
+                    for (std::size_t b = 0; b < hats.count; ++b) {
+                      sums.gram(hats.entry[a].first, hats.entry[b].first) +=
+                          hats.entry[a].second * hats.entry[b].second;
+                    }
+                  }
+                  sums.square += e * e;
+                  sums.samples += 1.0;
+                });
   }
-  return {};
+  return parts;
+}
+
+// With enough knots for the table's shape and no more, by the Bayesian information criterion; empty when the
+// records are too short for any.
+PartSums with_best_knots(const std::vector<Record>& records, const std::string& channel, double period) {
+  PartSums best;
+  double best_score = -1e300;
+  for (const Eigen::Index knots : {Eigen::Index{8}, Eigen::Index{16}, Eigen::Index{32}, Eigen::Index{64}}) {
+    PartSums parts = sums_by_part(records, channel, period, knots);
+    const Sums all = all_of(parts);
+    if (all.samples < 20.0 * static_cast<double>(knots)) break;
+    const double left = all.square - explained(all, solved(all));
+    const double score =
+        -all.samples * std::log(left / all.square) - static_cast<double>(knots) * std::log(all.samples);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = std::move(parts);
+  }
+  return best;
+}
+
+// Of each part the table that the other parts make, and what it explains of its own part, all together.
+struct CrossFit {
+  std::array<Eigen::VectorXd, kParts> without;
+  double gain = 0.0;
+};
+
+CrossFit cross_fit(const PartSums& parts) {
+  CrossFit fit;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    Sums others(parts.front().gram.rows());
+    for (std::size_t k = 0; k < kParts; ++k) {
+      if (k != part) others += parts[k];
+    }
+    fit.without[part] = solved(others);
+    fit.gain += explained(parts[part], fit.without[part]);
+  }
+  return fit;
+}
+
+Effect table_effect(const std::string& channel, double period, const Sums& all,
+                    const Eigen::VectorXd& table) {
+  const Eigen::Index knots = table.size();
+  Effect effect;
+  effect.form = "lookup";
+  effect.channel = channel;
+  effect.period = period;
+  effect.angle = true;
+  double square = 0.0;
+  for (Eigen::Index k = 0; k <= knots; ++k) {
+    effect.table_x.push_back(period * static_cast<double>(k) / static_cast<double>(knots));
+    effect.table_y.push_back(k == 0 ? 0.0 : table[k - 1]);
+  }
+  // A constant angle has no rate: the table is stored about its mean, which keeps a reload's jump small.
+  double mean = 0.0;
+  for (const double y : effect.table_y) mean += y / static_cast<double>(knots + 1);
+  for (double& y : effect.table_y) {
+    y -= mean;
+    square += y * y / static_cast<double>(knots + 1);
+  }
+  const double variance = (all.square - explained(all, table)) / all.samples;
+  const Eigen::MatrixXd covariance =
+      variance * all.gram.ldlt().solve(Eigen::MatrixXd::Identity(knots, knots));
+  const double rms = std::sqrt(square);
+  effect.parameters = {{"angle_rms", rms, std::sqrt(covariance.diagonal().mean()), "rad"}};
+  effect.meaning = meaning_of(effect);
+  return effect;
 }
 
 }  // namespace
@@ -141,92 +224,30 @@ double wrap_period(std::span<const double> values) {
 std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
                                 double significance) {
   double period = 0.0;
-  for (const Record& record : records) period = std::max(period, wrap_period(channel_of(record, channel)));
+  for (const Record& record : records) period = std::max(period, wrap_period(values_of(record, channel)));
   if (!(period > 0.0)) return std::nullopt;
+  const PartSums parts = with_best_knots(records, channel, period);
+  if (parts.empty()) return std::nullopt;
 
-  // Enough knots for the table's shape and no more, by the Bayesian information criterion.
-  std::vector<Sums> best;
-  double best_score = -1e300;
-  for (const Eigen::Index knots : {Eigen::Index{8}, Eigen::Index{16}, Eigen::Index{32}, Eigen::Index{64}}) {
-    std::vector<Sums> parts(kParts, Sums(knots));
-    for (const Record& record : records) {
-      each_sample(record, channel_of(record, channel), period, knots,
-                  [&](std::size_t, int part, const Hats& hats, double e) {
-                    Sums& sums = parts[static_cast<std::size_t>(part)];
-                    for (std::size_t a = 0; a < hats.count; ++a) {
-                      sums.moment[hats.entry[a].first] += hats.entry[a].second * e;
-                      for (std::size_t b = 0; b < hats.count; ++b) {
-                        sums.gram(hats.entry[a].first, hats.entry[b].first) +=
-                            hats.entry[a].second * hats.entry[b].second;
-                      }
-                    }
-                    sums.square += e * e;
-                    sums.samples += 1.0;
-                  });
-    }
-    Sums all(knots);
-    for (const Sums& sums : parts) all += sums;
-    if (all.samples < 20.0 * static_cast<double>(knots)) break;
-    const double left = all.square - explained(all, solved(all));
-    const double score =
-        -all.samples * std::log(left / all.square) - static_cast<double>(knots) * std::log(all.samples);
-    if (score <= best_score) continue;
-    best_score = score;
-    best = std::move(parts);
-  }
-  if (best.empty()) return std::nullopt;
-
-  const Eigen::Index knots = best.front().gram.rows();
-  Sums all(knots);
-  for (const Sums& sums : best) all += sums;
+  const Sums all = all_of(parts);
   const Eigen::VectorXd table = solved(all);
-  std::array<Eigen::VectorXd, kParts> without;
-  double held_out_gain = 0.0;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    Sums others(knots);
-    for (std::size_t k = 0; k < kParts; ++k) {
-      if (k != part) others += best[k];
-    }
-    without[part] = solved(others);
-    held_out_gain += explained(best[part], without[part]);
-  }
+  const CrossFit crossed = cross_fit(parts);
   RampFit fit;
   fit.ratio = -all.samples * std::log(std::max(1e-12, 1.0 - explained(all, table) / all.square));
-  fit.p_value = chi_square_tail(fit.ratio, static_cast<double>(knots));
-  if (fit.p_value > significance || held_out_gain <= 0.0) return std::nullopt;
-
-  fit.effect.form = "lookup";
-  fit.effect.channel = channel;
-  fit.effect.period = period;
-  fit.effect.angle = true;
-  double square = 0.0;
-  for (Eigen::Index k = 0; k <= knots; ++k) {
-    fit.effect.table_x.push_back(period * static_cast<double>(k) / static_cast<double>(knots));
-    fit.effect.table_y.push_back(k == 0 ? 0.0 : table[k - 1]);
-  }
-  // A constant angle has no rate: the table is stored about its mean, which keeps a reload's jump small.
-  double mean = 0.0;
-  for (const double y : fit.effect.table_y) mean += y / static_cast<double>(knots + 1);
-  for (double& y : fit.effect.table_y) {
-    y -= mean;
-    square += y * y / static_cast<double>(knots + 1);
-  }
-  const double variance = (all.square - explained(all, table)) / all.samples;
-  const Eigen::MatrixXd covariance =
-      variance * all.gram.ldlt().solve(Eigen::MatrixXd::Identity(knots, knots));
-  const double rms = std::sqrt(square);
-  fit.effect.parameters = {{"angle_rms", rms, std::sqrt(covariance.diagonal().mean()), "rad"}};
-  fit.effect.meaning = meaning_of(fit.effect);
+  const boost::math::chi_squared by_chance(static_cast<double>(table.size()));
+  fit.p_value = cdf(complement(by_chance, std::max(0.0, fit.ratio)));
+  if (fit.p_value > significance || crossed.gain <= 0.0) return std::nullopt;
+  fit.effect = table_effect(channel, period, all, table);
 
   for (const Record& record : records) {
     std::vector<double> correction(record.time_s.size(), 0.0);
     std::vector<double> held_out = correction;
-    each_sample(record, channel_of(record, channel), period, knots,
+    each_sample(record, values_of(record, channel), period, table.size(),
                 [&](std::size_t i, int part, const Hats& hats, double) {
+                  const Eigen::VectorXd& without = crossed.without[static_cast<std::size_t>(part)];
                   for (std::size_t a = 0; a < hats.count; ++a) {
                     correction[i] += hats.entry[a].second * table[hats.entry[a].first];
-                    held_out[i] +=
-                        hats.entry[a].second * without[static_cast<std::size_t>(part)][hats.entry[a].first];
+                    held_out[i] += hats.entry[a].second * without[hats.entry[a].first];
                   }
                 });
     fit.correction.push_back(std::move(correction));
@@ -237,14 +258,14 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
 
 WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance) {
   WithoutRamps parts;
-  parts.clean = records;
+  parts.records = records;
   if (records.empty()) return parts;
   for (const RecordChannel& channel : records.front().channels) {
     const auto wraps = [&](const Record& record) {
-      return wrap_period(channel_of(record, channel.name)) > 0.0;
+      return wrap_period(values_of(record, channel.name)) > 0.0;
     };
     if (!std::any_of(records.begin(), records.end(), wraps)) continue;
-    for (Record& record : parts.clean) {
+    for (Record& record : parts.records) {
       std::erase_if(record.channels, [&](const RecordChannel& other) { return other.name == channel.name; });
     }
     if (auto ramp = fit_ramp(records, channel.name, significance)) parts.ramps.push_back(std::move(*ramp));
@@ -257,7 +278,7 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
     }
     parts.rates.push_back(std::move(rate));
   }
-  for (std::size_t r = 0; r < records.size(); ++r) parts.clean[r].rate_radps = parts.rates[r];
+  for (std::size_t r = 0; r < records.size(); ++r) parts.records[r].rate_radps = parts.rates[r];
   return parts;
 }
 

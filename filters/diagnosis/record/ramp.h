@@ -1,6 +1,6 @@
 // The feedback ramp of a closed-loop sensor, if a channel is one: a counter that wraps and whose slope is the
-// loop's own measure of the rotation. Its nonlinearity is an error of the angle, f(ramp), so that of the rate
-// is the difference of f from sample to sample over dt. f is bounded: this correction cannot swallow
+// closed loop's own measure of the rotation. Its nonlinearity is an error of the angle, f(ramp), so that of
+// the rate is the difference of f from sample to sample over dt. f is bounded: this correction cannot swallow
 // rotation, whatever the ramp's speed, which no function of the ramp's slope could promise.
 #pragma once
 
@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record.h"
+#include "filters/model_file/model.h"
 
 namespace ifog {
 
@@ -32,8 +33,8 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
 
 struct WithoutRamps {
   std::vector<RampFit> ramps;
-  std::vector<Record> clean;               // without channels that wrap, and less what the ramps explain
-  std::vector<std::vector<double>> rates;  // what clean's rates point to, when a ramp was found
+  std::vector<Record> records;             // without channels that wrap, and less what the ramps explain
+  std::vector<std::vector<double>> rates;  // what their rates point to, when a ramp was found
 };
 
 // A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So

@@ -212,7 +212,7 @@ double between(const Reading& from, const State& a, const Reading& to, const Sta
 
 }  // namespace
 
-Reconstruction reconstructed(std::span<const double> readings) {
+Reconstruction reconstruct(std::span<const double> readings) {
   Reconstruction as_read{{readings.begin(), readings.end()}, false};
   const bool coarse = is_coarse(readings);
   const double step = coarse ? change_of(readings) : 0.0;
@@ -282,24 +282,24 @@ bool stands_still(std::span<const double> readings) {
 }
 
 BlockData with_reconstructed_channels(const BlockData& data) {
-  BlockData clean = data;
+  BlockData reconstructed = data;
   const BlockGrid& grid = data.grid;
-  for (std::size_t c = 0; c < clean.channels.size(); ++c) {
-    FineChannel& channel = clean.channels[c];
+  for (std::size_t c = 0; c < reconstructed.channels.size(); ++c) {
+    FineChannel& channel = reconstructed.channels[c];
     if (static_cast<std::ptrdiff_t>(c) == data.reference || !channel.varies || channel.rotates) continue;
-    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-      const std::size_t from = grid.starts[r] * grid.fine;
-      const std::size_t steps = grid.starts[r + 1] * grid.fine - from;
+    for (const BlockRange& record : grid.records) {
+      const bool first = record.first == 0;
+      const BlockRange steps = grid.fine_steps(record);
       const std::span<const double> readings =
-          std::span<const double>(data.channels[c].values).subspan(from, steps);
-      const Reconstruction found = reconstructed(readings);
+          std::span<const double>(data.channels[c].values).subspan(steps.first, steps.size());
+      const Reconstruction found = reconstruct(readings);
       std::copy(found.values.begin(), found.values.end(),
-                channel.values.begin() + static_cast<std::ptrdiff_t>(from));
-      channel.smooth = found.smooth && (r == 0 || channel.smooth);
-      channel.still = stands_still(readings) && (r == 0 || channel.still);
+                channel.values.begin() + static_cast<std::ptrdiff_t>(steps.first));
+      channel.smooth = found.smooth && (first || channel.smooth);
+      channel.still = stands_still(readings) && (first || channel.still);
     }
   }
-  return clean;
+  return reconstructed;
 }
 
 }  // namespace ifog

@@ -88,10 +88,7 @@ bool Candidate::same_shape(const Candidate& other) const {
 }
 
 std::vector<double> time_constants(const BlockGrid& grid, Form form) {
-  double longest = 0.0;
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    longest = std::max(longest, static_cast<double>(grid.starts[r + 1] - grid.starts[r]) * grid.block_s);
-  }
+  const double longest = static_cast<double>(grid.longest()) * grid.block_s;
   double from = grid.block_s * kBlocksOfRate;
   double to = std::min(kHour, longest / 3.0);
   if (form == Form::kSecondRate) to = std::min(to, longest / 10.0);
@@ -158,9 +155,9 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
                   candidate.channel);
   }
   Columns columns = Columns::Zero(n, candidate.width());
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    const double start = grid.time_s[grid.starts[r]];
-    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+  for (std::size_t r = 0; r < grid.records.size(); ++r) {
+    const double start = grid.time_s[grid.records[r].first];
+    for (std::size_t b = grid.records[r].first; b < grid.records[r].end; ++b) {
       const auto row = static_cast<Eigen::Index>(b);
       const double t = grid.time_s[b] - start;
       switch (candidate.form) {

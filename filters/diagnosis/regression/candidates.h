@@ -30,9 +30,9 @@ struct Candidate {
 std::vector<double> time_constants(const BlockGrid& grid, Form form);
 
 // lookup is not among them: a table of a channel has a coefficient a knot, and polynomials to the cubic say
-// what a few knots would (the feedback ramp's table, periodic and dense, is fitted in ramp.h). Neither are
-// the forms that have nothing to subtract: outliers, noise_change and quantisation are described by
-// unexplained.h, and earth_rate is the same regressor as acceleration, see diagnose.cpp.
+// what a few knots would (the feedback ramp's table is fitted in ramp.h). Neither are steps, which scan.h
+// places, nor lines, which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same
+// regressor as acceleration, see findings.cpp.
 std::vector<Candidate> library(const BlockData& data);
 
 // Products of a channel with the others, worth trying once the channel has an effect of its own: the effect's

@@ -5,13 +5,10 @@
 namespace ifog {
 
 Columns constants(const BlockGrid& grid) {
-  const auto records = static_cast<Eigen::Index>(grid.starts.size()) - 1;
-  Columns columns = Columns::Zero(static_cast<Eigen::Index>(grid.size()), records);
-  for (Eigen::Index r = 0; r < records; ++r) {
-    const auto from = static_cast<Eigen::Index>(grid.starts[static_cast<std::size_t>(r)]);
-    const auto to = static_cast<Eigen::Index>(grid.starts[static_cast<std::size_t>(r) + 1]);
-    columns.col(r).segment(from, to - from).setOnes();
-  }
+  Columns columns = Columns::Zero(static_cast<Eigen::Index>(grid.size()), grid.constants());
+  Eigen::Index column = 0;
+  for (const BlockRange& record : grid.records)
+    columns.col(column++).segment(record.row(), record.rows()).setOnes();
   return columns;
 }
 
@@ -32,7 +29,7 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects) {
 }
 
 Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at) {
-  auto column = static_cast<Eigen::Index>(grid.starts.size());
+  Eigen::Index column = 1 + grid.constants();
   for (std::size_t i = 0; i < at; ++i) column += effects[i].width();
   return column;
 }
@@ -43,11 +40,11 @@ Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured)
 
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
   std::vector<int> fold(grid.size());
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    const std::size_t n = grid.starts[r + 1] - grid.starts[r];
+  for (const BlockRange& record : grid.records) {
+    const std::size_t n = record.size();
     for (std::size_t b = 0; b < n; ++b) {
       const std::size_t piece = b * turns * static_cast<std::size_t>(folds) / n;
-      fold[grid.starts[r] + b] = static_cast<int>(piece) % folds;
+      fold[record.first + b] = static_cast<int>(piece) % folds;
     }
   }
   return fold;

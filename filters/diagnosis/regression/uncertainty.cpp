@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "filters/diagnosis/search/search.h"
+#include "filters/diagnosis/regression/design.h"
 
 namespace ifog {
 namespace {
@@ -143,52 +143,37 @@ Columns searched_columns(const BlockData& data, const std::vector<Candidate>& ef
   return columns;
 }
 
-JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
-                   const Eigen::VectorXd& coefficients, const NoiseFit& best) {
-  const BlockGrid& grid = data.grid;
-  JointFit fit;
-  const Columns base = design(data, effects);
-  const auto records = static_cast<Eigen::Index>(grid.starts.size()) - 1;
-  const Columns more = searched_columns(data, effects, coefficients, records, &fit.searched);
-  Columns columns(base.rows(), base.cols() + more.cols());
-  columns << base, more;
-  const Eigen::Index p = columns.cols() - 1;
-  Eigen::VectorXd known = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
-  for (std::size_t j = 0; j < fit.searched.size(); ++j) {
-    if (effects[fit.searched[j]].form != Form::kLine) {
-      known[p - static_cast<Eigen::Index>(fit.searched.size() - j)] = kLogRange;
-    }
-  }
-  const auto evaluate = [&](const NoiseShape& shape) {
-    return solve_at(grid, columns, known, shape, best.white_variance);
+namespace {
+
+// Over the walks and flickers that the record allows: a coarse grid of all, then finer ones around what
+// counts. A record that tells its noise well leaves one point of a coarse grid.
+template <class Evaluate>
+std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Evaluate&& evaluate) {
+  if (grid.dwells) return {Tried{best, evaluate(best)}};
+  const auto n = static_cast<double>(grid.used());
+  const std::pair<double, double> walks{kNegligible / (n * n), kMost};
+  const std::pair<double, double> flickers{kNegligible / n, kMost};
+  const auto coarse = [](const std::pair<double, double>& limits) {
+    const int count =
+        1 + static_cast<int>(std::ceil(std::log(limits.second / limits.first) / std::log(kCoarse)));
+    return logarithmic(limits.first, limits.second, count);
   };
-
-  std::vector<Tried> tried;
-  if (grid.dwells) {
-    tried.push_back({best.shape, evaluate(best.shape)});
-  } else {
-    const auto n = static_cast<double>(grid.used());
-    const std::pair<double, double> walks{kNegligible / (n * n), kMost};
-    const std::pair<double, double> flickers{kNegligible / n, kMost};
-    const auto coarse = [](const std::pair<double, double>& limits) {
-      const int count =
-          1 + static_cast<int>(std::ceil(std::log(limits.second / limits.first) / std::log(kCoarse)));
-      return logarithmic(limits.first, limits.second, count);
-    };
-    tried = try_all(best.shape, coarse(walks), coarse(flickers), evaluate);
-    // A record that tells its noise well leaves one point of a coarse grid.
-    for (int round = 0; round < 2; ++round) {
-      const double factor = round == 0 ? kCoarse : 1.5;
-      const auto walk = span_of(tried, &NoiseShape::walk, factor, walks);
-      const auto flicker = span_of(tried, &NoiseShape::flicker, factor, flickers);
-      tried = try_all(best.shape, logarithmic(walk.first, walk.second, kFine),
-                      logarithmic(flicker.first, flicker.second, kFine), evaluate);
-    }
+  std::vector<Tried> tried = try_all(best, coarse(walks), coarse(flickers), evaluate);
+  for (const double factor : {kCoarse, 1.5}) {
+    const auto walk = span_of(tried, &NoiseShape::walk, factor, walks);
+    const auto flicker = span_of(tried, &NoiseShape::flicker, factor, flickers);
+    tried = try_all(best, logarithmic(walk.first, walk.second, kFine),
+                    logarithmic(flicker.first, flicker.second, kFine), evaluate);
   }
+  return tried;
+}
 
+// Weighted by the restricted likelihood.
+void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& fit) {
   const double top = best_of(tried);
   double sum = 0.0;
   for (const Tried& each : tried) sum += std::exp(each.solved.log_likelihood - top);
+  const Eigen::Index p = tried.front().solved.values.size();
   fit.values = Eigen::VectorXd::Zero(p);
   for (const Tried& each : tried) {
     const double weight = std::exp(each.solved.log_likelihood - top) / sum;
@@ -204,6 +189,31 @@ JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
     const Eigen::VectorXd away = each.solved.values - fit.values;
     fit.covariance += weight * (each.solved.covariance + away * away.transpose());
   }
+}
+
+}  // namespace
+
+JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
+                   const Eigen::VectorXd& coefficients, const NoiseFit& best) {
+  const BlockGrid& grid = data.grid;
+  JointFit fit;
+  const Columns base = design(data, effects);
+  const Columns more = searched_columns(data, effects, coefficients, grid.constants(), &fit.searched);
+  Columns columns(base.rows(), base.cols() + more.cols());
+  columns << base, more;
+  const Eigen::Index p = columns.cols() - 1;
+  Eigen::VectorXd known = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
+  for (std::size_t j = 0; j < fit.searched.size(); ++j) {
+    if (effects[fit.searched[j]].form != Form::kLine) {
+      known[p - static_cast<Eigen::Index>(fit.searched.size() - j)] = kLogRange;
+    }
+  }
+  average(grid,
+          try_noise(grid, best.shape,
+                    [&](const NoiseShape& shape) {
+                      return solve_at(grid, columns, known, shape, best.white_variance);
+                    }),
+          fit);
   return fit;
 }
 

@@ -8,14 +8,14 @@
 
 #include <vector>
 
-#include "filters/diagnosis/belief.h"
+#include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
 
 struct JointFit {
-  NoiseBelief noise;
+  NoisePosterior noise;
   // Nuisances (one constant a record), the columns of each effect, then one entry for each searched
   // parameter, in the order of the effects: the logarithm of a time constant, the frequency (Hz) of a line.
   Eigen::VectorXd values;

@@ -31,21 +31,17 @@ Eigen::MatrixXd steady_covariance(const Eigen::VectorXd& f, const Eigen::VectorX
 
 }  // namespace
 
-Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, std::size_t record) {
-  const auto from = static_cast<Eigen::Index>(grid.starts[record]);
-  const auto length = static_cast<Eigen::Index>(grid.starts[record + 1]) - from;
+Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, const BlockRange& record) {
   Columns answer = Columns::Zero(static_cast<Eigen::Index>(grid.size()), 1);
-  answer.col(0).segment(from, length).setOnes();
+  answer.col(0).segment(record.row(), record.rows()).setOnes();
   Whitening(grid, shape).apply(answer);
-  return answer.col(0).segment(from, length);
+  return answer.col(0).segment(record.row(), record.rows());
 }
 
 std::vector<double> flicker_bank(const BlockGrid& grid) {
-  std::size_t longest = 0;
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r)
-    longest = std::max(longest, grid.starts[r + 1] - grid.starts[r]);
   std::vector<double> times;
-  for (double tau = 2.0; tau < static_cast<double>(longest); tau *= kFlickerSpacing) times.push_back(tau);
+  for (double tau = 2.0; tau < static_cast<double>(grid.longest()); tau *= kFlickerSpacing)
+    times.push_back(tau);
   return times;
 }
 
@@ -82,9 +78,9 @@ void Whitening::apply_some(Columns& columns, Eigen::Index first) const {
   const std::size_t m = factor_.size();
   std::vector<Lane, Eigen::aligned_allocator<Lane>> state(m);
   const Eigen::Index stride = columns.cols();
-  for (std::size_t r = 0; r + 1 < grid_.starts.size(); ++r) {
+  for (const BlockRange& record : grid_.records) {
     std::fill(state.begin(), state.end(), Lane::Zero());
-    for (std::size_t b = grid_.starts[r]; b < grid_.starts[r + 1]; ++b) {
+    for (std::size_t b = record.first; b < record.end; ++b) {
       Eigen::Map<Lane> row(columns.data() + static_cast<Eigen::Index>(b) * stride + first);
       if (!grid_.valid[b]) {
         for (std::size_t i = 0; i < m; ++i) state[i] *= factor_[i];

@@ -49,9 +49,9 @@ class Whitening {
   double innovation_variance_ = 1.0;
 };
 
-// What the filter makes of a step at the start of the record, block by block to its end. A steady filter
-// answers a step the same way wherever it is.
-Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, std::size_t record);
+// What the filter makes of a step at the start of a record of the grid, block by block to its end. A steady
+// filter answers a step the same way wherever it is.
+Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, const BlockRange& record);
 
 // Time constants of the bank, in blocks.
 std::vector<double> flicker_bank(const BlockGrid& grid);

@@ -38,7 +38,7 @@ std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Cand
     columns.rightCols(1) = *beside;
   }
   const Eigen::VectorXd c = solve(data.grid, shape, columns);
-  Eigen::Index at = static_cast<Eigen::Index>(data.grid.starts.size()) - 1;
+  Eigen::Index at = data.grid.constants();
   std::vector<Effect> effects;
   for (const Candidate& candidate : candidates) {
     effects.push_back(effect_of(data, candidate));
@@ -50,10 +50,10 @@ std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Cand
   return effects;
 }
 
-JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& found) {
-  JointFit joint = joint_fit(clean, found.clean, found.clean_coefficients, found.noise);
+JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchResult& found) {
+  JointFit joint = joint_fit(reconstructed, found.fitted, found.fitted_coefficients, found.noise);
   const Eigen::Index linear = found.coefficients.size();
-  for (std::size_t i = 0; i < found.chosen.size(); ++i) found.chosen[i].candidate = found.clean[i];
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) found.chosen[i].candidate = found.fitted[i];
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
     Candidate& candidate = found.chosen[joint.searched[j]].candidate;
     const double moved = joint.values[linear + static_cast<Eigen::Index>(j)];
@@ -65,7 +65,7 @@ JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& fou
   found.coefficients = joint.values.head(linear);
   found.covariance = joint.covariance.topLeftCorner(linear, linear);
   const SearchResult own = found;
-  fit_to_readings(data, clean, found);
+  fit_to_readings(data, reconstructed, found);
   const Eigen::VectorXd shift = found.coefficients - own.coefficients;
   joint.values.head(linear) = found.coefficients;
   joint.covariance.diagonal().head(linear) += shift.cwiseAbs2();
@@ -81,15 +81,15 @@ JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& fou
   return joint;
 }
 
-Findings findings_of(const BlockData& data, const BlockData& clean, const SearchResult& found,
-                     const JointFit& joint, const std::string& axis) {
+namespace {
+
+// What the search chose, with parameters, their errors and each one's part of the error by block.
+void add_effects(const BlockData& data, const SearchResult& found, const JointFit& joint,
+                 const std::string& axis, Findings& findings) {
   const BlockGrid& grid = data.grid;
-  Findings findings;
-  std::vector<Candidate> candidates;
-  for (const Chosen& chosen : found.chosen) candidates.push_back(chosen.candidate);
-  const Columns columns = design(data, candidates);
+  const Columns columns = design(data, candidates_of(found.chosen));
   const double total = variance_of(used_values(grid, grid.error));
-  Eigen::Index at = static_cast<Eigen::Index>(grid.starts.size()) - 1;
+  Eigen::Index at = grid.constants();
   Eigen::Index searched = found.coefficients.size();
   for (const Chosen& chosen : found.chosen) {
     FoundEffect effect;
@@ -118,22 +118,28 @@ Findings findings_of(const BlockData& data, const BlockData& clean, const Search
     at += chosen.candidate.width();
     findings.effects.push_back(std::move(effect));
   }
+}
 
+void add_alternatives(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
+                      const std::string& axis, Findings& findings) {
   for (const Alternative& alternative : found.alternatives) {
-    std::vector<Candidate> instead = found.clean;
+    std::vector<Candidate> instead = found.fitted;
     instead[alternative.of] = alternative.candidate;
-    OtherExplanation other{fitted_effects(clean, instead, found.noise.shape, axis),
+    OtherExplanation other{fitted_effects(reconstructed, instead, found.noise.shape, axis),
                            std::exp(-0.5 * std::max(0.0, alternative.loss)),
                            {}};
     Indistinguishable pair;
     pair.effects = {findings.effects[alternative.of].effect, other.effects[alternative.of]};
     pair.correlation = alternative.correlation;
-    pair.separate_by = capture_that_separates(data, candidates[alternative.of], alternative.candidate);
+    pair.separate_by =
+        capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate);
     findings.pairs.push_back(std::move(pair));
     if (alternative.loss < kNoRival) findings.others.push_back(std::move(other));
   }
-  // On one heading the Earth's rate turning into a tilting axis is the same regressor: no data of it can
-  // tell.
+}
+
+// On one heading the Earth's rate turning into a tilting axis is the same regressor: no data of it can tell.
+void add_earth_rate(Findings& findings) {
   for (const FoundEffect& each : findings.effects) {
     const Effect& effect = each.effect;
     if (effect.form != "linear" || kind_of(effect.channel) != ChannelKind::kAcceleration) continue;
@@ -145,6 +151,16 @@ Findings findings_of(const BlockData& data, const BlockData& clean, const Search
         "the same capture with the heading reversed: the Earth's rate changes sign, g-sensitivity does not";
     findings.pairs.push_back(std::move(pair));
   }
+}
+
+}  // namespace
+
+Findings findings_of(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
+                     const JointFit& joint, const std::string& axis) {
+  Findings findings;
+  add_effects(data, found, joint, axis, findings);
+  add_alternatives(data, reconstructed, found, axis, findings);
+  add_earth_rate(findings);
   return findings;
 }
 

@@ -27,8 +27,8 @@ std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Cand
                                    const NoiseShape& shape, const std::string& axis,
                                    const Eigen::VectorXd* beside = nullptr);
 
-// Coefficients, time constants and their errors from `joint`. clean: the reconstructed channels.
-Findings findings_of(const BlockData& data, const BlockData& clean, const SearchResult& found,
+// Coefficients, time constants and their errors from `joint`. reconstructed: the reconstructed channels.
+Findings findings_of(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
                      const JointFit& joint, const std::string& axis);
 
 // Row-major, of all parameters of all effects; the first ones are those of `joint`, the others stand alone.
@@ -39,6 +39,6 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
 
 // The joint fit of what the search chose, put into `found` and brought to the readings the daemon will have.
 // By how far that moves a coefficient or a time constant from the effect's own counts as an error of it.
-JointFit settle(const BlockData& data, const BlockData& clean, SearchResult& found);
+JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchResult& found);
 
 }  // namespace ifog

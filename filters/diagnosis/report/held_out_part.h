@@ -2,15 +2,13 @@
 // causally, by the code the daemon runs.
 #pragma once
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/fitted_part.h"
 
 namespace ifog {
 
-// Replaces before and after of the diagnosis. The compensator runs over the whole of each record, so that its
-// lags are settled where the judged part begins.
-void judge(const std::vector<Record>& records, const DiagnoseOptions& options, Diagnosis& diagnosis);
-
-// The part of each record that is fitted.
-std::vector<Record> fitted_part(const std::vector<Record>& records, const DiagnoseOptions& options);
+// Replaces before and after of the diagnosis, which was made of the fitted share of the records. The
+// compensator runs over the whole of each record, so that its lags are settled where the judged part begins.
+void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosis& diagnosis);
 
 }  // namespace ifog

@@ -14,11 +14,7 @@ double correlation(const BlockGrid& grid, const NoiseShape& shape, const Eigen::
                    const Eigen::VectorXd& b) {
   Columns both(a.size(), 2);
   both << a, b;
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    auto part = both.middleRows(static_cast<Eigen::Index>(grid.starts[r]),
-                                static_cast<Eigen::Index>(grid.starts[r + 1] - grid.starts[r]));
-    part.rowwise() -= part.colwise().mean().eval();
-  }
+  centre_records(grid, both);
   Whitening(grid, shape).apply(both);
   return both.col(0).dot(both.col(1)) / std::max(both.col(0).norm() * both.col(1).norm(), 1e-300);
 }

@@ -166,7 +166,7 @@ double line_square(const Weights& weights, const Effect& line) {
 
 }  // namespace
 
-double heading_variance(const NoiseBelief& belief, double aligned_s, double after_s) {
+double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s) {
   const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
   const double step = aligned_s / steps;
   const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
@@ -175,7 +175,7 @@ double heading_variance(const NoiseBelief& belief, double aligned_s, double afte
   double walk = 0.0;
   double flicker = 0.0;
   double variance = 0.0;
-  for (const NoiseBelief::Part& part : belief.parts) {
+  for (const NoisePosterior::Part& part : posterior.parts) {
     variance += part.weight * part.white / step * square;
     walk += part.weight * part.walk;
     flicker += part.weight * part.flicker;
@@ -186,7 +186,7 @@ double heading_variance(const NoiseBelief& belief, double aligned_s, double afte
   }
   if (walk > 0.0) variance += brought_by(weight, 1.0, walk * step);
   if (flicker > 0.0) {
-    for (const double tau : belief.flicker_s) {
+    for (const double tau : posterior.flicker_s) {
       const double f = std::exp(-step / tau);
       variance += brought_by(weight, f, flicker * (1.0 - f * f));
     }
@@ -217,7 +217,7 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   const bool with_covariance = n > 0 && diagnosis.covariance.size() == static_cast<std::size_t>(n * n);
   for (const double horizon : after_s) {
     const Weights weights = heading_weights(aligned_s, horizon, data.grid.block_s, data.grid.size());
-    double square = heading_variance(diagnosis.belief, aligned_s, horizon);
+    double square = heading_variance(diagnosis.noise_posterior, aligned_s, horizon);
     if (with_covariance) {
       Eigen::VectorXd g(n);
       for (Eigen::Index j = 0; j < n; ++j) g[j] = along(weights, on.gradient.col(j));
@@ -233,6 +233,15 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
     prediction.sigma_rad.push_back(std::sqrt(square));
   }
   return prediction;
+}
+
+HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records) {
+  const auto span_of = [](const Record& record) { return record.time_s.back() - record.time_s.front(); };
+  const Record& longest =
+      *std::max_element(records.begin(), records.end(),
+                        [&](const Record& a, const Record& b) { return span_of(a) < span_of(b); });
+  const double aligned = std::min(300.0, span_of(longest) / 10.0);
+  return predict_heading(diagnosis, longest, aligned, {60.0, 300.0, 600.0, 1800.0, 3600.0});
 }
 
 }  // namespace ifog

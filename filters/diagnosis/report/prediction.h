@@ -3,7 +3,8 @@
 // channels.
 #pragma once
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record.h"
 
 namespace ifog {
 
@@ -13,7 +14,10 @@ namespace ifog {
 HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
                                   const std::vector<double>& after_s);
 
+// Of a next capture whose channels run as they did in the longest of the records.
+HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records);
+
 // Of the noise alone: variance of the heading error, rad^2.
-double heading_variance(const NoiseBelief& belief, double aligned_s, double after_s);
+double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s);
 
 }  // namespace ifog

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/diagnosis/record/figures.h"
+#include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/residual/lines.h"
 
 namespace ifog {
@@ -41,12 +41,13 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     const Effect& effect = effects[i].effect;
     series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));
   }
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; b += stride) {
+  for (std::size_t r = 0; r < grid.records.size(); ++r) {
+    const BlockRange& record = grid.records[r];
+    for (std::size_t b = record.first; b < record.end; b += stride) {
       const auto row = static_cast<Eigen::Index>(b);
       series.time_s.push_back(offset + grid.time_s[b]);
-      series.before_radps.push_back(mean_of_block(grid, errors[r].before, b - grid.starts[r]));
-      series.after_radps.push_back(mean_of_block(grid, errors[r].after, b - grid.starts[r]));
+      series.before_radps.push_back(mean_of_block(grid, errors[r].before, b - record.first));
+      series.after_radps.push_back(mean_of_block(grid, errors[r].after, b - record.first));
       for (std::size_t i = 0; i < parts.size(); ++i) {
         series.contribution_radps[i].push_back(parts[i][row]);
         const std::size_t channel = chosen[i].candidate.channel;
@@ -62,14 +63,16 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   series.frequency_hz = before.frequency_hz;
   for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
   for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));
+  std::vector<std::size_t> counts;
   for (double m = 1.0; m * 4.0 < static_cast<double>(first.before.size()); m *= 1.5) {
     const auto count = static_cast<std::size_t>(m);
     const double tau = static_cast<double>(count) * grid.sample_s;
     if (!series.tau_s.empty() && tau <= series.tau_s.back()) continue;
     series.tau_s.push_back(tau);
-    series.before_adev_radps.push_back(allan_deviation(first.before, count));
-    series.after_adev_radps.push_back(allan_deviation(first.held_out, count));
+    counts.push_back(count);
   }
+  series.before_adev_radps = gapped_deviation(first.before, counts);
+  series.after_adev_radps = gapped_deviation(first.held_out, counts);
   return series;
 }
 

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/search/search.h"
 
 namespace ifog {

@@ -80,9 +80,9 @@ Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, doub
   const BlockGrid& grid = data.grid;
   const std::vector<double>& values = data.channels[channel].values;
   Eigen::VectorXd loop(static_cast<Eigen::Index>(grid.size()));
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    double play = values[grid.starts[r] * grid.fine];
-    for (std::size_t b = grid.starts[r]; b < grid.starts[r + 1]; ++b) {
+  for (const BlockRange& record : grid.records) {
+    double play = values[grid.fine_steps(record).first];
+    for (std::size_t b = record.first; b < record.end; ++b) {
       double sum = 0.0;
       for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k) {
         play = std::clamp(play, values[k] - half_width, values[k] + half_width);
@@ -92,6 +92,17 @@ Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, doub
     }
   }
   return loop;
+}
+
+void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.channels[c].name != loop.channel) continue;
+    const Eigen::VectorXd column = hysteresis_loop(data, c, loop.half_width);
+    for (std::size_t b = 0; b < grid.size(); ++b) {
+      const auto row = static_cast<Eigen::Index>(b);
+      if (grid.valid[b]) grid.error[row] -= loop.coefficient * column[row];
+    }
+  }
 }
 
 std::vector<LoopFit> fit_loops(const BlockData& data, const std::vector<Candidate>& model,

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 
@@ -16,6 +16,9 @@ namespace ifog {
 // Hysteresis, 1989) when the channel itself is taken out: within half_width of zero, from block to block.
 // It starts at zero, as nothing says where the channel came from.
 Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, double half_width);
+
+// Takes a loop of the channel out of the error of the grid's valid blocks.
+void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid);
 
 struct LoopFit {
   std::size_t channel = Candidate::kNone;

@@ -5,8 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "filters/effects/meaning.h"
-
 namespace ifog {
 namespace {
 
@@ -56,9 +54,9 @@ double cycles_of(std::span<const double> values) {
 void leave_out_periodic(const BlockData& data, Lines& lines) {
   if (lines.slow.empty() && lines.fast.empty()) return;
   const BlockGrid& grid = data.grid;
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    const std::size_t from = grid.starts[r] * grid.fine;
-    const std::size_t steps = grid.starts[r + 1] * grid.fine - from;
+  for (std::size_t r = 0; r < grid.records.size(); ++r) {
+    const std::size_t from = grid.fine_steps(grid.records[r]).first;
+    const std::size_t steps = grid.fine_steps(grid.records[r]).size();
     const double span_s = static_cast<double>(steps) * grid.fine_s;
     for (const FineChannel& channel : data.channels) {
       if (!channel.varies) continue;
@@ -108,19 +106,50 @@ Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid
   return found;
 }
 
-FoundEffect line_effect(const SpectralLine& line, double total_variance) {
-  FoundEffect found;
-  Effect& effect = found.effect;
-  effect.form = "line";
-  effect.parameters = {{"cosine", line.cosine, line.std_error, "rad/s"},
-                       {"sine", line.sine, line.std_error, "rad/s"},
-                       {"frequency_hz", line.frequency_hz, line.frequency_std_hz, "Hz"}};
-  effect.meaning = meaning_of(effect);
-  found.p_value = line.p_value;
-  found.likelihood_ratio = 2.0 * line.ratio;
-  const double power = 0.5 * (line.cosine * line.cosine + line.sine * line.sine);
-  found.variance_explained = total_variance > 0.0 ? std::min(1.0, power / total_variance) : 0.0;
-  return found;
+std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
+                                               const std::vector<EvenError>& errors, double sample_s,
+                                               double significance) {
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    const std::vector<SpectralLine> peaks =
+        find_lines(errors[r].after, errors[r].start_s, sample_s, significance);
+    if (peaks.empty()) continue;
+    const std::vector<double> rate(rates[r].rate_radps.begin(), rates[r].rate_radps.end());
+    const std::vector<double> even = on_even_grid(rates[r], sample_s, rate);
+    if (auto moving = find_moving_line(errors[r].after, even, sample_s, peaks)) return moving;
+  }
+  return std::nullopt;
+}
+
+void leave_out_harmonics(const MovingLine& moving, Lines& lines) {
+  const auto harmonic = [&](double frequency) {
+    const double times = frequency / moving.frequency_hz;
+    return times > 0.5 && std::abs(times - std::round(times)) < 0.01 * std::max(1.0, times);
+  };
+  std::erase_if(lines.slow, [&](const Candidate& line) { return harmonic(line.frequency_hz); });
+  std::erase_if(lines.fast, [&](const FastLine& line) { return harmonic(line.line.frequency_hz); });
+}
+
+void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines) {
+  const double tries = 0.5 * static_cast<double>(samples);
+  std::vector<Candidate> kept;
+  for (std::size_t i = 0; i < lines.slow.size(); ++i) {
+    if (tries * std::exp(-0.5 * found.chosen[i].likelihood_ratio) < significance)
+      kept.push_back(lines.slow[i]);
+  }
+  lines.slow = std::move(kept);
+}
+
+void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors) {
+  for (const FastLine& fast : lines) {
+    EvenError& error = errors[fast.record];
+    for (std::size_t i = 0; i < error.rest.size(); ++i) {
+      const double phase =
+          2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * sample_s);
+      const double value = fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+      error.rest[i] -= value;
+      error.rest_held_out[i] -= value;
+    }
+  }
 }
 
 }  // namespace ifog

@@ -2,9 +2,13 @@
 // they are.
 #pragma once
 
-#include "filters/diagnosis/record/even_grid.h"
+#include <optional>
+
+#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/residual/lines.h"
+#include "filters/diagnosis/residual/moving_line.h"
+#include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 
@@ -25,6 +29,19 @@ void leave_out_periodic(const BlockData& data, Lines& lines);
 // Of what is left of each record's error.
 Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance);
 
-FoundEffect line_effect(const SpectralLine& line, double total_variance);
+// The first record's line that follows the rotation: the closed loop's own. rates: as measured.
+std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
+                                               const std::vector<EvenError>& errors, double sample_s,
+                                               double significance);
+
+// Fixed lines cannot stand for one that moves, nor for its harmonics.
+void leave_out_harmonics(const MovingLine& moving, Lines& lines);
+
+// Of the slow lines, which the search was given first, those that are still lines beside slow noise and
+// effects. samples: of all records.
+void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines);
+
+// Fast lines out of both rests of the errors, for good.
+void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors);
 
 }  // namespace ifog

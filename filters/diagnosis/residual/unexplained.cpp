@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -45,18 +46,12 @@ std::vector<double> energies(std::span<const double> left, std::size_t piece) {
 }
 
 // The level a piece's energy exceeds once in a hundred records of white noise, over the median of all pieces.
-// Mean squares of m differences of neighbours scatter like chi-square of 2/3 m degrees of freedom (Wilson and
-// Hilferty's approximation of its quantiles and its median).
+// Mean squares of m differences of neighbours scatter like chi-square of 2/3 m degrees of freedom.
 double burst_level(std::size_t piece, std::size_t pieces) {
   const double freedom = 2.0 / 3.0 * static_cast<double>(piece - 1);
   const double chance = 0.01 / static_cast<double>(pieces);
-  // Normal quantile of a small chance, Abramowitz and Stegun 26.2.23.
-  const double t = std::sqrt(-2.0 * std::log(chance));
-  const double z =
-      t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-  const double width = 2.0 / (9.0 * freedom);
-  const double level = std::pow(1.0 - width + z * std::sqrt(width), 3);
-  return std::max(6.0, level / std::pow(1.0 - width, 3));
+  const boost::math::chi_squared energy(freedom);
+  return std::max(6.0, quantile(complement(energy, chance)) / median(energy));
 }
 
 // By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
@@ -117,76 +112,65 @@ SlowRest slow_rest(std::span<const double> left, double period_s) {
   return found;
 }
 
-}  // namespace
+void describe_peak(const SpectralLine& peak, Unexplained& found) {
+  found.kind = "line";
+  found.frequency_hz = peak.frequency_hz;
+  found.hint = text(
+      "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
+      "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
+      peak.frequency_hz, peak.width_hz);
+}
 
-Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
-                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
-                                 const std::vector<SpectralLine>& peaks) {
-  Unexplained found;
-  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
-  const double before = variance_of(means_over(error, second));
-  const double after = variance_of(means_over(left, second));
-  const double white = noise.white_variance * grid.block_s / (static_cast<double>(second) * period_s);
-  found.fraction = before > 0.0 ? std::clamp((after - white) / before, 0.0, 1.0) : 0.0;
+// energy: of pieces of so many samples. False when there are none, or so many that they are the noise.
+bool describe_bursts(const std::vector<double>& energy, std::size_t piece, double start_s, double period_s,
+                     Unexplained& found) {
+  const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
+  const double level = heavy_level(over, burst_level(piece, energy.size()));
+  std::size_t bursts = 0;
+  std::size_t strongest = 0;
+  std::vector<double> times;
+  const auto time_of = [&](std::size_t i) { return start_s + static_cast<double>(i * piece) * period_s; };
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    if (over[i] < level) continue;
+    ++bursts;
+    if (over[i] > over[strongest]) strongest = i;
+    if (times.empty() || time_of(i) - times.back() > 2.0) times.push_back(time_of(i));
+  }
+  if (bursts == 0 || bursts * 10 >= over.size()) return false;
+  found.kind = "bursts";
+  found.hint = text(
+      "%zu bursts, the first at %.4g s, the strongest at %.5g s: knocks, radio keying or supply dips. "
+      "Log "
+      "an accelerometer and the supply at the sensor's own rate.",
+      times.size(), times.front(), time_of(strongest));
+  if (times.size() > 50) times.resize(50);
+  found.times_s = std::move(times);
+  return true;
+}
 
-  if (!peaks.empty()) {
-    const SpectralLine& peak = peaks.front();
-    found.kind = "line";
-    found.frequency_hz = peak.frequency_hz;
-    found.hint = text(
-        "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
-        "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
-        peak.frequency_hz, peak.width_hz);
-    return found;
+bool describe_changing_variance(const std::vector<double>& energy, Unexplained& found) {
+  const std::size_t part = energy.size() / 8;
+  double least = 1e300;
+  double most = 0.0;
+  for (std::size_t p = 0; p < 8; ++p) {
+    std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
+                                 energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
+    std::erase(measured, 0.0);  // gaps
+    if (2 * measured.size() < part || measured.empty()) continue;
+    const double typical = median(std::move(measured));
+    least = std::min(least, typical);
+    most = std::max(most, typical);
   }
-  const std::size_t piece = std::max<std::size_t>(8, second / 4);
-  const std::vector<double> energy = energies(left, piece);
-  if (energy.size() >= 16) {
-    const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
-    const double level = heavy_level(over, burst_level(piece, energy.size()));
-    std::size_t bursts = 0;
-    std::size_t strongest = 0;
-    const auto time_of = [&](std::size_t i) { return start_s + static_cast<double>(i * piece) * period_s; };
-    for (std::size_t i = 0; i < over.size(); ++i) {
-      if (over[i] < level) continue;
-      ++bursts;
-      if (over[i] > over[strongest]) strongest = i;
-      if (found.times_s.empty() || time_of(i) - found.times_s.back() > 2.0)
-        found.times_s.push_back(time_of(i));
-    }
-    if (bursts > 0 && bursts * 10 < over.size()) {
-      found.kind = "bursts";
-      found.hint = text(
-          "%zu bursts, the first at %.4g s, the strongest at %.5g s: knocks, radio keying or supply dips. "
-          "Log "
-          "an accelerometer and the supply at the sensor's own rate.",
-          found.times_s.size(), found.times_s.front(), time_of(strongest));
-      if (found.times_s.size() > 50) found.times_s.resize(50);
-      return found;
-    }
-    found.times_s.clear();
-    const std::size_t part = energy.size() / 8;
-    double least = 1e300;
-    double most = 0.0;
-    for (std::size_t p = 0; p < 8; ++p) {
-      std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
-                                   energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
-      std::erase(measured, 0.0);  // gaps
-      if (2 * measured.size() < part || measured.empty()) continue;
-      const double typical = median(std::move(measured));
-      least = std::min(least, typical);
-      most = std::max(most, typical);
-    }
-    if (most > 2.0 * least) {
-      found.kind = "changing_variance";
-      found.hint = text(
-          "the noise of single samples changes by a factor of %.2g in the course of the record: vibration, "
-          "light level or electronics. Log vibration, optical power and the supply.",
-          std::sqrt(most / std::max(least, 1e-300)));
-      return found;
-    }
-  }
-  const SlowRest slow = slow_rest(left, period_s);
+  if (!(most > 2.0 * least)) return false;
+  found.kind = "changing_variance";
+  found.hint = text(
+      "the noise of single samples changes by a factor of %.2g in the course of the record: vibration, "
+      "light level or electronics. Log vibration, optical power and the supply.",
+      std::sqrt(most / std::max(least, 1e-300)));
+  return true;
+}
+
+void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   if (slow.over_s > 0.0) {
     found.kind = "slow";
     found.hint = text(
@@ -203,7 +187,41 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
     found.kind = "nothing";
     found.hint = "what stays is white noise";
   }
+}
+
+}  // namespace
+
+Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
+                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
+                                 const std::vector<SpectralLine>& peaks) {
+  Unexplained found;
+  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
+  const double before = variance_of(means_over(error, second));
+  const double after = variance_of(means_over(left, second));
+  const double white = noise.white_variance * grid.block_s / (static_cast<double>(second) * period_s);
+  found.fraction = before > 0.0 ? std::clamp((after - white) / before, 0.0, 1.0) : 0.0;
+
+  if (!peaks.empty()) {
+    describe_peak(peaks.front(), found);
+    return found;
+  }
+  const std::size_t piece = std::max<std::size_t>(8, second / 4);
+  const std::vector<double> energy = energies(left, piece);
+  if (energy.size() >= 16) {
+    if (describe_bursts(energy, piece, start_s, period_s, found)) return found;
+    if (describe_changing_variance(energy, found)) return found;
+  }
+  describe_slow_rest(slow_rest(left, period_s), found);
   return found;
+}
+
+Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
+                          double significance) {
+  const EvenError& longest = longest_of(errors);
+  std::vector<SpectralLine> peaks;
+  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
+  return describe_unexplained(longest.before, longest.after, longest.start_s, grid.sample_s, noise, grid,
+                              peaks);
 }
 
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {

@@ -1,7 +1,8 @@
 // What stays, in words a person can act on.
 #pragma once
 
-#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/moving_line.h"
@@ -13,6 +14,10 @@ namespace ifog {
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
                                  const std::vector<SpectralLine>& peaks);
+
+// Of the longest record's error, peaks looked for in what is left (none on a rate table).
+Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
+                          double significance);
 
 // A line that follows the rotation, or a loop, takes the description's place.
 void describe_moving(const MovingLine& line, Unexplained& found);

@@ -2,23 +2,115 @@
 
 #include <algorithm>
 
+#include "filters/diagnosis/checks/chow_test.h"
+#include "filters/diagnosis/checks/cross_validation.h"
+#include "filters/diagnosis/checks/hausman_test.h"
+#include "filters/diagnosis/checks/outliers.h"
+#include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
 
 namespace ifog {
+namespace {
 
-SearchResult without_effect(const BlockData& data, const BlockData& clean, SearchResult found,
+constexpr double kWorse = 1.05;
+constexpr double kWorseSlowly = 1.2;
+constexpr double kOpposed = 2.5;     // standard deviations
+constexpr double kUnsteady = 16.27;  // chi-square of three degrees of freedom, 0.1 %
+constexpr double kUnsteadyShare = 0.2;
+
+// Slow noise that happens to run against the effects hides them in the raw error, and their removal lays it
+// bare. That is no reason to leave them out where noise as large as the model's does it now and then.
+bool slow_noise_may_oppose(const BlockData& reconstructed, const SearchResult& found) {
+  if (found.fitted.empty()) return true;
+  const Columns all = design(reconstructed, found.fitted);
+  const Eigen::Index k = reconstructed.grid.constants();
+  const Eigen::Index p = all.cols() - 1 - k;
+  Columns columns(all.rows(), k + 2);
+  columns << all.leftCols(1 + k), all.rightCols(p) * found.fitted_coefficients.tail(p);
+  const Eigen::VectorXd taken = Eigen::VectorXd::Ones(k + 1);
+  const Eigen::MatrixXd known = Eigen::MatrixXd::Zero(k + 1, k + 1);
+  return disagreement(reconstructed.grid, found.noise, columns, k, taken, known) < kOpposed;
+}
+
+// Index of the least certain effect that is corrected online; one past the last when there is none.
+std::size_t least_certain(const std::vector<Chosen>& chosen) {
+  std::size_t least = chosen.size();
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!carries_over(chosen[i].candidate.form)) continue;
+    if (least == chosen.size() || chosen[i].likelihood_ratio < chosen[least].likelihood_ratio) least = i;
+  }
+  return least;
+}
+
+}  // namespace
+
+void subtract_found(const BlockData& data, const SearchResult& found, std::vector<EvenError>& errors) {
+  subtract_effects(data, candidates_of(found.chosen), found.noise.shape, found.coefficients, errors);
+}
+
+SearchResult without_effect(const BlockData& data, const BlockData& reconstructed, SearchResult found,
                             std::size_t at) {
   found.chosen.erase(found.chosen.begin() + static_cast<std::ptrdiff_t>(at));
-  found.clean.erase(found.clean.begin() + static_cast<std::ptrdiff_t>(at));
+  found.fitted.erase(found.fitted.begin() + static_cast<std::ptrdiff_t>(at));
   std::erase_if(found.alternatives, [&](const Alternative& other) { return other.of == at; });
   for (Alternative& other : found.alternatives) other.of -= other.of > at ? 1 : 0;
-  for (std::size_t i = 0; i < found.chosen.size(); ++i) found.chosen[i].candidate = found.clean[i];
-  const Columns columns = design(clean, found.clean);
-  found.noise = fit_noise(clean.grid, columns);
-  found.coefficients = solve(clean.grid, found.noise.shape, columns, &found.covariance);
-  found.clean_coefficients = found.coefficients;
-  fit_to_readings(data, clean, found);
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) found.chosen[i].candidate = found.fitted[i];
+  const Columns columns = design(reconstructed, found.fitted);
+  found.noise = fit_noise(reconstructed.grid, columns);
+  found.coefficients = solve(reconstructed.grid, found.noise.shape, columns, &found.covariance);
+  found.fitted_coefficients = found.coefficients;
+  fit_to_readings(data, reconstructed, found);
   return found;
+}
+
+bool stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at, double significance) {
+  const NoiseShape& shape = found.noise.shape;
+  const double ratio = std::min(ratio_without_outliers(reconstructed, found.fitted, at, shape),
+                                ratio_in_changing_noise(reconstructed, found.fitted, at, shape));
+  if (tail(ratio, 1) * found.tries >= significance) return false;
+  if (reconstructed.grid.dwells) return true;  // there contiguous parts are held out in turn
+  const Unsteadiness unsteady = unsteadiness(reconstructed, found.fitted, at, shape);
+  return unsteady.square < kUnsteady || unsteady.share < kUnsteadyShare;
+}
+
+bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors) {
+  const auto grows = [&](double pieces, double most) {
+    double before = 0.0;
+    double after = 0.0;
+    for (const EvenError& error : errors) {
+      const auto count = std::max<std::size_t>(
+          1, static_cast<std::size_t>(static_cast<double>(error.before.size()) / pieces));
+      before += variance_of(means_over(error.before, count));
+      after += variance_of(means_over(error.held_out, count));
+    }
+    return after > most * before;
+  };
+  return !grows(2000.0, kWorse) &&
+         (!grows(20.0, kWorseSlowly) || slow_noise_may_oppose(reconstructed, found));
+}
+
+std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockData& reconstructed,
+                                            double significance, SearchResult& found,
+                                            std::vector<EvenError>& errors) {
+  std::vector<Effect> dropped;
+  const auto drop = [&](std::size_t i) {
+    dropped.push_back(effect_of(data, found.chosen[i].candidate));
+    found = without_effect(data, reconstructed, std::move(found), i);
+    subtract_found(data, found, errors);
+  };
+  for (std::size_t i = 0; i < found.fitted.size();) {
+    if (found.fitted[i].channel == Candidate::kNone || stands(reconstructed, found, i, significance))
+      ++i;
+    else
+      drop(i);
+  }
+  while (!holds(reconstructed, found, errors)) {
+    const std::size_t least = least_certain(found.chosen);
+    if (least == found.chosen.size()) break;
+    drop(least);
+  }
+  return dropped;
 }
 
 }  // namespace ifog

@@ -1,12 +1,32 @@
-// Takes effects back out of a search's result.
+// What a search chose, put to the proof by what it leaves of the error.
 #pragma once
 
+#include <vector>
+
+#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 
-// Without effect `at`, everything else fitted anew. clean: the reconstructed channels of `data`.
-SearchResult without_effect(const BlockData& data, const BlockData& clean, SearchResult found,
+// `after` and `held_out` of the errors as the chosen effects leave them.
+void subtract_found(const BlockData& data, const SearchResult& found, std::vector<EvenError>& errors);
+
+// Without effect `at`, everything else fitted anew. reconstructed: the reconstructed channels of `data`.
+SearchResult without_effect(const BlockData& data, const BlockData& reconstructed, SearchResult found,
                             std::size_t at);
+
+// Whether effect `at` is more than a few outliers, a change of the noise or one part of the record make up.
+bool stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at, double significance);
+
+// Whether the effects do not make the error on held-out data larger: what is quick, and what a heading is
+// made of, where chance has fewer pieces to average over. errors: as `found` leaves them.
+bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors);
+
+// Takes out of `found` every effect of a channel that does not stand, then, while the error on held-out data
+// does not hold, the least certain of those that are corrected online: effects that make it larger are no
+// model, whatever their p-values. `errors` follow. The effects dropped, in that order.
+std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockData& reconstructed,
+                                            double significance, SearchResult& found,
+                                            std::vector<EvenError>& errors);
 
 }  // namespace ifog

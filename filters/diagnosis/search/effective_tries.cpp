@@ -1,6 +1,7 @@
 #include "filters/diagnosis/search/effective_tries.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -26,7 +27,7 @@ std::pair<double, double> normal_pair(std::uint32_t draw, std::uint32_t place) {
 
 double tail(double ratio, int columns) {
   if (ratio <= 0.0) return 1.0;
-  return columns == 1 ? std::erfc(std::sqrt(ratio / 2.0)) : std::exp(-ratio / 2.0);
+  return cdf(complement(boost::math::chi_squared(columns), ratio));
 }
 
 double independent_columns(const Columns& projected) {
@@ -56,8 +57,8 @@ double independent_columns(const Columns& projected) {
 
 double independent_steps(const BlockGrid& grid, const NoiseShape& shape, double ratio) {
   double sum = 0.0;
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    const Eigen::VectorXd h = answer_to_step(grid, shape, r);
+  for (const BlockRange& record : grid.records) {
+    const Eigen::VectorXd h = answer_to_step(grid, shape, record);
     const Eigen::Index length = h.size();
     // A step at a later block answers with the same series, cut short: of lengths n and n - 1.
     double energy = h[0] * h[0];

@@ -11,11 +11,7 @@ constexpr double kLongest_s = 3600.0;
 constexpr double kLeastGain = 0.8;  // and what the change must leave of it
 
 Eigen::VectorXd centred(const BlockGrid& grid, Eigen::VectorXd values) {
-  for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-    auto part = values.segment(static_cast<Eigen::Index>(grid.starts[r]),
-                               static_cast<Eigen::Index>(grid.starts[r + 1] - grid.starts[r]));
-    part.array() -= part.mean();
-  }
+  centre_records(grid, values);
   return values;
 }
 
@@ -34,15 +30,16 @@ Match match(const BlockData& recorded, const Candidate& candidate, const Eigen::
 
 }  // namespace
 
-void fit_to_readings(const BlockData& recorded, const BlockData& clean, SearchResult& result) {
-  Eigen::Index at = static_cast<Eigen::Index>(recorded.grid.starts.size()) - 1;
+void fit_to_readings(const BlockData& recorded, const BlockData& reconstructed, SearchResult& result) {
+  Eigen::Index at = recorded.grid.constants();
   for (Chosen& chosen : result.chosen) {
     const Eigen::Index place = at;
     at += chosen.candidate.width();
     const bool memory = chosen.candidate.form == Form::kRate || chosen.candidate.form == Form::kSecondRate ||
                         chosen.candidate.form == Form::kLagged;
     if (!memory) continue;
-    const Eigen::VectorXd effect = centred(clean.grid, regressors(clean, chosen.candidate).col(0));
+    const Eigen::VectorXd effect =
+        centred(reconstructed.grid, regressors(reconstructed, chosen.candidate).col(0));
     const Match as_found = match(recorded, chosen.candidate, effect, false);
     if (as_found.left < kMatters) continue;
     Candidate best = chosen.candidate;

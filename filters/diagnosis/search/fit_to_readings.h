@@ -8,7 +8,7 @@
 namespace ifog {
 
 // Changes time constants, coefficients and covariance of what `result` chose where it matters, and leaves
-// everything else. recorded: the readings; clean: the reconstructed channels of the fit.
-void fit_to_readings(const BlockData& recorded, const BlockData& clean, SearchResult& result);
+// everything else. recorded: the readings; reconstructed: the reconstructed channels of the fit.
+void fit_to_readings(const BlockData& recorded, const BlockData& reconstructed, SearchResult& result);
 
 }  // namespace ifog

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/diagnosis/regression/projection.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/search.h"
 
@@ -63,16 +64,13 @@ Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseSha
   Columns all(fixed.rows(), fixed.cols() + candidates.cols());
   all << fixed, candidates;
   Whitening(data_.grid, shape).apply(all);
-  const Eigen::MatrixXd others = all.middleCols(1, fixed.cols() - 1);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(others);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(others.rows(), others.cols());
+  const Projection others(all.middleCols(1, fixed.cols() - 1));
   Projected projected;
   projected.y = all.col(0);
-  projected.y -= q * (q.transpose() * projected.y);
+  others.take_out_of(projected.y);
   projected.columns = all.rightCols(candidates.cols());
   const Eigen::RowVectorXd before = projected.columns.colwise().squaredNorm();
-  const Eigen::MatrixXd shadow = q.transpose() * projected.columns;
-  projected.columns.noalias() -= q * shadow;
+  others.take_out_of(projected.columns);
   // A column that the others make up to rounding says nothing of its own.
   for (Eigen::Index j = 0; j < candidates.cols(); ++j) {
     if (projected.columns.col(j).squaredNorm() < 1e-9 * before[j]) projected.columns.col(j).setZero();
@@ -127,10 +125,10 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
     NoiseShape shape = noise.shape;
     shape.walk *= share;
     const Projected p = project(base, shape, Columns(static_cast<Eigen::Index>(grid.size()), 0));
-    for (std::size_t r = 0; r + 1 < grid.starts.size(); ++r) {
-      const auto from = static_cast<Eigen::Index>(grid.starts[r]);
-      const auto length = static_cast<Eigen::Index>(grid.starts[r + 1]) - from;
-      const Eigen::VectorXd h = answer_to_step(grid, shape, r);
+    for (std::size_t r = 0; r < grid.records.size(); ++r) {
+      const Eigen::Index from = grid.records[r].row();
+      const Eigen::Index length = grid.records[r].rows();
+      const Eigen::VectorXd h = answer_to_step(grid, shape, grid.records[r]);
       Eigen::VectorXd energy(length);
       double sum = 0.0;
       for (Eigen::Index k = 0; k < length; ++k) energy[k] = sum += h[k] * h[k];

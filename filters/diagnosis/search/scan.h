@@ -28,7 +28,7 @@ class Scan {
   // Further candidates; those of a shape that is there already are passed over.
   void add(const std::vector<Candidate>& more);
 
-  // So many independent tries the library amounts to, beside `base`; see tries.h.
+  // So many independent tries the library amounts to, beside `base`; see effective_tries.h.
   [[nodiscard]] double independent(const std::vector<Candidate>& base, const NoiseShape& shape) const;
 
   // thorough: the full spread of noise models; otherwise a few of them.

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "filters/diagnosis/checks/proof.h"
-#include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/diagnosis/search/refine.h"
@@ -26,9 +25,9 @@ bool is_event(const Candidate& candidate) {
   return candidate.form == Form::kLine || candidate.form == Form::kStep;
 }
 
-class Loop {
+class EffectSearch {
  public:
-  Loop(const BlockData& data, const SearchOptions& options)
+  EffectSearch(const BlockData& data, const SearchOptions& options)
       : data_(data), options_(options), scan_(data, library(data)), model_(options.given) {}
 
   SearchResult run() {
@@ -135,7 +134,8 @@ class Loop {
 
   [[nodiscard]] bool proven(const Trial& trial) const {
     const Claimed claimed{trial.model, trial.noise};
-    return trial.model.back().form == Form::kStep ? stays(data_, claimed) : predicts(data_, claimed);
+    return trial.model.back().form == Form::kStep ? step_persists(data_, claimed)
+                                                  : predicts_held_out(data_, claimed);
   }
 
   // Judged when all effects are in: one of two that oppose each other makes the error larger until the other
@@ -147,7 +147,7 @@ class Loop {
       std::vector<Candidate> ordered = rest;
       ordered.push_back(model_[i]);
       const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      if (holds_for_slow(data_, {ordered, noise_}, {rest, without})) {
+      if (agrees_with_plain_fit(data_, {ordered, noise_}, {rest, without})) {
         ++i;
         continue;
       }
@@ -322,12 +322,19 @@ class Loop {
 
 }  // namespace
 
-SearchResult search_effects(const BlockData& data, const SearchOptions& options) {
-  const BlockData clean = with_reconstructed_channels(data);
-  SearchResult result = Loop(clean, options).run();
-  for (const Chosen& chosen : result.chosen) result.clean.push_back(chosen.candidate);
-  result.clean_coefficients = result.coefficients;
-  fit_to_readings(data, clean, result);
+std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen) {
+  std::vector<Candidate> candidates;
+  candidates.reserve(chosen.size());
+  for (const Chosen& each : chosen) candidates.push_back(each.candidate);
+  return candidates;
+}
+
+SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
+                            const SearchOptions& options) {
+  SearchResult result = EffectSearch(reconstructed, options).run();
+  result.fitted = candidates_of(result.chosen);
+  result.fitted_coefficients = result.coefficients;
+  fit_to_readings(data, reconstructed, result);
   return result;
 }
 

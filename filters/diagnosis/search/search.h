@@ -1,4 +1,4 @@
-// The loop of the diagnosis: score every candidate in the innovations of the noise model, take the one that
+// The search of the diagnosis: score every candidate in the innovations of the noise model, take the one that
 // also predicts held-out blocks, fit everything anew, until nothing passes.
 #pragma once
 
@@ -31,11 +31,14 @@ struct SearchResult {
   Eigen::VectorXd
       coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
   Eigen::MatrixXd covariance;  // of those
-  // The same as the search had them, of what the channels were; the ones above are of what was read.
-  std::vector<Candidate> clean;
-  Eigen::VectorXd clean_coefficients;
+  // The same as the search fitted them to reconstructed channels; the ones above are brought to what was
+  // read.
+  std::vector<Candidate> fitted;
+  Eigen::VectorXd fitted_coefficients;
   double tries = 1.0;  // independent ones of a channel's effect, over their share of the significance
 };
+
+std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen);
 
 struct SearchOptions {
   double significance = 0.01;
@@ -44,6 +47,8 @@ struct SearchOptions {
   std::vector<Candidate> given;  // lines, found elsewhere; in the fit from the start
 };
 
-SearchResult search_effects(const BlockData& data, const SearchOptions& options);
+// data: channels as read; reconstructed: as with_reconstructed_channels() makes them of it.
+SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
+                            const SearchOptions& options);
 
 }  // namespace ifog

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "filters/diagnosis/report/prediction.h"
-#include "filters/effects/compensator.h"
+#include "filters/effects/compensate_series.h"
 #include "filters/effects/form.h"
 
 namespace ifog::undeclared {
@@ -14,22 +14,15 @@ using Series = std::vector<double>;
 
 Series correction(const Model& model, const Capture& capture) {
   Compensator compensator(model, {""});
-  std::vector<const Series*> columns;
+  SeriesToCompensate series{capture.time_s, {capture.rate_radps[0]}, {}};
   for (const std::string& name : compensator.channels())
     for (const CaptureColumn& c : capture.channels)
-      if (c.name == name) columns.push_back(&c.values);
-  Series out(capture.size()), now(columns.size());
-  CompensatorInput in;
-  CompensatorOutput result;
-  in.dt_s = capture.time_s[1] - capture.time_s[0];
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    for (std::size_t c = 0; c < now.size(); ++c) now[c] = (*columns[c])[k];
-    in.channels = now;
-    in.rate_radps[0] = capture.rate_radps[0][k];
-    compensator.step(in, result);
-    out[k] = result.correction_radps[0];
-  }
-  return out;
+      if (c.name == name) series.channels.emplace_back(c.values);
+  Series subtracted(capture.size());
+  compensate_series(compensator, series, [&](std::size_t k, const CompensatorOutput& out) {
+    subtracted[k] = out.correction_radps[0];
+  });
+  return subtracted;
 }
 
 // A line's phase and a step's moment belong to the captures diagnosed; the daemon has no use for them.

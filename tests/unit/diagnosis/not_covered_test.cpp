@@ -20,7 +20,7 @@ BlockData quiet(std::uint64_t seed, double noise_from_half = 1.0) {
   BlockData data;
   BlockGrid& grid = data.grid;
   grid.block_s = grid.fine_s = grid.sample_s = 1.0;
-  grid.starts = {0, kBlocks};
+  grid.records = {{0, kBlocks}};
   grid.valid.assign(kBlocks, 1);
   grid.error.resize(static_cast<Eigen::Index>(kBlocks));
   FineChannel channel;

@@ -24,7 +24,7 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
 BlockGrid even_grid(std::size_t n) {
   BlockGrid grid;
   grid.block_s = grid.fine_s = grid.sample_s = 1.0;
-  grid.starts = {0, n};
+  grid.records = {{0, n}};
   grid.valid.assign(n, 1);
   for (std::size_t i = 0; i < n; ++i) grid.time_s.push_back(static_cast<double>(i));
   return grid;
@@ -38,7 +38,7 @@ TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
     truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
     read.push_back(std::round(truth.back() + noise(random)));
   }
-  const Reconstruction found = reconstructed(read);
+  const Reconstruction found = reconstruct(read);
   EXPECT_TRUE(found.smooth);
   EXPECT_GT(rms_difference(read, truth), 0.25);
   EXPECT_LT(rms_difference(found.values, truth), 0.1);
@@ -52,7 +52,7 @@ TEST(Reconstruct, ReadingNoiseOfASmoothChannelIsSmoothedAway) {
     truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
     read.push_back(truth.back() + noise(random));
   }
-  const Reconstruction found = reconstructed(read);
+  const Reconstruction found = reconstruct(read);
   EXPECT_TRUE(found.smooth);
   EXPECT_LT(rms_difference(found.values, truth), 0.0025);
 }
@@ -69,7 +69,7 @@ TEST(Reconstruct, ARampBetweenSoaksKeepsItsKinks) {
     truth.push_back(filtered);
     read.push_back(truth.back() + noise(random));
   }
-  const Reconstruction found = reconstructed(read);
+  const Reconstruction found = reconstruct(read);
   EXPECT_TRUE(found.smooth);
   EXPECT_LT(rms_difference(found.values, truth), 0.003);
 }
@@ -88,7 +88,7 @@ TEST(Reconstruct, WhatJumpsOrJittersStaysAsItWasRead) {
     walk.push_back(place + 0.002 * noise(random));
   }
   for (const std::vector<double>& channel : {jumps, walk}) {
-    const Reconstruction found = reconstructed(channel);
+    const Reconstruction found = reconstruct(channel);
     EXPECT_FALSE(found.smooth);
     EXPECT_EQ(found.values, channel);
     EXPECT_FALSE(stands_still(channel));
@@ -107,16 +107,16 @@ TEST(Reconstruct, ReadingNoiseAloneIsStandingStill) {
   EXPECT_EQ(moving, 0);
 }
 
-// A derivative found on a clean temperature, for a daemon whose thermometer reads whole degrees.
+// A derivative found on a smooth temperature, for a daemon whose thermometer reads whole degrees.
 TEST(OnlineTwin, WidensTheBandwidthUntilStepsOfTheReadingDoNotShow) {
-  BlockData clean;
-  clean.grid = even_grid(4000);
+  BlockData reconstructed;
+  reconstructed.grid = even_grid(4000);
   FineChannel channel;
   channel.name = "temperature_degC";
   for (int i = 0; i < 4000; ++i) channel.values.push_back(25.3 + 8.0 * std::sin(2.0 * M_PI * i / 2000.0));
   channel.varies = true;
-  clean.channels = {channel};
-  BlockData recorded = clean;
+  reconstructed.channels = {channel};
+  BlockData recorded = reconstructed;
   for (double& value : recorded.channels[0].values) value = std::round(value);
 
   SearchResult found;
@@ -129,13 +129,13 @@ TEST(OnlineTwin, WidensTheBandwidthUntilStepsOfTheReadingDoNotShow) {
   found.covariance = Eigen::Matrix2d::Identity();
 
   SearchResult same = found;
-  fit_to_readings(clean, clean, same);
+  fit_to_readings(reconstructed, reconstructed, same);
   EXPECT_EQ(same.chosen[0].candidate.time_constant_s, 10.0);
   EXPECT_EQ(same.coefficients[1], 2.0);
 
   SearchResult twin = found;
-  fit_to_readings(recorded, clean, twin);
-  const Eigen::VectorXd wanted = 2.0 * regressors(clean, rate).col(0);
+  fit_to_readings(recorded, reconstructed, twin);
+  const Eigen::VectorXd wanted = 2.0 * regressors(reconstructed, rate).col(0);
   const double as_found = (2.0 * regressors(recorded, rate).col(0) - wanted).norm();
   const double adapted =
       (twin.coefficients[1] * regressors(recorded, twin.chosen[0].candidate).col(0) - wanted).norm();

@@ -72,14 +72,14 @@ Fitted fitted(const Trial& trial) {
   found.noise = fit_noise(data.grid, columns);
   found.coefficients = solve(data.grid, found.noise.shape, columns, &found.covariance);
   Fitted fit;
-  found.clean = {lagged};
-  found.clean_coefficients = found.coefficients;
+  found.fitted = {lagged};
+  found.fitted_coefficients = found.coefficients;
   fit.joint = settle(data, data, found);
   Findings findings = findings_of(data, data, found, fit.joint, "");
   fit.diagnosis.effects = findings.effects;
   fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, 1, 1);
   fit.diagnosis.ranges = ranges_of(data, findings.effects);
-  fit.diagnosis.belief = fit.joint.noise;
+  fit.diagnosis.noise_posterior = fit.joint.noise;
   return fit;
 }
 

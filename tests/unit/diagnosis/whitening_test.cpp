@@ -15,7 +15,7 @@ BlockGrid even_grid(std::size_t n) {
   BlockGrid grid;
   grid.block_s = 1.0;
   grid.fine_s = 1.0;
-  grid.starts = {0, n};
+  grid.records = {{0, n}};
   grid.valid.assign(n, 1);
   for (std::size_t i = 0; i < n; ++i) grid.time_s.push_back(static_cast<double>(i));
   grid.sample_s = 1.0;
@@ -91,11 +91,11 @@ TEST(NoiseFit, FindsTheWalkItWasGiven) {
 TEST(Prediction, IsTheClosedFormOfWhiteNoiseAndWalk) {
   const double aligned = 200.0;
   const double horizon = 3600.0;
-  NoiseBelief white;
+  NoisePosterior white;
   white.parts = {{.weight = 1.0, .white = 4.0}};
   const double angle = std::sqrt(heading_variance(white, aligned, horizon));
   EXPECT_NEAR(angle, 2.0 * std::sqrt(horizon + horizon * horizon / aligned), 1e-6);
-  NoiseBelief walk;
+  NoisePosterior walk;
   walk.parts = {{.weight = 0.5, .walk = 0.5}, {.weight = 0.5, .walk = 1.5}};
   const double expected = std::sqrt(horizon * horizon * horizon / 3.0 + horizon * horizon * aligned / 3.0);
   EXPECT_NEAR(std::sqrt(heading_variance(walk, aligned, horizon)), expected, 2e-3 * expected);

@@ -14,7 +14,7 @@
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/diagnosis/diagnose.h"
-#include "filters/effects/compensator.h"
+#include "filters/effects/compensate_series.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
@@ -48,7 +48,7 @@ std::string today() {
 // The model's own effects are subtracted first, by the code that subtracts them online.
 void compensate(Capture& capture, const Model& model) {
   Compensator compensator(model, capture.axes);
-  std::vector<const CaptureColumn*> columns;
+  SeriesToCompensate series{capture.time_s, {capture.rate_radps.begin(), capture.rate_radps.end()}, {}};
   for (const std::string& name : compensator.channels()) {
     const CaptureColumn* found = nullptr;
     for (const CaptureColumn& column : capture.channels) {
@@ -57,19 +57,11 @@ void compensate(Capture& capture, const Model& model) {
     if (!found)
       throw std::runtime_error("the model wants channel " + in_quotes(name) +
                                ", which the capture does not have");
-    columns.push_back(found);
+    series.channels.emplace_back(found->values);
   }
-  CompensatorInput in;
-  CompensatorOutput out;
-  std::vector<double> values(columns.size());
-  for (std::size_t i = 0; i < capture.size(); ++i) {
-    in.dt_s = i ? capture.time_s[i] - capture.time_s[i - 1] : capture.time_s[1] - capture.time_s[0];
-    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c]->values[i];
-    in.channels = values;
-    for (std::size_t a = 0; a < capture.axes.size(); ++a) in.rate_radps[a] = capture.rate_radps[a][i];
-    compensator.step(in, out);
+  compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& out) {
     for (std::size_t a = 0; a < capture.axes.size(); ++a) capture.rate_radps[a][i] = out.compensated_radps[a];
-  }
+  });
 }
 
 Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {

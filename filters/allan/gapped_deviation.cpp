@@ -1,0 +1,62 @@
+#include "filters/allan/gapped_deviation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "filters/allan/deviation.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Running sums, above the first value there is, and numbers of values.
+struct GappedSum {
+  std::vector<double> sum, there;
+
+  explicit GappedSum(std::span<const double> rate) : sum(rate.size() + 1, 0.0), there(rate.size() + 1, 0.0) {
+    const auto first = std::find_if(rate.begin(), rate.end(), [](double v) { return std::isfinite(v); });
+    const double offset = first == rate.end() ? 0.0 : *first;
+    for (std::size_t i = 0; i < rate.size(); ++i) {
+      const bool finite = std::isfinite(rate[i]);
+      sum[i + 1] = sum[i] + (finite ? rate[i] - offset : 0.0);
+      there[i + 1] = there[i] + (finite ? 1.0 : 0.0);
+    }
+  }
+
+  [[nodiscard]] double deviation(std::size_t m) const {
+    double square = 0.0;
+    double n = 0.0;
+    const double least = 0.5 * static_cast<double>(m);
+    for (std::size_t i = 0; i + 2 * m < sum.size(); ++i) {
+      const double one = there[i + m] - there[i];
+      const double other = there[i + 2 * m] - there[i + m];
+      if (one < least || other < least) continue;
+      const double d = (sum[i + 2 * m] - sum[i + m]) / other - (sum[i + m] - sum[i]) / one;
+      square += d * d;
+      n += 1.0;
+    }
+    return n > 0.0 ? std::sqrt(0.5 * square / n) : kMissing;
+  }
+};
+
+}  // namespace
+
+std::vector<double> gapped_deviation(std::span<const double> rate_radps, std::span<const std::size_t> m) {
+  std::vector<double> found;
+  if (std::all_of(rate_radps.begin(), rate_radps.end(), [](double v) { return std::isfinite(v); })) {
+    const std::vector<Stretch> whole = {{0, rate_radps.size()}};
+    for (const DeviationPoint& point : deviation(AngleSum(rate_radps, whole), m, Deviation::kAllan, 1))
+      found.push_back(std::sqrt(point.variance));
+  } else {
+    const GappedSum sums(rate_radps);
+    for (const std::size_t each : m) found.push_back(sums.deviation(each));
+  }
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    if (rate_radps.size() < 3 * m[i]) found[i] = kMissing;
+  }
+  return found;
+}
+
+}  // namespace ifog

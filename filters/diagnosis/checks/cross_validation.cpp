@@ -1,0 +1,106 @@
+#include "filters/diagnosis/checks/cross_validation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/diagnosis/regression/projection.h"
+
+namespace ifog {
+namespace {
+
+constexpr int kFolds = 4;
+constexpr int kDwellFolds = 10;
+
+int fold_count(const BlockGrid& grid) { return grid.dwells ? kDwellFolds : kFolds; }
+
+std::vector<int> fold_of_block(const BlockGrid& grid) {
+  return grid.dwells ? folds_of(grid, kDwellFolds, 1) : folds_of(grid, kFolds);
+}
+
+// Least squares of the measurement on what is left of the regressors without one fold.
+Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int held_out) {
+  const Eigen::Index p = white.cols() - 1;
+  const Eigen::VectorXd full = white.rightCols(p).colwise().norm().transpose().cwiseMax(1e-300);
+  for (Eigen::Index i = 0; i < white.rows(); ++i) {
+    if (fold[static_cast<std::size_t>(i)] == held_out) white.row(i).setZero();
+  }
+  const Columns x = white.rightCols(p);
+  // What happened in the held-out fold alone, the others cannot know: no coefficient.
+  Eigen::VectorXd scale = x.colwise().norm().transpose();
+  for (Eigen::Index j = 0; j < p; ++j) scale[j] = scale[j] > 1e-3 * full[j] ? 1.0 / scale[j] : 0.0;
+  const Eigen::MatrixXd scaled = x * scale.asDiagonal();
+  const Eigen::VectorXd c =
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(scaled).solve(white.col(0));
+  return scale.asDiagonal() * c;
+}
+
+// Linear between the middles of a record's blocks; `at` counts from the first of them.
+double between(const Eigen::VectorXd& values, const BlockRange& record, double at) {
+  const auto first = static_cast<double>(record.first);
+  const auto last = static_cast<double>(record.end - 1);
+  const double place = std::clamp(first + at, first, last);
+  const auto low = static_cast<Eigen::Index>(std::floor(place));
+  const auto high = std::min(low + 1, static_cast<Eigen::Index>(last));
+  const double share = place - std::floor(place);
+  return values[low] + share * (values[high] - values[low]);
+}
+
+// By block, each from the coefficients of the others' folds. Each fold's fit has a constant of its own:
+// without it a channel far from zero would step from fold to fold.
+Eigen::VectorXd held_out_effects(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns) {
+  const std::vector<Eigen::VectorXd> coefficients = coefficients_without_each_fold(grid, shape, columns);
+  const std::vector<int> fold = fold_of_block(grid);
+  Columns centred = columns.rightCols(columns.cols() - 1 - grid.constants());
+  centre_records(grid, centred);
+  Eigen::VectorXd effects(columns.rows());
+  for (Eigen::Index b = 0; b < effects.size(); ++b) {
+    const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
+    effects[b] = centred.row(b).dot(coefficients[held_out]);
+  }
+  return effects;
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
+                                                            const Columns& columns) {
+  // Whitened on all blocks, then fitted on the rows of the others: a fold is left out of the fit, not cut
+  // out of the filter, which would start anew behind every gap. The constants are projected out on all
+  // blocks.
+  Columns white = columns;
+  Whitening(grid, shape).apply(white);
+  const Eigen::Index k = grid.constants();
+  Columns others(white.rows(), white.cols() - k);
+  others << white.col(0), white.rightCols(white.cols() - 1 - k);
+  Projection(white.middleCols(1, k)).take_out_of(others);
+  const std::vector<int> fold = fold_of_block(grid);
+  std::vector<Eigen::VectorXd> coefficients;
+  for (int f = 0; f < fold_count(grid); ++f) coefficients.push_back(without_fold(others, fold, f));
+  return coefficients;
+}
+
+void subtract_effects(const BlockData& data, const std::vector<Candidate>& effects, const NoiseShape& shape,
+                      const Eigen::VectorXd& coefficients, std::vector<EvenError>& errors) {
+  const BlockGrid& grid = data.grid;
+  const Columns columns = design(data, effects);
+  const Eigen::Index p = columns.cols() - 1 - grid.constants();
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(columns.rows());
+  Eigen::VectorXd held_out = all;
+  if (p > 0) {
+    all = columns.rightCols(p) * coefficients.tail(p);
+    held_out = held_out_effects(grid, shape, columns);
+  }
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    EvenError& error = errors[r];
+    error.after = error.rest;
+    error.held_out = error.rest_held_out;
+    for (std::size_t i = 0; i < error.after.size(); ++i) {
+      const double at =
+          static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
+      error.after[i] -= between(all, grid.records[r], at);
+      error.held_out[i] -= between(held_out, grid.records[r], at);
+    }
+  }
+}
+
+}  // namespace ifog

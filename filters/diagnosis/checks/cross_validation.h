@@ -1,0 +1,22 @@
+// Cross-validation: the effects subtracted from the errors, by coefficients of all blocks and by those that
+// were fitted without the block's own part of the record.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/record/even_error.h"
+#include "filters/diagnosis/regression/design.h"
+
+namespace ifog {
+
+// Coefficients of the effects' columns for each part that is held out in turn, from the blocks of the others.
+// Zero for what happened in the held-out part alone. Of a rate table ten contiguous parts; of a time series
+// four, of pieces in turn, so that slow channels are seen by all.
+std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
+                                                            const Columns& columns);
+
+// `after` and `held_out` of each error from its rests. coefficients: of all blocks, the constants first.
+void subtract_effects(const BlockData& data, const std::vector<Candidate>& effects, const NoiseShape& shape,
+                      const Eigen::VectorXd& coefficients, std::vector<EvenError>& errors);
+
+}  // namespace ifog

@@ -1,0 +1,34 @@
+// One capture of the sensor, as a diagnosis takes it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ifog {
+
+// The caller keeps the arrays alive; all are as long as time_s.
+struct RecordChannel {
+  std::string name;                // the capture's column, NAME_UNIT
+  std::span<const double> values;  // NaN: missing, held
+};
+
+struct Record {
+  std::string name;
+  std::span<const double> time_s;             // strictly increasing
+  std::span<const double> rate_radps;         // NaN: missing
+  std::span<const double> reference_radps{};  // empty: none; then the true rate is taken as constant
+  std::string reference_name = "reference_rate_radps";
+  std::vector<RecordChannel> channels;
+};
+
+// Of the channel of that name; empty when the record has none.
+inline std::span<const double> values_of(const Record& record, std::string_view name) {
+  for (const RecordChannel& channel : record.channels) {
+    if (channel.name == name) return channel.values;
+  }
+  return {};
+}
+
+}  // namespace ifog

@@ -1,0 +1,19 @@
+#include "filters/diagnosis/record/compensated_error.h"
+
+#include "filters/effects/compensate_series.h"
+
+namespace ifog {
+
+std::vector<double> compensated_error(const Record& record, const Model& model) {
+  Compensator compensator(model, {""});
+  SeriesToCompensate series{record.time_s, {record.rate_radps}, {}};
+  for (const std::string& name : compensator.channels()) series.channels.push_back(values_of(record, name));
+  std::vector<double> error(record.time_s.size());
+  compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& out) {
+    error[i] = out.compensated_radps[0];
+    if (!record.reference_radps.empty()) error[i] -= record.reference_radps[i];
+  });
+  return error;
+}
+
+}  // namespace ifog

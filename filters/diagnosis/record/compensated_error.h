@@ -1,0 +1,15 @@
+// The error of a record that the daemon's own correction leaves.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/record.h"
+#include "filters/model_file/model.h"
+
+namespace ifog {
+
+// Rate less the model's effects, causally and with their lags settled as they would be online, less the
+// reference if there is one; by sample. The model's effects name no axis. Throws as Compensator does.
+std::vector<double> compensated_error(const Record& record, const Model& model);
+
+}  // namespace ifog

@@ -1,0 +1,43 @@
+#include "filters/diagnosis/record/even_error.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace ifog {
+
+std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
+                                   double sample_s) {
+  std::vector<EvenError> errors;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    EvenError error;
+    error.start_s = records[r].time_s.front();
+    std::vector<double> held_out = error_of(records[r]);
+    error.before = on_even_grid(records[r], sample_s, held_out);
+    error.rest = on_even_grid(records[r], sample_s, error_of(without.records[r]));
+    for (const RampFit& ramp : without.ramps) {
+      for (std::size_t i = 0; i < held_out.size(); ++i) held_out[i] -= ramp.held_out[r][i];
+    }
+    error.rest_held_out = on_even_grid(records[r], sample_s, held_out);
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+const EvenError& longest_of(const std::vector<EvenError>& errors) {
+  return *std::max_element(errors.begin(), errors.end(), [](const EvenError& a, const EvenError& b) {
+    return a.before.size() < b.before.size();
+  });
+}
+
+void refuse_constant(const std::vector<Record>& records) {
+  for (const Record& record : records) {
+    const std::vector<double> error = error_of(record);
+    const double first = error.empty() ? 0.0 : error.front();
+    if (!std::all_of(error.begin(), error.end(), [&](double value) { return value == first; })) return;
+  }
+  throw std::invalid_argument(records.front().name +
+                              ": the rate, less the reference if there is one, never changes; expected "
+                              "measurements");
+}
+
+}  // namespace ifog

@@ -1,0 +1,32 @@
+// The error of every record on its nominal grid, and what of it is explained so far.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/ramp.h"
+
+namespace ifog {
+
+// Of one record; NaN where no sample is.
+struct EvenError {
+  double start_s = 0.0;
+  std::vector<double> before;         // rate - reference
+  std::vector<double> rest;           // less ramps, and later lines: what effects are sought in
+  std::vector<double> rest_held_out;  // the same, less ramps as fitted without the sample's own part
+  std::vector<double> after;          // less the effects, too
+  std::vector<double> held_out;  // less the effects as fitted without the sample's own part of the record
+};
+
+// after and held_out: still empty. Throws as on_even_grid() does.
+std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
+                                   double sample_s);
+
+// Of the record with the most steps; at least one.
+const EvenError& longest_of(const std::vector<EvenError>& errors);
+
+// A stuck device, or a placeholder: rounding would be all there is to explain. Throws std::invalid_argument
+// when the error is the same number all along every record.
+void refuse_constant(const std::vector<Record>& records);
+
+}  // namespace ifog

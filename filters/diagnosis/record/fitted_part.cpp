@@ -1,0 +1,35 @@
+#include "filters/diagnosis/record/fitted_part.h"
+
+#include <algorithm>
+
+namespace ifog {
+
+SampleRange samples_in(const Record& record, const TimeShare& share) {
+  const double start = record.time_s.front();
+  const double span = record.time_s.back() - start;
+  const auto at = [&](double fraction) {
+    const auto place = std::lower_bound(record.time_s.begin(), record.time_s.end(), start + fraction * span);
+    return static_cast<std::size_t>(place - record.time_s.begin());
+  };
+  return {at(share.from), share.to >= 1.0 ? record.time_s.size() : at(share.to)};
+}
+
+Record part_of(const Record& record, const SampleRange& samples) {
+  Record part = record;
+  part.time_s = record.time_s.subspan(samples.from, samples.size());
+  part.rate_radps = record.rate_radps.subspan(samples.from, samples.size());
+  if (!record.reference_radps.empty())
+    part.reference_radps = record.reference_radps.subspan(samples.from, samples.size());
+  for (RecordChannel& channel : part.channels)
+    channel.values = channel.values.subspan(samples.from, samples.size());
+  return part;
+}
+
+std::vector<Record> fitted_parts(const std::vector<Record>& records, const TimeShare& share) {
+  std::vector<Record> parts;
+  parts.reserve(records.size());
+  for (const Record& record : records) parts.push_back(part_of(record, samples_in(record, share)));
+  return parts;
+}
+
+}  // namespace ifog

@@ -1,0 +1,18 @@
+#include "filters/diagnosis/regression/projection.h"
+
+namespace ifog {
+
+Projection::Projection(const Eigen::MatrixXd& columns)
+    : basis_(Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
+             Eigen::MatrixXd::Identity(columns.rows(), columns.cols())) {}
+
+void Projection::take_out_of(Eigen::VectorXd& values) const {
+  values -= basis_ * (basis_.transpose() * values);
+}
+
+void Projection::take_out_of(Columns& values) const {
+  const Eigen::MatrixXd shadow = basis_.transpose() * values;
+  values.noalias() -= basis_ * shadow;
+}
+
+}  // namespace ifog

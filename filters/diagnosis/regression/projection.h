@@ -1,0 +1,22 @@
+// Takes columns out of others: what ordinary least squares on them leaves.
+#pragma once
+
+#include "filters/diagnosis/regression/whitening.h"
+
+namespace ifog {
+
+class Projection {
+ public:
+  // columns: independent of each other, no more of them than rows (Householder QR; what they span is what is
+  // taken out).
+  explicit Projection(const Eigen::MatrixXd& columns);
+
+  // In place; as many rows as the columns have.
+  void take_out_of(Eigen::VectorXd& values) const;
+  void take_out_of(Columns& values) const;
+
+ private:
+  Eigen::MatrixXd basis_;  // orthonormal
+};
+
+}  // namespace ifog

@@ -1,0 +1,13 @@
+// The figures of the error before and after, pooled over the records.
+#pragma once
+
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/even_error.h"
+
+namespace ifog {
+
+// `before` and `after` of the diagnosis, the latter less the effects as fitted without each sample's own
+// part.
+void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, Diagnosis& diagnosis);
+
+}  // namespace ifog

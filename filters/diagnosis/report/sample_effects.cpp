@@ -1,0 +1,52 @@
+#include "filters/diagnosis/report/sample_effects.h"
+
+#include <algorithm>
+
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+FoundEffect ramp_effect(const RampFit& ramp, const std::vector<EvenError>& errors) {
+  FoundEffect found;
+  found.effect = ramp.effect;
+  found.p_value = ramp.p_value;
+  found.likelihood_ratio = ramp.ratio;
+  double explained = 0.0;
+  double total = 0.0;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    explained += variance_of(ramp.correction[r]);
+    total += variance_of(errors[r].before);
+  }
+  found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+  return found;
+}
+
+FoundEffect line_effect(const SpectralLine& line, double total_variance) {
+  FoundEffect found;
+  Effect& effect = found.effect;
+  effect.form = "line";
+  effect.parameters = {{"cosine", line.cosine, line.std_error, "rad/s"},
+                       {"sine", line.sine, line.std_error, "rad/s"},
+                       {"frequency_hz", line.frequency_hz, line.frequency_std_hz, "Hz"}};
+  effect.meaning = meaning_of(effect);
+  found.p_value = line.p_value;
+  found.likelihood_ratio = 2.0 * line.ratio;
+  const double power = 0.5 * (line.cosine * line.cosine + line.sine * line.sine);
+  found.variance_explained = total_variance > 0.0 ? std::min(1.0, power / total_variance) : 0.0;
+  return found;
+}
+
+}  // namespace
+
+std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps, const std::vector<FastLine>& lines,
+                                        const std::vector<EvenError>& errors, const std::string& axis) {
+  std::vector<FoundEffect> found;
+  for (const RampFit& ramp : ramps) found.push_back(ramp_effect(ramp, errors));
+  for (const FastLine& fast : lines)
+    found.push_back(line_effect(fast.line, variance_of(errors[fast.record].before)));
+  for (FoundEffect& each : found) each.effect.axis = axis;
+  return found;
+}
+
+}  // namespace ifog

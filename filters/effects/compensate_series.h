@@ -1,0 +1,37 @@
+// The correction of a whole series, sample by sample as the daemon makes it.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "filters/effects/compensator.h"
+
+namespace ifog {
+
+// All columns as long as time_s, which has at least two samples.
+struct SeriesToCompensate {
+  std::span<const double> time_s;
+  std::vector<std::span<const double>> rate_radps;  // by axis of the compensator
+  std::vector<std::span<const double>> channels;    // by Compensator::channels(); empty: never has a value
+};
+
+// Calls use(sample, output) for every sample in turn. The first sample covers as much time as the second.
+template <class Use>
+void compensate_series(Compensator& compensator, const SeriesToCompensate& series, Use&& use) {
+  std::vector<double> now(series.channels.size());
+  CompensatorInput in;
+  CompensatorOutput out;
+  for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+    const std::size_t end = i == 0 ? 1 : i;
+    in.dt_s = series.time_s[end] - series.time_s[end - 1];
+    for (std::size_t c = 0; c < now.size(); ++c)
+      now[c] = series.channels[c].empty() ? std::numeric_limits<double>::quiet_NaN() : series.channels[c][i];
+    in.channels = now;
+    for (std::size_t a = 0; a < series.rate_radps.size(); ++a) in.rate_radps[a] = series.rate_radps[a][i];
+    compensator.step(in, out);
+    use(i, out);
+  }
+}
+
+}  // namespace ifog

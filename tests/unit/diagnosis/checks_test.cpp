@@ -1,0 +1,162 @@
+// The room `checks`: what an effect has to prove beyond its likelihood.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filters/diagnosis/checks/cross_validation.h"
+#include "filters/diagnosis/checks/outliers.h"
+#include "filters/diagnosis/checks/proof.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
+
+namespace ifog {
+namespace {
+
+void add(BlockData& data, const Candidate& effect, double coefficient) {
+  data.grid.error += coefficient * regressors(data, effect).col(0);
+}
+
+Claimed claimed(const std::vector<Candidate>& model, const NoiseFit& noise) { return {model, noise}; }
+
+// In white noise: least squares on the rows of the other folds, the mean of all rows taken out first.
+TEST(CrossValidation, LeavesEachFoldOutOfTheFit) {
+  BlockData data = white_with_temperature(800, 1);
+  add(data, candidate_of(Form::kLinear), 0.4);
+  const Columns columns = design(data, {candidate_of(Form::kLinear)});
+  const std::vector<Eigen::VectorXd> found = coefficients_without_each_fold(data.grid, {}, columns);
+  const std::vector<int> fold = folds_of(data.grid, 4);
+  ASSERT_EQ(found.size(), 4U);
+  for (int f = 0; f < 4; ++f) {
+    double xy = 0.0;
+    double xx = 0.0;
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+      if (fold[static_cast<std::size_t>(i)] == f) continue;
+      const double x = columns(i, 2) - columns.col(2).mean();
+      xy += x * (columns(i, 0) - columns.col(0).mean());
+      xx += x * x;
+    }
+    EXPECT_NEAR(found[static_cast<std::size_t>(f)][0], xy / xx, 1e-10);
+  }
+}
+
+// A step inside the held-out fold is nothing the others could know.
+TEST(CrossValidation, WhatOneFoldAloneSawHasNoCoefficientWithoutIt) {
+  BlockData data = white_with_temperature(800, 2);
+  Columns columns(800, 3);
+  columns << data.grid.error, Eigen::VectorXd::Ones(800), Eigen::VectorXd::Zero(800);
+  columns.col(2).head(10).setConstant(1.0);
+  columns.col(2).segment(10, 10).setConstant(-1.0);  // sums to zero, so that the constant takes nothing of it
+  const std::vector<Eigen::VectorXd> found = coefficients_without_each_fold(data.grid, {}, columns);
+  EXPECT_EQ(found[0][0], 0.0);
+  EXPECT_NE(found[1][0], 0.0);
+}
+
+// An error that is the effect and nothing else: nothing is left, between the middles of the first and last
+// block.
+TEST(CrossValidation, SubtractsAnEffectFromTheSamples) {
+  BlockData data = white_with_temperature(500, 3);
+  data.grid.error.setZero();
+  add(data, candidate_of(Form::kLinear), 2.0);
+  std::vector<EvenError> errors(1);
+  errors[0].rest.assign(data.grid.error.begin(), data.grid.error.end());
+  errors[0].rest_held_out = errors[0].rest;
+  Eigen::VectorXd coefficients(2);
+  coefficients << 0.0, 2.0;
+  subtract_effects(data, {candidate_of(Form::kLinear)}, {}, coefficients, errors);
+  EXPECT_LT(variance_of(errors[0].after), 1e-20);
+  EXPECT_LT(variance_of(errors[0].held_out), 1e-20);  // but for the mean
+}
+
+TEST(Outliers, AnEffectOfThreeBlocksIsGoneWithoutThem) {
+  BlockData data = white_with_temperature(2000, 4);
+  std::vector<double> spikes(2000, 12.0);
+  for (const std::size_t at : {300U, 900U, 1500U}) {
+    spikes[at] = 13.0;
+    data.grid.error[static_cast<Eigen::Index>(at)] += 12.0;
+  }
+  data.channels = {channel_of("supply_V", spikes)};
+  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
+  const double with_them = 2.0 * (fit_whitened(data.grid, {}, design(data, model)).log_likelihood -
+                                  fit_whitened(data.grid, {}, design(data, {})).log_likelihood);
+  EXPECT_GT(with_them, 200.0);
+  // Removing an effect lays its outliers bare, so they are left out of both fits only where the model has
+  // them.
+  BlockData not_of_it = data;
+  not_of_it.channels[0].values.assign(2000, 12.0);
+  for (std::size_t i = 0; i < 2000; ++i)
+    not_of_it.channels[0].values[i] = 12.0 + (i % 600 < 5 ? 0.2 : 0.0);  // spreads over twenty blocks
+  for (const Eigen::Index at : {0, 600, 1200, 1800}) not_of_it.grid.error[at] += 40.0;
+  EXPECT_LT(ratio_without_outliers(not_of_it, model, 0, {}), 10.0);
+}
+
+// The squared coefficient over its variance: in noise that is the same all along the ordinary ratio, about.
+TEST(Outliers, ErrorsOfChangingNoiseAreTheOrdinaryOnesInSteadyNoise) {
+  BlockData data = white_with_temperature(4000, 5);
+  add(data, candidate_of(Form::kLinear), 0.05);
+  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
+  Eigen::MatrixXd covariance;
+  const Eigen::VectorXd c = solve(data.grid, {}, design(data, model), &covariance);
+  const double ordinary = c[1] * c[1] / covariance(1, 1);
+  EXPECT_NEAR(ratio_in_changing_noise(data, model, 0, {}), ordinary, 0.25 * ordinary);
+  // Fifty times the noise where the channel is largest: the coefficient is worth less than it seems.
+  for (Eigen::Index i = 0; i < 4000; ++i) {
+    if (std::abs(data.channels[0].values[static_cast<std::size_t>(i)] - 25.0) > 9.0)
+      data.grid.error[i] *= 50.0;
+  }
+  const Eigen::VectorXd loud = solve(data.grid, {}, design(data, model), &covariance);
+  EXPECT_LT(ratio_in_changing_noise(data, model, 0, {}), 0.7 * loud[1] * loud[1] / covariance(1, 1));
+}
+
+TEST(Proof, AnEffectThatIsThereIsPredictedAndChanceMostlyIsNot) {
+  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
+  int of_chance = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    BlockData data = white_with_temperature(1000, seed);
+    const NoiseFit noise{{}, 0.0, 1.0};
+    of_chance += predicts_held_out(data, claimed(model, noise)) ? 1 : 0;
+    add(data, candidate_of(Form::kLinear), 0.05);  // ten standard deviations
+    EXPECT_TRUE(predicts_held_out(data, claimed(model, noise))) << seed;
+  }
+  // The gain is positive for chance when its z^2 is above about 1 in every direction of the folds: a third.
+  EXPECT_LT(of_chance, 32);
+}
+
+TEST(Proof, AStepStaysAndAKnockOrASlopeDoesNot) {
+  const std::vector<Candidate> model = {step_at(499.5)};
+  const NoiseFit noise{{}, 0.0, 1.0};
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const BlockData quiet = white_with_temperature(1000, seed);
+    BlockData step = quiet;
+    step.grid.error.tail(500).array() += 5.0;
+    EXPECT_TRUE(step_persists(step, claimed(model, noise))) << seed;
+    BlockData slope = quiet;
+    for (Eigen::Index i = 0; i < 1000; ++i)
+      slope.grid.error[i] += 5.0 * std::clamp((static_cast<double>(i) - 450.0) / 100.0, 0.0, 1.0);
+    EXPECT_FALSE(step_persists(slope, claimed(model, noise))) << seed;
+    BlockData knock = quiet;
+    knock.grid.error.segment(500, 3).array() += 200.0;
+    EXPECT_FALSE(step_persists(knock, claimed(model, noise))) << seed;
+  }
+}
+
+// What is quick only must not be corrected in what is slow.
+TEST(Proof, ACorrectionThatMakesTheSlowPartLargerHasToAgreeWithPlainLeastSquares) {
+  BlockData data = white_with_temperature(1500, 9);
+  std::vector<double> both(1500);
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    const double quick = std::sin(2.0 * M_PI * static_cast<double>(i) / 20.0);
+    both[i] = 12.0 + quick + 4.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 1500.0);
+    data.grid.error[static_cast<Eigen::Index>(i)] += 2.0 * quick;
+  }
+  data.channels = {channel_of("supply_V", both)};
+  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
+  const NoiseFit walking{{0.2, 0.0, 0.0, 0.0}, 0.0, 1.0};  // its innovations see the quick part alone
+  EXPECT_FALSE(agrees_with_plain_fit(data, claimed(model, walking), claimed({}, walking)));
+  data.grid.error += 2.0 * 4.0 * (regressors(data, candidate_of(Form::kLinear)).col(0) / 4.0);
+  for (std::size_t i = 0; i < both.size(); ++i)
+    data.grid.error[static_cast<Eigen::Index>(i)] -=
+        2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 20.0);
+  EXPECT_TRUE(agrees_with_plain_fit(data, claimed(model, walking), claimed({}, walking)));
+}
+
+}  // namespace
+}  // namespace ifog

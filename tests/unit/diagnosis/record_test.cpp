@@ -1,0 +1,210 @@
+// The room `record`: what a capture is before anything is fitted to it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/record/compensated_error.h"
+#include "filters/diagnosis/record/even_error.h"
+#include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/unused_channels.h"
+
+namespace ifog {
+namespace {
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct Arrays {
+  std::vector<double> time, rate, temperature;
+
+  explicit Arrays(std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) {
+      time.push_back(0.01 * static_cast<double>(i));
+      rate.push_back(static_cast<double>(i));
+      temperature.push_back(25.0 + 0.1 * static_cast<double>(i));
+    }
+  }
+  [[nodiscard]] Record record() const {
+    Record r;
+    r.name = "by hand";
+    r.time_s = time;
+    r.rate_radps = rate;
+    r.channels = {{"temperature_degC", temperature}};
+    return r;
+  }
+};
+
+// 1000 samples in at most 100 blocks: ten samples each, whose mean of a straight line is its middle.
+TEST(Blocks, AreMeansOverEqualTimes) {
+  const Arrays arrays(1000);
+  const BlockData data = cut_to_blocks({arrays.record()}, 100);
+  ASSERT_EQ(data.grid.size(), 100U);
+  EXPECT_DOUBLE_EQ(data.grid.block_s, 0.1);
+  for (Eigen::Index b = 0; b < 100; ++b) EXPECT_NEAR(data.grid.error[b], 10.0 * double(b) + 4.5, 1e-9);
+  // Linear in the channel about 25 °C: the same mean, a tenth as large.
+  ShapeSettings linear;
+  linear.form = Form::kLinear;
+  linear.reference = 25.0;
+  const Eigen::VectorXd means = column(data, linear, 0);
+  for (Eigen::Index b = 0; b < 100; ++b) EXPECT_NEAR(means[b], double(b) + 0.45, 1e-9);
+}
+
+TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
+  Arrays first(600);
+  const Arrays second(400);
+  for (std::size_t i = 200; i < 260; ++i) first.rate[i] = kNan;
+  const BlockData data = cut_to_blocks({first.record(), second.record()}, 100);
+  const BlockGrid& grid = data.grid;
+  ASSERT_EQ(grid.records.size(), 2U);
+  EXPECT_EQ(grid.records[0].first, 0U);
+  EXPECT_EQ(grid.records[0].end, grid.records[1].first);
+  EXPECT_EQ(grid.records[1].end, grid.size());
+  EXPECT_EQ(grid.longest(), 60U);
+  EXPECT_EQ(grid.constants(), 2);
+  EXPECT_EQ(grid.fine_steps(grid.records[1]).size(), 40U * grid.fine);
+  EXPECT_EQ(grid.used(), 94U);
+  for (std::size_t b = 20; b < 26; ++b) EXPECT_EQ(grid.valid[b], 0);
+}
+
+TEST(Blocks, CentreEveryRecordOnItsOwn) {
+  BlockGrid grid;
+  grid.records = {{0, 2}, {2, 5}};
+  Eigen::VectorXd values(5);
+  values << 1.0, 3.0, 10.0, 20.0, 60.0;
+  centre_records(grid, values);
+  const Eigen::VectorXd expected = (Eigen::VectorXd(5) << -1.0, 1.0, -20.0, -10.0, 30.0).finished();
+  EXPECT_LT((values - expected).norm(), 1e-12);
+}
+
+TEST(EvenGrid, PutsSamplesWhereTheirTimeIs) {
+  const std::vector<double> time = {1.0, 2.02, 2.98, 6.0};
+  const std::vector<double> rate = {1.0, 2.0, 3.0, 4.0};
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  const std::vector<double> even = on_even_grid(record, 1.0, rate);
+  ASSERT_EQ(even.size(), 6U);
+  EXPECT_EQ(even[0], 1.0);
+  EXPECT_EQ(even[1], 2.0);
+  EXPECT_EQ(even[2], 3.0);
+  EXPECT_TRUE(std::isnan(even[3]));
+  EXPECT_TRUE(std::isnan(even[4]));
+  EXPECT_EQ(even[5], 4.0);
+  EXPECT_DOUBLE_EQ(variance_of(even), 1.25);  // of 1, 2, 3, 4
+  const std::vector<double> far = {1.0, 2.0, 3.0, 4000.0};
+  record.time_s = far;
+  EXPECT_THROW((void)on_even_grid(record, 1.0, rate), std::invalid_argument);
+}
+
+TEST(EvenError, IsRateLessReferenceLessTheRamps) {
+  const std::vector<double> time = {0.0, 1.0, 2.0};
+  const std::vector<double> rate = {5.0, 6.0, 7.0};
+  const std::vector<double> reference = {1.0, 1.0, 2.0};
+  const std::vector<double> less = {4.5, 6.0, 6.5};
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.reference_radps = reference;
+  WithoutRamps without;
+  without.records = {record};
+  without.records[0].rate_radps = less;
+  without.ramps.resize(1);
+  without.ramps[0].held_out = {{0.25, 0.0, 0.75}};
+  const std::vector<EvenError> errors = even_errors({record}, without, 1.0);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].before, (std::vector<double>{4.0, 5.0, 5.0}));
+  EXPECT_EQ(errors[0].rest, (std::vector<double>{3.5, 5.0, 4.5}));
+  EXPECT_EQ(errors[0].rest_held_out, (std::vector<double>{3.75, 5.0, 4.25}));
+}
+
+TEST(EvenError, ARateThatNeverChangesIsRefused) {
+  Arrays arrays(50);
+  EXPECT_NO_THROW(refuse_constant({arrays.record()}));
+  arrays.rate.assign(50, 0.1);
+  EXPECT_THROW(refuse_constant({arrays.record()}), std::invalid_argument);
+}
+
+TEST(FittedPart, IsAShareOfTheTime) {
+  const Arrays arrays(101);  // 0 … 1 s
+  const Record record = arrays.record();
+  const SampleRange samples = samples_in(record, {0.25, 0.75});
+  EXPECT_EQ(samples.from, 25U);
+  EXPECT_EQ(samples.to, 75U);
+  const std::vector<Record> parts = fitted_parts({record}, {0.25, 0.75});
+  EXPECT_EQ(parts[0].time_s.front(), arrays.time[25]);
+  EXPECT_EQ(parts[0].channels[0].values.back(), arrays.temperature[74]);
+  EXPECT_EQ(samples_in(record, {0.5, 1.0}).to, 101U);
+  EXPECT_TRUE(TimeShare{}.whole());
+}
+
+TEST(CompensatedError, IsTheRateLessTheEffectLessTheReference) {
+  Arrays arrays(40);
+  const std::vector<double> reference(40, 2.0);
+  Record record = arrays.record();
+  record.reference_radps = reference;
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "temperature_degC";
+  effect.reference = 25.0;
+  effect.parameters = {{"coefficient", 3.0, 0.0, "rad/s/K"}};
+  Model model;
+  model.effects = {effect};
+  const std::vector<double> left = compensated_error(record, model);
+  for (std::size_t i = 0; i < 40; ++i)
+    EXPECT_NEAR(left[i], arrays.rate[i] - 3.0 * (arrays.temperature[i] - 25.0) - 2.0, 1e-9);
+  // Of a channel the record does not have nothing is known, and nothing is subtracted.
+  model.effects[0].channel = "supply_V";
+  EXPECT_NEAR(compensated_error(record, model)[39], arrays.rate[39] - 2.0, 1e-12);
+}
+
+TEST(Figures, OfSeriesWithAnAnswerByHand) {
+  std::vector<double> error(2000);
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = i % 2 ? 1.0 : -1.0;
+  const auto figures = error_figures(error, 0.1);
+  EXPECT_NEAR(figures.at("residual_rms_radps"), 1.0, 1e-12);
+  EXPECT_NEAR(figures.at("adev_0.1s_radps"), std::sqrt(2.0), 1e-9);  // differences of 2
+  EXPECT_NEAR(figures.at("rms_1s_radps"), 0.0, 1e-12);
+  EXPECT_EQ(figures.count("rms_100s_radps"), 0U);  // 200 s hold no ten of them
+  // A step after the alignment: 0.5 rad/s for the other nine tenths of 200 s.
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = i < 200 ? 0.0 : 0.5;
+  EXPECT_NEAR(error_figures(error, 0.1).at("heading_drift_rad"), 0.5 * 180.0, 1e-9);
+}
+
+TEST(Figures, OfSeveralRecordsAreAveragedAsSquares) {
+  const auto both =
+      pooled({{{"rms", 3.0}, {"whiteness", 0.5}}, {{"rms", 4.0}, {"whiteness", -0.5}}}, {1.0, 1.0});
+  EXPECT_DOUBLE_EQ(both.at("rms"), std::sqrt(12.5));
+  EXPECT_DOUBLE_EQ(both.at("whiteness"), 0.0);
+}
+
+// White noise of unit variance with a third of its samples missing: 1 / sqrt m all the same.
+TEST(Figures, AGapDoesNotLowerTheAllanDeviation) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<double> error(90000);
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = i / 1000 % 3 == 1 ? kNan : normal(random);
+  const auto figures = error_figures(error, 0.1);
+  EXPECT_NEAR(figures.at("adev_1s_radps"), std::sqrt(0.1), 0.02 * std::sqrt(0.1));
+}
+
+TEST(UnusedChannels, SaysWhichAndWhy) {
+  const Arrays arrays(200);
+  const std::vector<double> missing(200, kNan);
+  const std::vector<double> constant(200, 12.0);
+  Record one = arrays.record();
+  one.channels.push_back({"supply_V", constant});
+  one.channels.push_back({"magnetic_x_uT", missing});
+  Record other = one;
+  one.channels.push_back({"accel_x_mps2", arrays.temperature});
+  const BlockData data = cut_to_blocks({one, other});
+  EXPECT_EQ(unused_channels({one, other}, data),
+            "channels that say nothing here and were left out: accel_x_mps2 (not in every capture); "
+            "magnetic_x_uT (without a value); supply_V (never changing)");
+  EXPECT_EQ(unused_channels({arrays.record()}, cut_to_blocks({arrays.record()})), "");
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,200 @@
+// The room `report`: what was found, as a person and a model file are told.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/report/before_and_after.h"
+#include "filters/diagnosis/report/findings.h"
+#include "filters/diagnosis/report/held_out_part.h"
+#include "filters/diagnosis/report/loop_rivals.h"
+#include "filters/diagnosis/report/prediction.h"
+#include "filters/diagnosis/report/sample_effects.h"
+#include "filters/diagnosis/report/separate.h"
+#include "filters/diagnosis/report/series.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
+
+namespace ifog {
+namespace {
+
+Effect linear_in_temperature(double coefficient) {
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "temperature_degC";
+  effect.reference = 25.0;
+  effect.parameters = {{"coefficient", coefficient, 0.1, "rad/s/K"}};
+  return effect;
+}
+
+TEST(Separate, NamesTheCaptureThatWouldTell) {
+  BlockData data = white_with_temperature(300, 1);
+  data.channels.push_back(data.channels[0]);
+  data.channels[1].name = "supply_V";
+  Candidate supply = candidate_of(Form::kLinear);
+  supply.channel = 1;
+  Candidate ramp;
+  ramp.form = Form::kRateRamp;
+  EXPECT_EQ(
+      capture_that_separates(data, candidate_of(Form::kLinear), ramp),
+      "a capture in which temperature_degC goes up and comes down again, so that it does not run with the "
+      "time");
+  EXPECT_EQ(capture_that_separates(data, candidate_of(Form::kLinear), supply),
+            "a capture in which temperature_degC changes while supply_V stays");
+  EXPECT_EQ(capture_that_separates(data, candidate_of(Form::kLinear), candidate_of(Form::kQuadratic)),
+            "a capture over a wider range of temperature_degC, on both sides of 25 °C");
+}
+
+// A correction that is known exactly: what is judged is the part that was not fitted, before and after.
+TEST(HeldOutPart, JudgesWhatWasNotFitted) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> time, rate, temperature, noise;
+  for (int i = 0; i < 4000; ++i) {
+    time.push_back(0.1 * i);
+    temperature.push_back(25.0 + 5.0 * std::sin(2.0 * M_PI * i / 900.0));
+    noise.push_back(normal(random));
+    rate.push_back(noise.back() + 2.0 * (temperature.back() - 25.0));
+  }
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.channels = {{"temperature_degC", temperature}};
+  Diagnosis diagnosis;
+  diagnosis.sample_rate_hz = 10.0;
+  diagnosis.effects.resize(1);
+  diagnosis.effects[0].effect = linear_in_temperature(2.0);
+  diagnosis.covariance = {0.01};
+  judge({record}, {0.0, 0.5}, diagnosis);
+  const std::vector<double> later(noise.begin() + 2000, noise.end());
+  EXPECT_NEAR(diagnosis.after.at("residual_rms_radps"), std::sqrt(variance_of(later)), 1e-3);
+  EXPECT_NEAR(diagnosis.before.at("residual_rms_radps"), std::sqrt(1.0 + 50.0), 0.5);
+}
+
+TEST(BeforeAndAfter, AreTheFiguresOfTheErrorAndOfTheHeldOutOne) {
+  std::vector<EvenError> errors(1);
+  for (int i = 0; i < 500; ++i) {
+    errors[0].before.push_back(i % 2 ? 3.0 : -3.0);
+    errors[0].held_out.push_back(i % 2 ? 1.0 : -1.0);
+    errors[0].after.push_back(0.0);
+  }
+  Diagnosis diagnosis;
+  write_before_and_after(errors, 1.0, diagnosis);
+  EXPECT_DOUBLE_EQ(diagnosis.before.at("residual_rms_radps"), 3.0);
+  EXPECT_DOUBLE_EQ(diagnosis.after.at("residual_rms_radps"), 1.0);
+}
+
+TEST(SampleEffects, AreRampsThenLinesWithTheirShareOfTheVariance) {
+  std::vector<EvenError> errors(1);
+  for (int i = 0; i < 1000; ++i) errors[0].before.push_back(i % 2 ? 1.0 : -1.0);
+  RampFit ramp;
+  ramp.effect.form = "lookup";
+  ramp.ratio = 50.0;
+  ramp.correction = {std::vector<double>(1000)};
+  for (std::size_t i = 0; i < 1000; ++i) ramp.correction[0][i] = i % 2 ? 0.5 : -0.5;
+  SpectralLine line;
+  line.frequency_hz = 4.0;
+  line.cosine = 0.6;
+  line.ratio = 40.0;
+  const std::vector<FoundEffect> found = sample_effects({ramp}, {{0, line}}, errors, "z");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].effect.form, "lookup");
+  EXPECT_NEAR(found[0].variance_explained, 0.25, 1e-12);
+  EXPECT_EQ(found[1].effect.form, "line");
+  EXPECT_NEAR(found[1].variance_explained, 0.18, 1e-12);  // a^2 / 2
+  EXPECT_EQ(found[1].likelihood_ratio, 80.0);
+  for (const FoundEffect& each : found) EXPECT_EQ(each.effect.axis, "z");
+}
+
+// Two effects: the covariance of the joint fit, a time constant's by its logarithm; a line stands alone.
+TEST(Findings, CovarianceIsThatOfTheParametersAsTheyAreWritten) {
+  FoundEffect lagged;
+  lagged.effect.form = "lagged";
+  lagged.effect.channel = "temperature_degC";
+  lagged.effect.parameters = {{"coefficient", 2.0, 0.1, ""}, {"lag_s", 50.0, 5.0, "s"}};
+  FoundEffect line;
+  line.effect.form = "line";
+  line.effect.parameters = {
+      {"cosine", 1.0, 0.2, ""}, {"sine", 1.0, 0.3, ""}, {"frequency_hz", 1.0, 0.4, "Hz"}};
+  JointFit joint;
+  joint.values = Eigen::Vector3d(0.0, 2.0, 0.0);  // constant, coefficient, logarithm of the lag
+  joint.searched = {0};
+  joint.covariance = (Eigen::Matrix3d() << 9.0, 0.0, 0.0, 0.0, 0.01, 0.002, 0.0, 0.002, 0.01).finished();
+  const std::vector<double> covariance = covariance_of({lagged, line}, joint, 1, 1);
+  ASSERT_EQ(covariance.size(), 25U);
+  EXPECT_NEAR(covariance[0], 0.01, 1e-15);
+  EXPECT_NEAR(covariance[1], 50.0 * 0.002, 1e-15);
+  EXPECT_NEAR(covariance[6], 2500.0 * 0.01, 1e-12);
+  EXPECT_NEAR(covariance[2 * 5 + 2], 0.04, 1e-15);
+  EXPECT_NEAR(covariance[4 * 5 + 4], 0.16, 1e-15);
+  EXPECT_EQ(covariance[2], 0.0);
+  const BlockData data = white_with_temperature(300, 4);
+  const std::vector<ChannelRange> ranges = ranges_of(data, {lagged, line});
+  ASSERT_EQ(ranges.size(), 1U);
+  EXPECT_EQ(ranges[0].low, data.channels[0].low);
+}
+
+TEST(Series, HasAPointABlockAndTheDeviationsOfTheError) {
+  const BlockData data = white_with_temperature(400, 5);
+  EvenError error;
+  for (int i = 0; i < 400; ++i) error.before.push_back(i % 2 ? 1.0 : -1.0);
+  error.after = error.held_out = std::vector<double>(400, 0.5);
+  const DiagnosisSeries series = series_of(data, {error}, {}, {}, {});
+  ASSERT_EQ(series.time_s.size(), 400U);
+  EXPECT_EQ(series.before_radps[7], 1.0);
+  EXPECT_EQ(series.after_radps[7], 0.5);
+  EXPECT_EQ(series.tau_s[0], 1.0);
+  EXPECT_NEAR(series.before_adev_radps[0], std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(series.after_adev_radps[0], 0.0, 1e-12);
+}
+
+// A constant that is off by sigma: after the alignment nothing of it is left; a slope that goes on is.
+TEST(Prediction, OfTheLongestRecordLeavesOutAlignedBias) {
+  std::vector<double> time, rate;
+  for (int i = 0; i < 1000; ++i) {
+    time.push_back(i);
+    rate.push_back(i % 2 ? 1.0 : -1.0);
+  }
+  Record longest;
+  longest.time_s = time;
+  longest.rate_radps = rate;
+  Record shorter = longest;
+  shorter.time_s = shorter.time_s.first(100);
+  shorter.rate_radps = shorter.rate_radps.first(100);
+  Diagnosis diagnosis;
+  EXPECT_EQ(predict_like_longest(diagnosis, {shorter, longest}).aligned_s, 99.9);
+  EXPECT_EQ(predict_heading(diagnosis, longest, 100.0, {200.0}).sigma_rad[0], 0.0);
+  Effect ramp;
+  ramp.form = "rate_ramp";
+  ramp.parameters = {{"coefficient", 1e-6, 0.0, "rad/s/s"}};
+  diagnosis.effects.resize(1);
+  diagnosis.effects[0].effect = ramp;
+  diagnosis.covariance = {0.0};
+  // Bias at 50 s, then 200 s of it growing: 1e-6 (200^2 / 2 + 50 * 200).
+  EXPECT_NEAR(predict_heading(diagnosis, longest, 100.0, {200.0}).sigma_rad[0], 0.03, 1e-4);
+}
+
+// While the temperature only rises, a quadratic describes a loop as well as the loop itself.
+TEST(LoopRivals, ALoopThatTheRecordCannotExcludeIsSaid) {
+  BlockData data = white_with_temperature(2000, 6);
+  std::vector<double> rising(2000);
+  for (std::size_t i = 0; i < rising.size(); ++i) {
+    const double t = static_cast<double>(i) / 2000.0;
+    rising[i] = 20.0 + 20.0 * t + 0.2 * std::sin(6.0 * t);
+  }
+  data.channels = {channel_of("temperature_degC", rising)};
+  data.channels[0].smooth = true;
+  data.grid.error += 0.6 * hysteresis_loop(data, 0, 2.4);
+  const std::vector<Candidate> model = {candidate_of(Form::kQuadratic)};
+  const NoiseFit noise = fit_noise(data.grid, design(data, model));
+  Findings findings;
+  add_loop_rivals(data, fit_loops(data, model, noise), noise.shape, "", findings);
+  ASSERT_EQ(findings.pairs.size(), 1U);
+  EXPECT_EQ(findings.pairs[0].effects[0].form, "quadratic");
+  EXPECT_EQ(findings.pairs[0].effects[1].form, "hysteresis");
+  ASSERT_EQ(findings.others.size(), 1U);
+  EXPECT_TRUE(findings.others[0].hysteresis);
+}
+
+}  // namespace
+}  // namespace ifog

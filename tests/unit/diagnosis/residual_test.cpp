@@ -1,0 +1,200 @@
+// The room `residual`: what effects leave, as lines, as lines that move, and in words.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/residual/lines.h"
+#include "filters/diagnosis/residual/moving_line.h"
+#include "filters/diagnosis/residual/record_lines.h"
+#include "filters/diagnosis/residual/unexplained.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kPeriod = 0.01;
+
+std::vector<double> white(std::size_t n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(n);
+  for (double& value : values) value = normal(random);
+  return values;
+}
+
+// Amplitudes of a tone by least squares scatter by sqrt(2/n) sigma; its frequency by the Cramer-Rao bound
+// sqrt(6/n) sigma / (pi a T).
+TEST(Lines, AToneIsFoundToItsBounds) {
+  std::vector<double> error = white(20000, 1);
+  const double start = 3.0;
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    const double phase = 2.0 * M_PI * 7.3137 * (start + kPeriod * static_cast<double>(i));
+    error[i] += 0.3 * std::cos(phase) + 0.4 * std::sin(phase);
+  }
+  const std::vector<SpectralLine> lines = find_lines(error, start, kPeriod, 0.01);
+  ASSERT_EQ(lines.size(), 1U);
+  const double bound = std::sqrt(6.0 / 20000.0) / (M_PI * 0.5 * 200.0);
+  EXPECT_NEAR(lines[0].frequency_hz, 7.3137, 5.0 * bound);
+  EXPECT_NEAR(lines[0].frequency_std_hz, bound, 0.2 * bound);
+  EXPECT_NEAR(std::hypot(lines[0].cosine, lines[0].sine), 0.5, 5.0 * std::sqrt(2.0 / 20000.0));
+  EXPECT_GT(lines[0].coherence, 0.95);
+}
+
+TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    found += static_cast<int>(find_lines(white(4096, seed), 0.0, kPeriod, 0.01).size());
+  EXPECT_LE(found, 2);  // 0.2 expected
+  const Spectrum spectrum = averaged_spectrum(white(65536, 5), kPeriod, 40);
+  // One-sided: 2 sigma^2 dt. The last bands hold thousands of bins.
+  EXPECT_NEAR(spectrum.density.back(), 2.0 * kPeriod, 0.05 * 2.0 * kPeriod);
+}
+
+struct Turning {
+  std::vector<double> rate, error;
+};
+
+// Three harmonics of a ramp that turns `cycles_per_rad` times with the angle, or at its mean frequency.
+Turning turning(bool follows) {
+  Turning made{{}, white(40000, 11)};
+  constexpr double kCyclesPerRad = 1000.0;
+  double angle = 0.0;
+  for (std::size_t i = 0; i < made.error.size(); ++i) {
+    const double t = kPeriod * static_cast<double>(i);
+    made.rate.push_back(4e-3 * (1.0 + 0.004 * std::sin(2.0 * M_PI * t / 400.0)));
+    angle += made.rate.back() * kPeriod;
+    const double cycles = kCyclesPerRad * (follows ? angle : 4e-3 * t);
+    for (const double harmonic : {1.0, 2.0, 3.0})
+      made.error[i] += 1.0 / harmonic * std::sin(2.0 * M_PI * harmonic * cycles);
+  }
+  return made;
+}
+
+TEST(MovingLine, FollowsTheAngleTurned) {
+  const Turning moving = turning(true);
+  const auto found =
+      find_moving_line(moving.error, moving.rate, kPeriod, find_lines(moving.error, 0.0, kPeriod, 0.01));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->cycles_per_rad, 1000.0, 10.0);
+  const Turning still = turning(false);
+  EXPECT_FALSE(
+      find_moving_line(still.error, still.rate, kPeriod, find_lines(still.error, 0.0, kPeriod, 0.01)));
+}
+
+TEST(RecordLines, HarmonicsOfTheMovingLineAreLeftOut) {
+  Lines lines;
+  Candidate slow;
+  slow.form = Form::kLine;
+  for (const double frequency : {1.0, 2.0, 2.5}) {
+    slow.frequency_hz = frequency;
+    lines.slow.push_back(slow);
+  }
+  SpectralLine fast;
+  fast.frequency_hz = 30.01;
+  lines.fast = {{0, fast}};
+  leave_out_harmonics({1.0, 250.0, 100.0}, lines);
+  ASSERT_EQ(lines.slow.size(), 1U);
+  EXPECT_EQ(lines.slow[0].frequency_hz, 2.5);
+  EXPECT_TRUE(lines.fast.empty());
+}
+
+// exp(-ratio/2) times half the samples against the significance: 2 log(0.5 n / p) is the least ratio.
+TEST(RecordLines, AreProvenBesideTheEffects) {
+  SearchResult found;
+  const double least = 2.0 * std::log(0.5 * 10000.0 / 0.01);
+  Candidate line;
+  line.form = Form::kLine;
+  found.chosen = {{line, least - 0.01, 1.0}, {line, least + 0.01, 1.0}};
+  Lines lines;
+  lines.slow = {line, line};
+  lines.slow[1].frequency_hz = 0.5;
+  keep_proven(found, 10000, 0.01, lines);
+  ASSERT_EQ(lines.slow.size(), 1U);
+  EXPECT_EQ(lines.slow[0].frequency_hz, 0.5);
+}
+
+TEST(RecordLines, AFastLineIsTakenOutOfItsRecord) {
+  std::vector<EvenError> errors(2);
+  errors[1].start_s = 5.0;
+  for (EvenError& error : errors) {
+    for (std::size_t i = 0; i < 500; ++i)
+      error.rest.push_back(0.2 *
+                           std::sin(2.0 * M_PI * 12.0 * (error.start_s + kPeriod * static_cast<double>(i))));
+    error.rest_held_out = error.rest;
+  }
+  SpectralLine line;
+  line.frequency_hz = 12.0;
+  line.sine = 0.2;
+  take_out({{1, line}}, kPeriod, errors);
+  EXPECT_LT(variance_of(errors[1].rest), 1e-20);
+  EXPECT_LT(variance_of(errors[1].rest_held_out), 1e-20);
+  EXPECT_NEAR(variance_of(errors[0].rest), 0.02, 1e-3);
+}
+
+Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>& peaks = {}) {
+  BlockGrid grid;
+  grid.block_s = 1.0;
+  NoiseFit noise;
+  noise.white_variance = kPeriod;  // of a mean of one second of unit noise
+  return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks);
+}
+
+TEST(Unexplained, SaysWhatTheRestLooksLike) {
+  const std::vector<double> noise = white(60000, 21);
+  EXPECT_EQ(of(noise).kind, "nothing");
+
+  std::vector<double> knocked = noise;
+  for (const std::size_t at : {10000U, 30000U, 45000U}) {
+    for (std::size_t i = at; i < at + 30; ++i) knocked[i] += i % 2 ? 15.0 : -15.0;
+  }
+  const Unexplained bursts = of(knocked);
+  EXPECT_EQ(bursts.kind, "bursts");
+  ASSERT_EQ(bursts.times_s.size(), 3U);
+  EXPECT_NEAR(bursts.times_s[0], 100.0, 0.5);
+  EXPECT_NEAR(bursts.times_s[2], 450.0, 0.5);
+
+  std::vector<double> louder = noise;
+  for (std::size_t i = 30000; i < 60000; ++i) louder[i] *= 3.0;
+  EXPECT_EQ(of(louder).kind, "changing_variance");
+
+  std::vector<double> drifting = noise;
+  double walk = 0.0;
+  const std::vector<double> steps = white(60000, 22);
+  for (std::size_t i = 0; i < drifting.size(); ++i) drifting[i] += walk += 0.01 * steps[i];
+  const Unexplained slow = of(drifting);
+  EXPECT_EQ(slow.kind, "slow");
+  EXPECT_GT(slow.fraction, 0.5);
+
+  SpectralLine peak;
+  peak.frequency_hz = 3.3;
+  EXPECT_EQ(of(noise, {peak}).kind, "line");
+  EXPECT_EQ(of(noise, {peak}).frequency_hz, 3.3);
+}
+
+TEST(Unexplained, OfTheLongestRecordAndALoopTakesThePlace) {
+  std::vector<EvenError> errors(2);
+  errors[0].before = errors[0].after = white(2000, 31);
+  errors[1].before = errors[1].after = white(60000, 32);
+  for (std::size_t i = 30000; i < 60000; ++i) errors[1].after[i] *= 3.0;
+  BlockGrid grid;
+  grid.block_s = 1.0;
+  grid.sample_s = kPeriod;
+  NoiseFit noise;
+  noise.white_variance = kPeriod;
+  Unexplained found = describe_rest(errors, noise, grid, 0.01);
+  EXPECT_EQ(found.kind, "changing_variance");
+  Hysteresis loop;
+  loop.channel = "temperature_degC";
+  loop.half_width = 2.0;
+  loop.coefficient = M_PI / 180.0 / 3600.0;  // 1 °/h per kelvin: 4 °/h high
+  describe_hysteresis(loop, found);
+  EXPECT_EQ(found.kind, "hysteresis");
+  EXPECT_NE(found.hint.find("4 °/h high"), std::string::npos) << found.hint;
+  describe_moving({4.2, 350.0, 100.0}, found);
+  EXPECT_EQ(found.kind, "moving_line");
+  EXPECT_EQ(found.frequency_hz, 4.2);
+}
+
+}  // namespace
+}  // namespace ifog

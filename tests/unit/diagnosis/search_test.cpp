@@ -1,0 +1,146 @@
+// The room `search`: scores, refinement, the choice of effects and what is dropped again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/search/acceptance.h"
+#include "filters/diagnosis/search/refine.h"
+#include "filters/diagnosis/search/scan.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kBlocks = 1500;
+
+BlockData with_supply(std::uint64_t seed) {
+  BlockData data = white_with_temperature(kBlocks, seed);
+  std::vector<double> supply(kBlocks);
+  for (std::size_t i = 0; i < kBlocks; ++i)
+    supply[i] = 12.0 + std::sin(2.0 * M_PI * static_cast<double>(i) / 90.0);
+  data.channels.push_back(channel_of("supply_V", supply));
+  return data;
+}
+
+Candidate of(std::size_t channel, Form form, double time_constant_s = 0.0) {
+  Candidate candidate = candidate_of(form, time_constant_s);
+  candidate.channel = channel;
+  return candidate;
+}
+
+void add(BlockData& data, const Candidate& effect, double coefficient) {
+  data.grid.error += coefficient * regressors(data, effect).col(0);
+}
+
+Scored best_of(const std::vector<Scored>& scored) {
+  return *std::max_element(scored.begin(), scored.end(),
+                           [](const Scored& a, const Scored& b) { return a.ratio < b.ratio; });
+}
+
+// In white noise a score is n log of the residual before over after, by ordinary least squares.
+TEST(Scan, ScoresAreLikelihoodRatios) {
+  BlockData data = with_supply(1);
+  add(data, of(1, Form::kLinear), 0.5);
+  const Scan scan(data, {of(0, Form::kLinear), of(1, Form::kLinear)});
+  NoiseFit noise;
+  noise.log_likelihood = fit_whitened(data.grid, {}, design(data, {})).log_likelihood;
+  const std::vector<Scored> scored = scan.score({}, noise, false);
+  for (std::size_t c = 0; c < 2; ++c) {
+    Columns with(static_cast<Eigen::Index>(kBlocks), 2);
+    with << Eigen::VectorXd::Ones(static_cast<Eigen::Index>(kBlocks)), regressors(data, of(c, Form::kLinear));
+    const double before = left_by(with.leftCols(1), data.grid.error).squaredNorm();
+    const double after = left_by(with, data.grid.error).squaredNorm();
+    EXPECT_NEAR(scored[c].ratio, std::max(0.0, double(kBlocks) * std::log(before / after)), 1e-6);
+  }
+  EXPECT_EQ(best_of(scored).candidate.channel, 1U);
+}
+
+TEST(Scan, FindsTheStepAndTheTwoThatHideEachOther) {
+  BlockData step = with_supply(2);
+  step.grid.error.tail(600).array() += 1.0;
+  const auto noise_of = [](const BlockData& data) { return fit_noise(data.grid, design(data, {})); };
+  const Scored found = best_of(Scan(step, library(step)).steps({}, noise_of(step)));
+  EXPECT_EQ(found.candidate.form, Form::kStep);
+  EXPECT_NEAR(found.candidate.time_s, 899.5, 3.0);
+
+  BlockData both = with_supply(3);
+  add(both, of(0, Form::kLinear), 0.3);
+  add(both, of(1, Form::kQuadratic), 1.0);
+  const auto pair = Scan(both, library(both)).best_pair({}, noise_of(both));
+  ASSERT_TRUE(pair);
+  EXPECT_NE(pair->first.channel, pair->second.channel);
+}
+
+TEST(Refine, FindsTheLag) {
+  BlockData data = with_supply(4);
+  add(data, of(0, Form::kLagged, 60.0), 1.0);
+  std::vector<Candidate> model = {of(0, Form::kLagged, 40.0)};
+  refine(data, {}, model, 0);
+  EXPECT_NEAR(model[0].time_constant_s, 60.0, 2.0);
+}
+
+TEST(Search, TakesTheEffectThatIsThereAndNoOther) {
+  BlockData data = with_supply(5);
+  const auto search = [&] { return search_effects(data, with_reconstructed_channels(data), {}); };
+  EXPECT_TRUE(search().chosen.empty());
+  add(data, of(1, Form::kLinear), 0.5);
+  const SearchResult found = search();
+  ASSERT_EQ(found.chosen.size(), 1U);
+  EXPECT_EQ(found.chosen[0].candidate.channel, 1U);
+  EXPECT_EQ(found.chosen[0].candidate.form, Form::kLinear);
+  const double sigma = std::sqrt(found.covariance(1, 1));
+  EXPECT_NEAR(found.coefficients[1], 0.5, 4.0 * sigma);
+  EXPECT_NEAR(sigma, 1.0 / std::sqrt(0.5 * kBlocks), 0.1 * sigma);  // a sine of amplitude 1 in unit noise
+  EXPECT_LT(found.chosen[0].p_value, 1e-6);
+}
+
+SearchResult chosen(const BlockData& data, const std::vector<Candidate>& model) {
+  SearchResult found;
+  for (const Candidate& each : model) found.chosen.push_back({each, 100.0, 1e-9});
+  found.fitted = model;
+  found.noise = fit_noise(data.grid, design(data, model));
+  found.coefficients = solve(data.grid, found.noise.shape, design(data, model), &found.covariance);
+  found.fitted_coefficients = found.coefficients;
+  return found;
+}
+
+std::vector<EvenError> errors_of(const BlockData& data) {
+  EvenError error;
+  error.before.assign(data.grid.error.begin(), data.grid.error.end());
+  error.rest = error.rest_held_out = error.before;
+  return {error};
+}
+
+TEST(Acceptance, KeepsWhatStandsAndDropsWhatIsNot) {
+  BlockData data = with_supply(6);
+  add(data, of(1, Form::kLinear), 0.5);
+  const std::vector<Candidate> model = {of(0, Form::kLinear), of(1, Form::kLinear)};
+  SearchResult found = chosen(data, model);
+  std::vector<EvenError> errors = errors_of(data);
+  subtract_found(data, found, errors);
+  EXPECT_FALSE(stands(data, found, 0, 1e-4));
+  EXPECT_TRUE(stands(data, found, 1, 1e-4));
+  EXPECT_TRUE(holds(data, found, errors));
+  const std::vector<Effect> dropped = drop_what_does_not_hold(data, data, 1e-4, found, errors);
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_EQ(dropped[0].channel, "temperature_degC");
+  ASSERT_EQ(found.chosen.size(), 1U);
+  const SearchResult alone = chosen(data, {of(1, Form::kLinear)});
+  EXPECT_NEAR(found.coefficients[1], alone.coefficients[1], 1e-9);
+  EXPECT_NEAR(variance_of(errors[0].after), 1.0, 0.15);
+}
+
+// Coefficients that are not those of the data make the error on held-out blocks larger: nothing holds.
+TEST(Acceptance, AnErrorThatGrowsDoesNotHold) {
+  const BlockData data = with_supply(7);
+  const SearchResult found = chosen(data, {of(0, Form::kLinear)});
+  std::vector<EvenError> errors = errors_of(data);
+  errors[0].held_out = errors[0].before;
+  EXPECT_TRUE(holds(data, found, errors));
+  for (std::size_t i = 0; i < kBlocks; ++i) errors[0].held_out[i] += data.channels[1].values[i] - 12.0;
+  EXPECT_FALSE(holds(data, found, errors));
+}
+
+}  // namespace
+}  // namespace ifog
