@@ -45,6 +45,7 @@ struct GappedSum {
 
 std::vector<double> gapped_deviation(std::span<const double> rate_radps, std::span<const std::size_t> m) {
   std::vector<double> found;
+  found.reserve(m.size());
   if (std::all_of(rate_radps.begin(), rate_radps.end(), [](double v) { return std::isfinite(v); })) {
     const std::vector<Stretch> whole = {{0, rate_radps.size()}};
     for (const DeviationPoint& point : deviation(AngleSum(rate_radps, whole), m, Deviation::kAllan, 1))

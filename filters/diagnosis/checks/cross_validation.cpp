@@ -75,6 +75,7 @@ std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& gri
   Projection(white.middleCols(1, k)).take_out_of(others);
   const std::vector<int> fold = fold_of_block(grid);
   std::vector<Eigen::VectorXd> coefficients;
+  coefficients.reserve(static_cast<std::size_t>(fold_count(grid)));
   for (int f = 0; f < fold_count(grid); ++f) coefficients.push_back(without_fold(others, fold, f));
   return coefficients;
 }

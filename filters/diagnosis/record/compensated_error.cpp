@@ -7,6 +7,7 @@ namespace ifog {
 std::vector<double> compensated_error(const Record& record, const Model& model) {
   Compensator compensator(model, {""});
   SeriesToCompensate series{record.time_s, {record.rate_radps}, {}};
+  series.channels.reserve(compensator.channels().size());
   for (const std::string& name : compensator.channels()) series.channels.push_back(values_of(record, name));
   std::vector<double> error(record.time_s.size());
   compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& out) {

@@ -8,6 +8,7 @@ namespace ifog {
 std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
                                    double sample_s) {
   std::vector<EvenError> errors;
+  errors.reserve(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
     EvenError error;
     error.start_s = records[r].time_s.front();

@@ -42,6 +42,7 @@ FoundEffect line_effect(const SpectralLine& line, double total_variance) {
 std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps, const std::vector<FastLine>& lines,
                                         const std::vector<EvenError>& errors, const std::string& axis) {
   std::vector<FoundEffect> found;
+  found.reserve(ramps.size() + lines.size());
   for (const RampFit& ramp : ramps) found.push_back(ramp_effect(ramp, errors));
   for (const FastLine& fast : lines)
     found.push_back(line_effect(fast.line, variance_of(errors[fast.record].before)));

@@ -149,7 +149,7 @@ TEST(Proof, ACorrectionThatMakesTheSlowPartLargerHasToAgreeWithPlainLeastSquares
   }
   data.channels = {channel_of("supply_V", both)};
   const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
-  const NoiseFit walking{{0.2, 0.0, 0.0, 0.0}, 0.0, 1.0};  // its innovations see the quick part alone
+  const NoiseFit walking{{0.002, 0.0, 0.0, 0.0}, 0.0, 1.0};  // its innovations see the quick part alone
   EXPECT_FALSE(agrees_with_plain_fit(data, claimed(model, walking), claimed({}, walking)));
   data.grid.error += 2.0 * 4.0 * (regressors(data, candidate_of(Form::kLinear)).col(0) / 4.0);
   for (std::size_t i = 0; i < both.size(); ++i)

@@ -22,7 +22,7 @@ struct Arrays {
 
   explicit Arrays(std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) {
-      time.push_back(0.01 * static_cast<double>(i));
+      time.push_back(0.125 * static_cast<double>(i));  // exact, so that blocks are
       rate.push_back(static_cast<double>(i));
       temperature.push_back(25.0 + 0.1 * static_cast<double>(i));
     }
@@ -42,7 +42,7 @@ TEST(Blocks, AreMeansOverEqualTimes) {
   const Arrays arrays(1000);
   const BlockData data = cut_to_blocks({arrays.record()}, 100);
   ASSERT_EQ(data.grid.size(), 100U);
-  EXPECT_DOUBLE_EQ(data.grid.block_s, 0.1);
+  EXPECT_DOUBLE_EQ(data.grid.block_s, 1.25);
   for (Eigen::Index b = 0; b < 100; ++b) EXPECT_NEAR(data.grid.error[b], 10.0 * double(b) + 4.5, 1e-9);
   // Linear in the channel about 25 °C: the same mean, a tenth as large.
   ShapeSettings linear;
@@ -128,7 +128,7 @@ TEST(EvenError, ARateThatNeverChangesIsRefused) {
 }
 
 TEST(FittedPart, IsAShareOfTheTime) {
-  const Arrays arrays(101);  // 0 … 1 s
+  const Arrays arrays(101);  // 0 … 12.5 s
   const Record record = arrays.record();
   const SampleRange samples = samples_in(record, {0.25, 0.75});
   EXPECT_EQ(samples.from, 25U);

@@ -42,7 +42,7 @@ TEST(Separate, NamesTheCaptureThatWouldTell) {
   EXPECT_EQ(capture_that_separates(data, candidate_of(Form::kLinear), supply),
             "a capture in which temperature_degC changes while supply_V stays");
   EXPECT_EQ(capture_that_separates(data, candidate_of(Form::kLinear), candidate_of(Form::kQuadratic)),
-            "a capture over a wider range of temperature_degC, on both sides of 25 °C");
+            "a capture over a wider range of temperature_degC, on both sides of 25 degC");
 }
 
 // A correction that is known exactly: what is judged is the part that was not fitted, before and after.

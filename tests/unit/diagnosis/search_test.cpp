@@ -58,7 +58,7 @@ TEST(Scan, ScoresAreLikelihoodRatios) {
 
 TEST(Scan, FindsTheStepAndTheTwoThatHideEachOther) {
   BlockData step = with_supply(2);
-  step.grid.error.tail(600).array() += 1.0;
+  step.grid.error.tail(600).array() += 4.0;
   const auto noise_of = [](const BlockData& data) { return fit_noise(data.grid, design(data, {})); };
   const Scored found = best_of(Scan(step, library(step)).steps({}, noise_of(step)));
   EXPECT_EQ(found.candidate.form, Form::kStep);
