@@ -281,7 +281,10 @@ bool shortened(const ifog_can_frame& last, const std::vector<ifog_can_frame>& fr
 }  // namespace
 
 Candump read_candump(const std::string& path, std::string_view interface) {
-  const std::string text = read_text_file(path);
+  return parse_candump(read_text_file(path), path, interface);
+}
+
+Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface) {
   Candump log;
   CandumpClock clock;
   if (are_differences(text)) clock.assume_differences();

@@ -73,5 +73,7 @@ struct Candump {
 // differences if one is smaller than that before or all are the same. Throws std::runtime_error with one
 // line: file, line, what was expected.
 Candump read_candump(const std::string& path, std::string_view interface = {});
+// The same of a text already at hand; `path` stands for the file in messages.
+Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface = {});
 
 }  // namespace ifog

@@ -142,9 +142,9 @@ Table parse_table(std::string_view text, const std::string& path) {
   }
 
   while (lines.next(line)) {
-    if (trimmed(line).empty()) continue;
-    if (line.front() == '#') {
-      table.comments.emplace_back(trimmed(line.substr(1)));
+    if (trimmed(line).empty() || line.front() == '#') {
+      if (line.starts_with('#')) table.comments.emplace_back(trimmed(line.substr(1)));
+      table.skipped.push_back(table.time_s.size());
       continue;
     }
     std::size_t column = 0;
@@ -174,20 +174,11 @@ Table parse_table(std::string_view text, const std::string& path) {
   return table;
 }
 
-std::size_t line_of_row(const std::string& path, std::size_t row) {
-  const std::string text = read_text_file(path);
-  Lines lines(text);
-  std::string_view line;
-  bool header = true;
-  while (lines.next(line)) {
-    if (trimmed(line).empty() || line.front() == '#') continue;
-    if (header) {
-      header = false;
-    } else if (row-- == 0) {
-      return lines.number();
-    }
-  }
-  return 0;
+std::size_t line_of_row(const Table& table, std::size_t row) {
+  if (table.header_line == 0) return 0;
+  const auto before =
+      std::upper_bound(table.skipped.begin(), table.skipped.end(), row) - table.skipped.begin();
+  return table.header_line + 1 + row + static_cast<std::size_t>(before);
 }
 
 Table read_table(const std::string& path) { return parse_table(read_text_file(path), path); }

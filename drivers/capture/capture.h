@@ -32,15 +32,15 @@ struct Table {
   std::vector<std::string> comments;
   std::vector<double> time_s;
   std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
-  std::size_t header_line = 0;
+  std::size_t header_line = 0;         // 0: not read from a text
+  std::vector<std::size_t> skipped;    // for each comment or blank line behind the header, the rows before it
 };
 
 // Refuses what read_capture refuses, but needs no rate column.
 Table read_table(const std::string& path);
 
-// The line of a data row (counted from 0), for messages about its values; 0 when the file has fewer. Reads
-// the file.
-std::size_t line_of_row(const std::string& path, std::size_t row);
+// The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
+std::size_t line_of_row(const Table& table, std::size_t row);
 
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
 // Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line

@@ -1,12 +1,10 @@
 #include "drivers/capture/recording.h"
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <string_view>
 
 #include "drivers/capture/candump.h"
-#include "drivers/capture/text_file.h"
 
 namespace ifog {
 
@@ -18,18 +16,25 @@ FileKind file_kind(const std::string& path) {
   if (name.ends_with(".lcm")) return FileKind::lcm_log;
   for (const std::string_view ending : {".bin", ".kvh", ".raw", ".dat", ".txt"})
     if (name.ends_with(ending)) return FileKind::bytes;
-  // lcm-logger's own names end in a number. Each event begins with this word.
-  constexpr std::array<unsigned char, 4> kLcmEvent{0xED, 0xA1, 0xDA, 0x01};
-  std::array<char, 4> first{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(first.data(), first.size());
-  for (std::size_t i = 0; i < first.size(); ++i)
-    if (!file || static_cast<unsigned char>(first[i]) != kLcmEvent[i]) return FileKind::unknown;
-  return FileKind::lcm_log;
+  return FileKind::unknown;
 }
 
-RecordingCounts decode_recording(const std::string& path, DriverInstance& driver,
-                                 const std::string& interface,
+FileKind file_kind(const InputFile& file) {
+  const FileKind by_name = file_kind(file.path());
+  if (by_name != FileKind::unknown) return by_name;
+  std::string_view head = file.head();
+  // lcm-logger's own names end in a number. Each event begins with this word.
+  if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
+  // Comments may stand before a capture's header and between a log's lines.
+  while (head.starts_with('#') || head.starts_with('\n') || head.starts_with("\r\n"))
+    head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1);
+  if (head.starts_with("time_s")) return FileKind::capture;
+  CandumpEntry entry;
+  return parse_candump_line(head.substr(0, head.find('\n')), entry) == CandumpLine::frame ? FileKind::candump
+                                                                                          : FileKind::unknown;
+}
+
+RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink) {
   RecordingCounts counts;
   const auto take = [&](const ifog_sample& sample) {
@@ -37,13 +42,13 @@ RecordingCounts decode_recording(const std::string& path, DriverInstance& driver
     sink(sample);
   };
   if (driver.takes_can()) {
-    const Candump log = read_candump(path, interface);
+    const Candump log = parse_candump(file.text(), file.path(), interface);
     counts.remote_frames = log.remote;
     counts.error_frames = log.error;
     counts.cut_off = log.cut_off;
     for (const ifog_can_frame& frame : log.frames) driver.decode_can(frame, take);
   } else {
-    const std::string bytes = read_bytes_file(path);
+    const std::string bytes = file.bytes();
     driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, 0, take);
   }
   // What the driver still waited for will never come.

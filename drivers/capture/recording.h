@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "drivers/capture/input_file.h"
 #include "drivers/host/driver_instance.h"
 
 namespace ifog {
@@ -18,9 +19,11 @@ enum class FileKind {
   unknown
 };
 
-// By the ending (before .gz), and for a file without a telling one by its first bytes; the file need not
-// exist.
+// By the ending (before .gz); `unknown` where it does not tell. For a file that is to be written.
 FileKind file_kind(const std::string& path);
+// The same, and where the name does not tell by the first bytes: an LCM event, a line of candump, a header
+// that begins with time_s.
+FileKind file_kind(const InputFile& file);
 
 struct RecordingCounts {
   std::size_t samples = 0;
@@ -34,8 +37,7 @@ struct RecordingCounts {
 // candump log only one interface's frames unless `interface` is empty. A log's frames arrive at their
 // recorded times; raw bytes have none and arrive at 0. Throws std::runtime_error with one line (file, line,
 // what was expected).
-RecordingCounts decode_recording(const std::string& path, DriverInstance& driver,
-                                 const std::string& interface,
+RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink);
 
 }  // namespace ifog

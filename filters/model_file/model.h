@@ -72,10 +72,9 @@ struct Model {
 };
 
 // Both throw std::runtime_error with one line: file, line or key, value, what was expected.
-// write_model writes to a temporary file, fsyncs and renames.
 Model read_model(const std::string& path);
 Model parse_model(std::string_view text, const std::string& name);  // `name` stands for the file in messages
+// The file's text; who writes it is the caller's choice.
 std::string model_text(const Model& model);
-void write_model(const Model& model, const std::string& path);
 
 }  // namespace ifog

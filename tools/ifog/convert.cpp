@@ -4,9 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "drivers/capture/output_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -19,14 +21,18 @@ struct Convert {
 };
 
 void Convert::run() const {
-  const bool from_csv = file_kind(from) == FileKind::capture;
-  const bool to_csv = file_kind(to) == FileKind::capture;
-  if (from_csv && !to_csv) return write_recording(read_capture(from), from, to, input, axis);
+  will_write("TO", to);
+  InputFile file(from);
+  const bool from_csv = file_kind(file) == FileKind::capture;
+  // Standard output has no ending: it takes what the capture is not.
+  const bool to_csv =
+      file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_csv && input.has_driver()));
+  if (from_csv && !to_csv) return write_recording(parse_capture(file.text(), from), from, to, input, axis);
   if (!to_csv)
     throw CLI::ValidationError(to, "expected a .csv or .csv.gz file, or a capture in .csv to convert from");
-  const Capture capture = input.read(from);
+  const Capture capture = input.read(file);
   write_capture(capture, to);
-  std::printf("%s: %zu samples\n", to.c_str(), capture.size());
+  say("%s: %zu samples\n", to.c_str(), capture.size());
 }
 
 }  // namespace

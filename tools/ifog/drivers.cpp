@@ -9,6 +9,7 @@
 
 #include "drivers/host/plugin.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -27,9 +28,8 @@ std::string note_of(const FoundPlugin& found) {
 
 void print(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
-  std::printf("%s %s: %s\n  takes %s; interface version %u\n  %s%s\n", table.name, table.version,
-              table.summary, transports(table).c_str(), table.abi, found.path.c_str(),
-              note_of(found).c_str());
+  say("%s %s: %s\n  takes %s; interface version %u\n  %s%s\n", table.name, table.version, table.summary,
+      transports(table).c_str(), table.abi, found.path.c_str(), note_of(found).c_str());
   std::size_t width = 0;
   for (const ifog_option* option = table.options; option->key != nullptr; ++option)
     width = std::max(width, std::strlen(option->key));
@@ -38,10 +38,10 @@ void print(const FoundPlugin& found) {
     if (option->default_value != nullptr)
       standard =
           option->default_value[0] == '\0' ? "default none" : std::string("default ") + option->default_value;
-    std::printf("    %-*s  %s\n    %-*s  %s; %s\n", static_cast<int>(width), option->key, option->help,
-                static_cast<int>(width), "", option->values, standard.c_str());
+    say("    %-*s  %s\n    %-*s  %s; %s\n", static_cast<int>(width), option->key, option->help,
+        static_cast<int>(width), "", option->values, standard.c_str());
   }
-  std::printf("\n");
+  say("\n");
 }
 
 void run(const std::string& name) {
@@ -61,9 +61,9 @@ void run(const std::string& name) {
     print(found);
   }
   for (const FoundPlugin& found : all)
-    if (!found.plugin) std::printf("refused: %s\n", found.refusal.c_str());
-  std::printf("looked in:\n");
-  for (const std::string& folder : folders) std::printf("  %s\n", folder.c_str());
+    if (!found.plugin) say("refused: %s\n", found.refusal.c_str());
+  say("looked in:\n");
+  for (const std::string& folder : folders) say("  %s\n", folder.c_str());
   if (usable == 0) throw std::runtime_error("no driver found; IFOG_PLUGIN_PATH may name folders to look in");
 }
 

@@ -1,12 +1,14 @@
 // ifog: the command line. Exit 0 good, 1 failed, 2 usage.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <exception>
+#include <sstream>
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
 
 int main(int argc, char** argv) {
+  ifog::tools::prepare_standard_streams();
   CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
                "ifog"};
   app.require_subcommand(1);
@@ -25,15 +27,23 @@ int main(int argc, char** argv) {
   ifog::tools::add_diagnose(app);
   ifog::tools::add_simulate(app);
 
+  int status = 0;
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const ifog::tools::Failed&) {
-    return 1;
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      // As CLI11 would print it, but fit for a terminal: it quotes the arguments.
+      std::ostringstream out, complaint;
+      status = app.exit(error, out, complaint) == 0 ? 0 : 2;
+      ifog::tools::say("%s", out.str().c_str());
+      ifog::tools::warn("%s", complaint.str().c_str());
+    } catch (const ifog::tools::Failed&) {
+      status = 1;
+    }
+    ifog::tools::finish_saying();
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "ifog: %s\n", ifog::printable(error.what(), ifog::kLongestMessage).c_str());
-    return 1;
+    ifog::tools::warn("ifog: %s\n", error.what());
+    status = 1;
   }
-  return 0;
+  return status;
 }

@@ -12,24 +12,28 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
+#include <exception>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "msgs/state_name.h"
+#include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
+#include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kDegree = 180.0 / 3.14159265358979323846;
 
 struct Options {
   std::string sensor, record, url = "udpm://239.255.76.67:7667?ttl=0";
@@ -64,10 +68,10 @@ std::string clock_text(double offset_ppm) {
 // A rate in the unit a person reads: °/h below 0.1 °/s.
 std::string rate_text(double radps) {
   std::array<char, 48> text{};
-  if (std::abs(radps) * kDegree < 0.1)
-    std::snprintf(text.data(), text.size(), "%+.4f °/h", radps * kDegree * 3600.0);
+  if (std::abs(radps) / kDegree < 0.1)
+    std::snprintf(text.data(), text.size(), "%+.4f °/h", radps / kDegreePerHour);
   else
-    std::snprintf(text.data(), text.size(), "%+.5f °/s", radps * kDegree);
+    std::snprintf(text.data(), text.size(), "%+.5f °/s", radps / kDegree);
   return text.data();
 }
 
@@ -91,13 +95,11 @@ std::string channels_text(const status_t& status) {
 
 class Recorder {
  public:
-  explicit Recorder(const std::string& path) : path_(path) {
-    if (path.empty()) return;
-    file_.open(path);
-    if (!file_) throw std::runtime_error(path + ": cannot be written");
+  explicit Recorder(const std::string& path) {
+    if (!path.empty()) file_.emplace(path);
   }
   void add(const std::string& sensor, const rate_t& message) {
-    if (path_.empty()) return;
+    if (!file_) return;
     std::string line;
     if (std::exchange(header_, false)) {
       line = "sensor,utime,seq,flags";
@@ -108,7 +110,7 @@ class Recorder {
       }
       line += '\n';
     }
-    line += sensor + ',' + std::to_string(message.utime) + ',' + std::to_string(message.seq) + ',' +
+    line += in_csv(sensor) + ',' + std::to_string(message.utime) + ',' + std::to_string(message.seq) + ',' +
             std::to_string(message.flags);
     for (std::size_t a = 0; a < static_cast<std::size_t>(message.axes); ++a)
       for (const double value :
@@ -117,17 +119,27 @@ class Recorder {
         line += ',';
         line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
       }
-    file_ << line << '\n';
+    held_ += line + '\n';
+    if (held_.size() < kHeld) return;
+    file_->write(held_);
+    held_.clear();
   }
   void finish() {
-    if (path_.empty()) return;
-    file_.close();
-    if (!file_) throw std::runtime_error(path_ + ": could not be written to the end");
+    if (!file_) return;
+    file_->write(held_);
+    file_->finish();
   }
 
  private:
-  std::string path_;
-  std::ofstream file_;
+  static constexpr std::size_t kHeld = 1U << 16U;
+  // The name comes from the network: it may neither end the cell nor the line.
+  static std::string in_csv(const std::string& name) {
+    std::string cell = printable(name);
+    std::replace(cell.begin(), cell.end(), ',', '_');
+    return cell;
+  }
+  std::optional<OutputFile> file_;
+  std::string held_;
   bool header_ = true;
 };
 
@@ -154,8 +166,14 @@ class Monitor {
   bool run();
 
  private:
-  static void received(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
-    static_cast<Monitor*>(user)->take(*buffer, channel);
+  // Called from C, through which nothing may be thrown.
+  static void received(const lcm_recv_buf_t* buffer, const char* channel, void* user) noexcept {
+    auto* const self = static_cast<Monitor*>(user);
+    try {
+      self->take(*buffer, channel);
+    } catch (...) {
+      if (!self->failure_) self->failure_ = std::current_exception();
+    }
   }
   void take(const lcm_recv_buf_t& buffer, const std::string& channel);
   void take_rate(Sensor& sensor, const rate_t& message);
@@ -164,9 +182,10 @@ class Monitor {
 
   const Options& options_;
   Recorder recorder_;
+  std::exception_ptr failure_;  // of the first message that could not be taken or recorded
   lcm_t* lcm_ = nullptr;
   std::map<std::string, Sensor> sensors_;
-  int lines_drawn_ = 0;
+  std::size_t lines_drawn_ = 0;
 };
 
 void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
@@ -216,13 +235,8 @@ void Monitor::take_rate(Sensor& sensor, const rate_t& message) {
 }
 
 void Monitor::show(double interval_s) {
-  const bool terminal = isatty(STDOUT_FILENO) == 1;
-  std::string text;
-  int lines = 0;
-  const auto line = [&](const std::string& content) {
-    text += content + (terminal ? "\x1b[K\n" : "\n");
-    ++lines;
-  };
+  std::vector<std::string> lines;
+  const auto line = [&](std::string content) { lines.push_back(std::move(content)); };
   for (auto& [name, sensor] : sensors_) {
     std::array<char, 256> head{};
     const status_t& status = sensor.status;
@@ -241,8 +255,8 @@ void Monitor::show(double interval_s) {
       AxisFigures& axis = sensor.axes[a];
       std::array<char, 256> row{};
       std::snprintf(row.data(), row.size(), "  axis %zu  %s  noise %.4f °/h (raw %.4f)  angle %+.6f°", a,
-                    rate_text(axis.mean).c_str(), std::sqrt(axis.square / (n - 1.0)) * kDegree * 3600.0,
-                    std::sqrt(axis.raw_square / (n - 1.0)) * kDegree * 3600.0, axis.angle * kDegree);
+                    rate_text(axis.mean).c_str(), std::sqrt(axis.square / (n - 1.0)) / kDegreePerHour,
+                    std::sqrt(axis.raw_square / (n - 1.0)) / kDegreePerHour, axis.angle / kDegree);
       std::string content = row.data();
       if (sensor.has_status && a < status.nis_mean.size()) {
         std::snprintf(row.data(), row.size(), "  NIS %.2f  whiteness %+.2f", status.nis_mean[a],
@@ -272,10 +286,8 @@ void Monitor::show(double interval_s) {
     sensor.shown = sensor.messages;
     sensor.in_interval = 0;
   }
-  if (terminal && lines_drawn_ > 0) std::printf("\x1b[%dA", lines_drawn_);
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
-  lines_drawn_ = lines;
+  redraw(lines_drawn_, lines);
+  lines_drawn_ = lines.size();
 }
 
 bool Monitor::all_shown() const {
@@ -300,6 +312,7 @@ bool Monitor::run() {
     const int ready = poll(wanted.data(), wanted.size(), 50);
     if (ready > 0 && (wanted[0].revents & POLLIN) != 0) break;
     if (ready > 0 && (wanted[1].revents & POLLIN) != 0) lcm_handle(lcm_);
+    if (failure_) std::rethrow_exception(failure_);
     if (seconds_since(shown) >= 1.0) {
       show(seconds_since(shown));
       shown = Clock::now();
@@ -328,8 +341,9 @@ void add_monitor(CLI::App& app) {
     // Without a time limit, --once waits for a daemon that may never come: give up as a script would want.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
+    will_write("--record", options->record);
     if (!Monitor(*options).run()) {
-      std::fprintf(stderr, "ifog monitor: nothing heard on %s\n", options->url.c_str());
+      warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
       throw Failed("nothing heard");
     }
   });

@@ -4,59 +4,54 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/units/field_units.h"
+#include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/plot.h"
+#include "tools/ifog/console/say.h"
+#include "tools/report/picture.h"
+#include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
-
-constexpr double kDegreesPerHour = 180.0 / std::numbers::pi * 3600.0;
-// More points than a picture is wide only make it larger; beyond this every so-many-th sample is drawn.
-constexpr std::size_t kMostPoints = 20000;
 
 struct Arguments {
   std::string log, channel, axis, picture;
   double from_s = 0.0;
 };
 
-Curve curve_of(const Table& table, const CaptureColumn& column, const Arguments& a) {
-  Curve curve;
-  const std::size_t every = table.time_s.size() / kMostPoints + 1;
-  for (std::size_t i = 0; i < table.time_s.size(); i += every) {
-    if (table.time_s[i] < a.from_s || !std::isfinite(column.values[i])) continue;
-    curve.x.push_back(table.time_s[i]);
-    curve.y.push_back(column.values[i] * kDegreesPerHour);
-  }
-  return curve;
-}
-
 void run(const Arguments& a) {
-  const Table table = read_published(a.log, a.channel);
+  will_write("--output", a.picture);
+  InputFile log(a.log);
+  const Table table = read_published(log, a.channel);
   const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
-  Panel rate;
-  rate.title = "Rate published by the daemon";
-  rate.x_label = "time, s";
-  rate.y_label = "°/h";
-  std::vector<std::string> axes;
+  std::size_t first = 0;
+  while (first < table.time_s.size() && table.time_s[first] < a.from_s) ++first;
+  if (first == table.time_s.size()) throw std::runtime_error(a.log + ": nothing after --from");
+  const auto from_first = [first](const std::vector<double>& values, double scale) {
+    return report::scaled({values.begin() + static_cast<std::ptrdiff_t>(first), values.end()}, scale);
+  };
+  const report::TimeUnit unit = report::time_unit(table.time_s.back() - table.time_s[first]);
+  report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.",
+                     {std::string("time (") + unit.name + ")", false, table.time_s[first] / unit.seconds,
+                      table.time_s.back() / unit.seconds},
+                     {"rate (°/h)", false, {}, {}});
+  std::size_t axes = 0, curves = 0;
   for (const CaptureColumn& column : table.columns) {
     const bool raw = column.name == "raw" + suffix, denoised = column.name == "denoised" + suffix;
-    if (column.name.starts_with("raw")) axes.push_back(column.name);
+    if (column.name.starts_with("raw")) ++axes;
     if (!raw && !denoised) continue;
-    Curve curve = curve_of(table, column, a);
-    curve.title = raw ? "raw" : "denoised";
-    curve.color = raw ? "#b0c4de" : "#d62728";
-    curve.style = raw ? "lines lw 1" : "lines lw 2";
-    rate.curves.push_back(std::move(curve));
+    ++curves;
+    rate.line(raw ? report::Role::kRaw : report::Role::kAfter, raw ? "raw" : "denoised",
+              from_first(table.time_s, 1.0 / unit.seconds), from_first(column.values, 1.0 / kDegreePerHour));
   }
-  if (rate.curves.size() != 2)
+  if (curves != 2)
     throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +
-                             (axes.size() == 1 ? "none, the sensor has one axis" : "x, y or z"));
+                             (axes == 1 ? "none, the sensor has one axis" : "x, y or z"));
   AllanOptions options;
   options.axis = a.axis;
   options.from_s = a.from_s;
@@ -66,10 +61,11 @@ void run(const Arguments& a) {
   // The noise terms are the sensor's; what a filter has been over has none.
   for (AllanRecord& record : records)
     if (record.signal == "denoised") record.fit.reset();
-  Panel allan = allan_panel(records);
-  allan.title = "Allan deviation, raw and denoised";
-  plot(a.picture, {rate, allan}, 1000, 520);
-  std::printf("%s\n", a.picture.c_str());
+  report::write_picture(
+      a.picture,
+      report::picture_svg(
+          "", {{400.0, {{rate}}}, {520.0, {{allan_chart("Allan deviation, raw and denoised", records)}}}}));
+  say("%s\n", a.picture.c_str());
 }
 
 }  // namespace
@@ -83,7 +79,10 @@ void add_picture(CLI::App& app) {
   command->add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
   command->add_option("--from", a->from_s, "Leave out what is before this time, s")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--output", a->picture, "Picture, .svg or .png")->required();
+  command->add_option("--output", a->picture, "Picture, .svg or .png")
+      ->required()
+      ->check(report::wrong_picture_name, "")
+      ->type_name("FILE");
   command->callback([a] { run(*a); });
 }
 

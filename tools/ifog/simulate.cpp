@@ -3,11 +3,13 @@
 #include <cstdio>
 #include <memory>
 
+#include "drivers/capture/output_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
 
 namespace ifog::tools {
@@ -20,6 +22,8 @@ struct Simulate {
   bool seed_given = false;
 
   void run() const {
+    will_write("--output", output);
+    will_write("--truth", truth);
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
     simulate::Simulation made;
     try {
@@ -27,12 +31,12 @@ struct Simulate {
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(scenario + ": " + error.what());
     }
-    if (file_kind(output) == FileKind::capture) {
+    if (file_kind(output) == FileKind::capture || (is_standard_output(output) && !encoding.has_driver())) {
       if (encoding.has_driver())
         throw CLI::ValidationError(output,
                                    "is a CSV capture, which no driver encodes; expected .kvh, .bin or .log");
       write_capture(made.capture, output);
-      std::printf("%s: %zu samples\n", output.c_str(), made.capture.size());
+      say("%s: %zu samples\n", output.c_str(), made.capture.size());
     } else {
       write_recording(made.capture, scenario, output, encoding, axis);
     }
@@ -41,7 +45,7 @@ struct Simulate {
       write_capture(simulate::truth_capture(made.truth, made.capture), truth);
     else
       write_text_file(truth, simulate::truth_json(made.truth));
-    std::printf("%s: the truth\n", truth.c_str());
+    say("%s: the truth\n", truth.c_str());
   }
 };
 

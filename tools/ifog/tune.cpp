@@ -8,21 +8,22 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
 #include "filters/allan/stretches.h"
 #include "filters/model_file/model.h"
+#include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDeg = 180.0 / std::numbers::pi;
 
 struct Options {
   CaptureInput input;
@@ -67,9 +68,9 @@ std::string today() {
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
   const char* unit = "";
-  if (figure.unit == "rad/s/sqrt(Hz)") factor = kDeg * 60.0, unit = "deg/sqrt(h)";
-  if (figure.unit == "rad/s^2/sqrt(Hz)") factor = kDeg * 3600.0 * 60.0, unit = "deg/h/sqrt(h)";
-  if (figure.unit == "rad/s") factor = kDeg * 3600.0, unit = "deg/h";
+  if (figure.unit == "rad/s/sqrt(Hz)") factor = 1.0 / kDegreePerRootHour, unit = "deg/sqrt(h)";
+  if (figure.unit == "rad/s^2/sqrt(Hz)") factor = 1.0 / kDegreePerHourPerRootHour, unit = "deg/h/sqrt(h)";
+  if (figure.unit == "rad/s") factor = 1.0 / kDegreePerHour, unit = "deg/h";
   if (factor == 0.0) return "";
   char text[64];
   std::snprintf(text, sizeof text, "   %.4g %s", figure.value * factor, unit);
@@ -91,18 +92,18 @@ json model_json(const TunedModel& model) {
 }
 
 void print(const Tuning& tuning) {
-  std::printf("%-28s %4s %16s %10s\n", "state model", "free", "ln likelihood", "BIC - best");
+  say("%-28s %4s %16s %10s\n", "state model", "free", "ln likelihood", "BIC - best");
   for (const TunedModel& model : tuning.models)
-    std::printf("%-28s %4d %16.1f %10.1f\n", model.settings.state.c_str(), model.parameters,
-                model.log_likelihood, model.bic - tuning.models.front().bic);
-  std::printf("\n%s\n", tuning.models.front().settings.state.c_str());
+    say("%-28s %4d %16.1f %10.1f\n", model.settings.state.c_str(), model.parameters, model.log_likelihood,
+        model.bic - tuning.models.front().bic);
+  say("\n%s\n", tuning.models.front().settings.state.c_str());
   for (const TunedFigure& f : tuning.models.front().figures) {
     if (f.std_error)
-      std::printf("  %-30s %12.5g ± %-9.2g %-18s%s\n", f.name.c_str(), f.value, *f.std_error, f.unit.c_str(),
-                  in_field_units(f).c_str());
+      say("  %-30s %12.5g ± %-9.2g %-18s%s\n", f.name.c_str(), f.value, *f.std_error, f.unit.c_str(),
+          in_field_units(f).c_str());
     else
-      std::printf("  %-30s %12.5g   %-9s %-18s%s\n", f.name.c_str(), f.value, "unknown", f.unit.c_str(),
-                  in_field_units(f).c_str());
+      say("  %-30s %12.5g   %-9s %-18s%s\n", f.name.c_str(), f.value, "unknown", f.unit.c_str(),
+          in_field_units(f).c_str());
   }
 }
 
@@ -116,12 +117,14 @@ Model model_of(const Tuning& tuning, const Capture& capture, const std::string& 
       if (f.name == "angle_random_walk") model.noise[axis].N = f.value;
       if (f.name == "rate_random_walk") model.noise[axis].K = f.value;
     }
-  model.source.capture = std::filesystem::path(path).filename().string();
+  model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
   model.source.date = today();
   return model;
 }
 
 void run(const Options& options) {
+  will_write("--json", options.json_file);
+  will_write("--write-model", options.model);
   const Capture capture = options.input.read(options.capture);
   if (capture.size() < 3)
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
@@ -140,28 +143,25 @@ void run(const Options& options) {
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.capture + ": " + error.what());
   }
-  std::printf("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
-              capture.axes.size() > 1 ? ", all axes under one model" : "");
-  if (left > 0)
-    std::printf("the last %zu rows are left out; --samples %zu takes all\n", left, capture.size() + left);
+  say("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
+      capture.axes.size() > 1 ? ", all axes under one model" : "");
+  if (left > 0) say("the last %zu rows are left out; --samples %zu takes all\n", left, capture.size() + left);
   print(tuning);
   if (!options.json_file.empty()) {
     json models = json::array();
     for (const TunedModel& model : tuning.models) models.push_back(model_json(model));
-    write_text_file(options.json_file, json{{"schema", "ifog.tune/1"},
-                                            {"capture", options.capture},
-                                            {"samples", tuning.samples},
-                                            {"left_out", left},
-                                            {"sample_rate_hz", 1.0 / period},
-                                            {"best", tuning.models.front().settings.state},
-                                            {"models", models}}
-                                               .dump(2) +
-                                           "\n");
+    write_json(options.json_file, json{{"schema", "ifog.tune/1"},
+                                       {"capture", options.capture},
+                                       {"samples", tuning.samples},
+                                       {"left_out", left},
+                                       {"sample_rate_hz", 1.0 / period},
+                                       {"best", tuning.models.front().settings.state},
+                                       {"models", models}});
   }
   if (!options.model.empty()) {
-    write_model(model_of(tuning, capture, options.capture), options.model);
-    std::printf("\nwritten: %s\n  ifog denoise %s --model %s --output denoised.csv\n", options.model.c_str(),
-                options.capture.c_str(), options.model.c_str());
+    write_file(options.model, model_text(model_of(tuning, capture, options.capture)));
+    say("\nwritten: %s\n  ifog denoise %s --model %s --output denoised.csv\n", options.model.c_str(),
+        options.capture.c_str(), options.model.c_str());
   }
 }
 

@@ -1,16 +1,19 @@
 #include "tools/report/chart.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <utility>
 
 #include "tools/report/text.h"
 
 namespace ifog::report {
 namespace {
 
-constexpr double kLeft = 68.0, kRight = 16.0, kTop = 34.0, kBottom = 46.0;
+constexpr double kLeft = 68.0, kRight = 16.0, kLegendRow = 17.0;
+constexpr double kCharacter = 6.9;  // mean width of the 12 px face
+constexpr int kYTicks = 5;
 
 const char* css_class(Role role) {
   switch (role) {
@@ -22,6 +25,12 @@ const char* css_class(Role role) {
       return "fit";
     case Role::kSecond:
       return "second";
+    case Role::kRaw:
+      return "raw";
+    case Role::kThird:
+      return "third";
+    case Role::kFourth:
+      return "fourth";
   }
   return "";
 }
@@ -32,76 +41,17 @@ std::string fixed(double value) {
   return text;
 }
 
-// Data to pixels along one axis.
-class Scale {
- public:
-  Scale(const ChartAxis& axis, double low, double high, double from, double to)
-      : log_(axis.log), from_(from), to_(to) {
-    low_ = axis.low.value_or(low);
-    high_ = axis.high.value_or(high);
-    if (log_) {
-      low_ = std::log10(low_);
-      high_ = std::log10(high_);
-    }
-    const double span = high_ - low_;
-    const double margin = span > 0.0 ? 0.04 * span : (log_ ? 0.5 : std::max(std::abs(low_), 1e-30));
-    if (!axis.low) low_ -= margin;
-    if (!axis.high) high_ += margin;
-  }
-  [[nodiscard]] double operator()(double value) const {
-    return from_ + ((log_ ? std::log10(value) : value) - low_) / (high_ - low_) * (to_ - from_);
-  }
-  [[nodiscard]] bool drawable(double value) const { return std::isfinite(value) && (!log_ || value > 0.0); }
+// By characters, not bytes: ° and τ take two.
+double text_width(const std::string& text) {
+  return kCharacter * static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
+           return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+         }));
+}
 
-  // Values at round numbers: decades (with 2 and 5 when there are few), or steps of 1, 2, 5.
-  [[nodiscard]] std::vector<double> ticks(int wanted) const {
-    std::vector<double> out;
-    if (log_) {
-      const bool dense = high_ - low_ < 2.5;
-      for (int d = static_cast<int>(std::floor(low_)); d <= static_cast<int>(std::ceil(high_)); ++d)
-        for (const double m : {1.0, 2.0, 5.0})
-          if ((dense || m == 1.0) && inside(d + std::log10(m))) out.push_back(m * std::pow(10.0, d));
-      return out;
-    }
-    const double raw = (high_ - low_) / wanted;
-    const double ten = std::pow(10.0, std::floor(std::log10(raw)));
-    const double step = ten * (raw / ten < 1.5 ? 1.0 : raw / ten < 3.5 ? 2.0 : raw / ten < 7.5 ? 5.0 : 10.0);
-    for (double v = std::ceil(low_ / step); v * step <= high_; v += 1.0) out.push_back(v * step);
-    return out;
-  }
-  [[nodiscard]] std::string tick_text(double value) const {
-    if (log_) return number(value, 1);
-    const double reach = std::max(std::abs(low_), std::abs(high_));
-    if (std::abs(value) < 1e-9 * reach) return "0";
-    const double span = high_ - low_;
-    // As many digits as neighbours need to differ.
-    const int digits = 1 + std::max(0, static_cast<int>(std::ceil(std::log10(std::abs(value) / span))) + 1);
-    return trimmed(number(value, std::min(digits + 1, 9)));
-  }
-
- private:
-  [[nodiscard]] bool inside(double exponent) const {
-    return exponent >= low_ - 1e-9 && exponent <= high_ + 1e-9;
-  }
-  static std::string trimmed(std::string text) {
-    if (text.find('.') == std::string::npos || text.find("×") != std::string::npos) return text;
-    while (text.back() == '0') text.pop_back();
-    if (text.back() == '.') text.pop_back();
-    return text;
-  }
-  bool log_;
-  double low_ = 0.0, high_ = 1.0, from_, to_;
-};
-
-struct Bounds {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  void take(double value, bool log) {
-    if (!std::isfinite(value) || (log && value <= 0.0)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-};
+std::string words(const char* style, double x, double y, const char* anchor, const std::string& text) {
+  return std::string("<text class=\"") + style + "\" x=\"" + fixed(x) + "\" y=\"" + fixed(y) +
+         "\" text-anchor=\"" + anchor + "\">" + escaped(text) + "</text>\n";
+}
 
 // A path through the points; pixel columns that hold several are covered from their least to their most.
 std::string path(const std::vector<double>& x, const std::vector<double>& y, const Scale& sx,
@@ -132,102 +82,187 @@ std::string path(const std::vector<double>& x, const std::vector<double>& y, con
   return d;
 }
 
+// There along the upper edge, back along the lower.
+std::string outline(const std::vector<double>& x, const std::vector<double>& low,
+                    const std::vector<double>& high, const Scale& sx, const Scale& sy) {
+  std::string there, back;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!sx.drawable(x[i]) || !sy.drawable(low[i]) || !sy.drawable(high[i])) continue;
+    there += (there.empty() ? "M" : "L") + fixed(sx(x[i])) + " " + fixed(sy(high[i]));
+    back = "L" + fixed(sx(x[i])) + " " + fixed(sy(low[i])) + back;
+  }
+  return there.empty() ? "" : there + back + "Z";
+}
+
+// One path of zero-length strokes: round caps make them dots at a tenth of the size of circles.
+std::string dots(const std::vector<double>& x, const std::vector<double>& y, const Scale& sx,
+                 const Scale& sy) {
+  std::string d;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i)
+    if (sx.drawable(x[i]) && sy.drawable(y[i])) d += "M" + fixed(sx(x[i])) + " " + fixed(sy(y[i])) + "h0";
+  return d;
+}
+
 }  // namespace
+
+Role role_of(std::size_t index) {
+  constexpr std::array kOrder{Role::kAfter, Role::kBefore, Role::kSecond,
+                              Role::kThird, Role::kFourth, Role::kFit};
+  return kOrder[index % kOrder.size()];
+}
 
 Chart::Chart(std::string title, std::string description, ChartAxis x, ChartAxis y)
     : title_(std::move(title)), description_(std::move(description)), x_(std::move(x)), y_(std::move(y)) {}
 
 void Chart::line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y) {
-  series_.push_back({role, label, std::move(x), std::move(y), true});
+  series_.push_back({Kind::line, role, label, std::move(x), std::move(y), {}, {}});
 }
 
 void Chart::points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y) {
-  series_.push_back({role, label, std::move(x), std::move(y), false});
+  series_.push_back({Kind::points, role, label, std::move(x), std::move(y), {}, {}});
+}
+
+void Chart::band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high) {
+  series_.push_back({Kind::band, role, "", std::move(x), std::move(low), std::move(high), {}});
+}
+
+void Chart::guide(Role role, std::vector<double> x, std::vector<double> y, Word word) {
+  series_.push_back({Kind::guide, role, "", std::move(x), std::move(y), {}, std::move(word)});
 }
 
 void Chart::mark_x(double x, const std::string& label) { marks_.emplace_back(x, label); }
 
-bool Chart::empty() const {
-  Bounds x, y;
-  for (const Series& s : series_)
+Bounds Chart::bounds(bool of_x) const {
+  Bounds out;
+  for (const Series& s : series_) {
+    if (s.kind == Kind::guide) continue;
     for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
-      x.take(s.x[i], x_.log);
-      y.take(s.y[i], y_.log);
+      out.take(of_x ? s.x[i] : s.y[i], of_x ? x_.log : y_.log);
+      if (!of_x && s.kind == Kind::band) out.take(s.high[i], y_.log);
     }
-  return !(x.low <= x.high && y.low <= y.high);
+  }
+  return out;
+}
+
+bool Chart::empty() const { return bounds(true).empty() || bounds(false).empty(); }
+
+Chart::Legend Chart::legend(double left, double right, double top) const {
+  Legend out;
+  double at = left;
+  for (const Series& s : series_) {
+    if (s.label.empty()) continue;
+    const double width = 28.0 + text_width(s.label);
+    if (out.rows == 0.0) out.rows = 1.0;
+    if (at > left && at + width > right) {
+      at = left;
+      out.rows += 1.0;
+    }
+    const double y = top + kLegendRow * out.rows;
+    const std::string name = css_class(s.role);
+    out.svg += s.kind == Kind::points ? "<path class=\"dots key " + name + "\" d=\"M" + fixed(at + 11.0)
+                                      : "<path class=\"line key " + name + "\" d=\"M" + fixed(at);
+    out.svg += " " + fixed(y - 4.0) + (s.kind == Kind::points ? "h0\"/>" : "h22\"/>");
+    out.svg += words("tick", at + 28.0, y, "start", s.label);
+    at += width + 22.0;
+  }
+  return out;
+}
+
+std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double height) const {
+  std::string out;
+  const auto rule = [&](const char* style, const std::string& d) {
+    out += std::string("<path class=\"") + style + "\" d=\"" + d + "\"/>\n";
+  };
+  const auto upright = [&](double px) {
+    return "M" + fixed(px) + " " + fixed(f.top) + "V" + fixed(f.bottom);
+  };
+  const auto level = [&](double py) { return "M" + fixed(f.left) + " " + fixed(py) + "H" + fixed(f.right); };
+  std::string minor;
+  for (const double v : sx.minor_ticks()) minor += upright(sx(v));
+  for (const double v : sy.minor_ticks()) minor += level(sy(v));
+  if (!minor.empty()) rule("minor", minor);
+  for (const double v : sx.ticks(7)) {
+    if (sx(v) < f.left - 0.5 || sx(v) > f.right + 0.5) continue;
+    rule("grid", upright(sx(v)));
+    if (x_.numbered) out += words("tick", sx(v), f.bottom + 16.0, "middle", sx.tick_text(v));
+  }
+  for (const double v : sy.ticks(kYTicks)) {
+    if (sy(v) < f.top - 0.5 || sy(v) > f.bottom + 0.5) continue;
+    rule("grid", level(sy(v)));
+    if (y_.numbered) out += words("tick", f.left - 7.0, sy(v) + 4.0, "end", sy.tick_text(v));
+  }
+  rule("frame", upright(f.left) + "H" + fixed(f.right));
+  if (!x_.label.empty()) out += words("label", 0.5 * (f.left + f.right), height - 8.0, "middle", x_.label);
+  const std::string middle = fixed(0.5 * (f.top + f.bottom));
+  if (!y_.label.empty())
+    out += "<text class=\"label\" x=\"14\" y=\"" + middle +
+           "\" text-anchor=\"middle\" transform=\"rotate(-90 14 " + middle + ")\">" + escaped(y_.label) +
+           "</text>\n";
+  for (const auto& [value, label] : marks_) {
+    if (!sx.drawable(value) || sx(value) < f.left || sx(value) > f.right) continue;
+    const bool flip = sx(value) > 0.8 * f.right;
+    rule("mark", upright(sx(value)));
+    out += words("tick", sx(value) + (flip ? -4.0 : 4.0), f.top + 12.0, flip ? "end" : "start", label);
+  }
+  return out;
+}
+
+std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) const {
+  const std::string box =
+      fixed(f.left) + " " + fixed(f.top) + " " + fixed(f.right - f.left) + " " + fixed(f.bottom - f.top);
+  // Axis limits that were asked for may cut a curve.
+  std::string out = "<svg x=\"" + fixed(f.left) + "\" y=\"" + fixed(f.top) + "\" width=\"" +
+                    fixed(f.right - f.left) + "\" height=\"" + fixed(f.bottom - f.top) + "\" viewBox=\"" +
+                    box + "\">";
+  std::string named;  // over every curve
+  for (const Series& s : series_) {
+    const std::string name = css_class(s.role);
+    const bool is_band = s.kind == Kind::band, is_dots = s.kind == Kind::points,
+               is_guide = s.kind == Kind::guide;
+    const std::string d = is_band   ? outline(s.x, s.y, s.high, sx, sy)
+                          : is_dots ? dots(s.x, s.y, sx, sy)
+                                    : path(s.x, s.y, sx, sy);
+    out += std::string("<path class=\"") +
+           (is_band    ? "band "
+            : is_dots  ? "dots "
+            : is_guide ? "guide "
+                       : "line ") +
+           name + "\" d=\"" + d + "\"/>\n";
+    if (is_guide && sx.drawable(s.word.x) && sy.drawable(s.word.y))
+      named += words("word", sx(s.word.x), sy(s.word.y), s.word.anchor, s.word.text);
+  }
+  return out + named + "</svg>\n";
+}
+
+double Chart::left_margin(double height) const {
+  double widest = 0.0;
+  const Scale sy(y_, bounds(false), height, 0.0);
+  for (const double v : sy.ticks(kYTicks)) widest = std::max(widest, text_width(sy.tick_text(v)));
+  return (y_.label.empty() ? 8.0 : 26.0) + (y_.numbered ? widest + 7.0 : 0.0);
+}
+
+std::string Chart::drawing(double width, double height, double left, bool headed) const {
+  const double right = width - kRight, heading = headed && !title_.empty() ? 20.0 : 4.0;
+  const Legend key = legend(left, right, heading);
+  const double top = heading + (headed ? 6.0 : 13.0) + std::max(key.rows, headed ? 0.0 : 1.0) * kLegendRow;
+  const double below = !x_.numbered ? 8.0 : x_.label.empty() ? 24.0 : 46.0;
+  const Frame frame{left, right, top, height - below};
+  const Scale sx(x_, bounds(true), frame.left, frame.right), sy(y_, bounds(false), frame.bottom, frame.top);
+  std::string out = axes(frame, sx, sy, height) + curves(frame, sx, sy) + key.svg;
+  if (headed && !title_.empty()) out += words("heading", left, 15.0, "start", title_);
+  return out;
+}
+
+std::string Chart::panel(double width, double height, double left) const {
+  return empty() ? "" : drawing(width, height, left, true);
 }
 
 std::string Chart::svg(double width, double height) const {
   if (empty()) return "";
-  Bounds bx, by;
-  for (const Series& s : series_)
-    for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
-      bx.take(s.x[i], x_.log);
-      by.take(s.y[i], y_.log);
-    }
-  const Scale sx(x_, bx.low, bx.high, kLeft, width - kRight);
-  const Scale sy(y_, by.low, by.high, height - kBottom, kTop);
-  const double right = width - kRight, bottom = height - kBottom;
-
-  std::string out = "<svg class=\"chart\" role=\"img\" viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
-                    "\" preserveAspectRatio=\"xMidYMid meet\"><title>" + escaped(title_) + "</title><desc>" +
-                    escaped(description_) + "</desc>\n";
-  for (const double v : sx.ticks(7)) {
-    const std::string px = fixed(sx(v));
-    if (sx(v) < kLeft - 0.5 || sx(v) > right + 0.5) continue;
-    out += "<path class=\"grid\" d=\"M" + px + " " + fixed(kTop) + "V" + fixed(bottom) +
-           "\"/><text class=\"tick\" x=\"" + px + "\" y=\"" + fixed(bottom + 16.0) +
-           "\" text-anchor=\"middle\">" + sx.tick_text(v) + "</text>\n";
-  }
-  for (const double v : sy.ticks(5)) {
-    const double py = sy(v);
-    if (py < kTop - 0.5 || py > bottom + 0.5) continue;
-    out += "<path class=\"grid\" d=\"M" + fixed(kLeft) + " " + fixed(py) + "H" + fixed(right) +
-           "\"/><text class=\"tick\" x=\"" + fixed(kLeft - 7.0) + "\" y=\"" + fixed(py + 4.0) +
-           "\" text-anchor=\"end\">" + sy.tick_text(v) + "</text>\n";
-  }
-  out += "<text class=\"label\" x=\"" + fixed(0.5 * (kLeft + right)) + "\" y=\"" + fixed(height - 8.0) +
-         "\" text-anchor=\"middle\">" + escaped(x_.label) + "</text>\n";
-  out += "<text class=\"label\" x=\"14\" y=\"" + fixed(0.5 * (kTop + bottom)) +
-         "\" text-anchor=\"middle\" transform=\"rotate(-90 14 " + fixed(0.5 * (kTop + bottom)) + ")\">" +
-         escaped(y_.label) + "</text>\n";
-  for (const auto& [value, label] : marks_) {
-    if (!sx.drawable(value) || sx(value) < kLeft || sx(value) > right) continue;
-    const bool flip = sx(value) > 0.8 * right;
-    out += "<path class=\"mark\" d=\"M" + fixed(sx(value)) + " " + fixed(kTop) + "V" + fixed(bottom) +
-           "\"/><text class=\"tick\" x=\"" + fixed(sx(value) + (flip ? -4.0 : 4.0)) + "\" y=\"" +
-           fixed(kTop + 12.0) + "\" text-anchor=\"" + (flip ? "end" : "start") + "\">" + escaped(label) +
-           "</text>\n";
-  }
-  // Axis limits that were asked for may cut a curve.
-  const std::string clip = "<svg x=\"" + fixed(kLeft) + "\" y=\"" + fixed(kTop) + "\" width=\"" +
-                           fixed(right - kLeft) + "\" height=\"" + fixed(bottom - kTop) + "\" viewBox=\"" +
-                           fixed(kLeft) + " " + fixed(kTop) + " " + fixed(right - kLeft) + " " +
-                           fixed(bottom - kTop) + "\">";
-  out += clip;
-  double legend = kLeft;
-  std::string legend_text;
-  for (const Series& s : series_) {
-    const std::string name = css_class(s.role);
-    if (s.joined) {
-      out += "<path class=\"line " + name + "\" d=\"" + path(s.x, s.y, sx, sy) + "\"/>\n";
-    } else {
-      // One path of zero-length strokes: round caps make them dots at a tenth of the size of circles.
-      out += "<path class=\"dots " + name + "\" d=\"";
-      for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i)
-        if (sx.drawable(s.x[i]) && sy.drawable(s.y[i]))
-          out += "M" + fixed(sx(s.x[i])) + " " + fixed(sy(s.y[i])) + "h0";
-      out += "\"/>\n";
-    }
-    if (s.label.empty()) continue;
-    legend_text += s.joined
-                       ? "<path class=\"line key " + name + "\" d=\"M" + fixed(legend) + " 17h22\"/>"
-                       : "<path class=\"dots key " + name + "\" d=\"M" + fixed(legend + 11.0) + " 17h0\"/>";
-    legend_text +=
-        "<text class=\"tick\" x=\"" + fixed(legend + 28.0) + "\" y=\"21\">" + escaped(s.label) + "</text>\n";
-    legend += 50.0 + 6.6 * static_cast<double>(s.label.size());
-  }
-  return out + "</svg>\n" + legend_text + "</svg>\n";
+  return "<svg class=\"chart\" role=\"img\" viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
+         "\" preserveAspectRatio=\"xMidYMid meet\"><title>" + escaped(title_) + "</title><desc>" +
+         escaped(description_) + "</desc>\n" +
+         drawing(width, height, std::max(kLeft, left_margin(height)), false) + "</svg>\n";
 }
 
 }  // namespace ifog::report

@@ -1,21 +1,20 @@
-// One chart as inline SVG: crisp at any size, coloured by the page's CSS, readable by a screen reader (title
-// and description). Nothing is fetched and no script runs.
+// One chart as SVG: crisp at any size, coloured by the style of the page or picture it stands in, readable by
+// a screen reader (title and description). Nothing is fetched and no script runs.
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "tools/report/scale.h"
+
 namespace ifog::report {
 
-struct ChartAxis {
-  std::string label;
-  bool log = false;  // values that are not positive are left out
-  std::optional<double> low, high;
-};
+// What a curve is; the style gives each a colour, and a stroke by which it is known without colour.
+enum class Role { kBefore, kAfter, kFit, kSecond, kRaw, kThird, kFourth };
 
-// What a curve is; the style sheet gives each a colour and a stroke that can be told apart without colour.
-enum class Role { kBefore, kAfter, kFit, kSecond };
+// Of one of several curves of a kind, in their order.
+Role role_of(std::size_t index);
 
 class Chart {
  public:
@@ -25,18 +24,47 @@ class Chart {
   // x ascending. Where there are more points than pixels the stroke covers the extremes of each pixel column.
   void line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
+  void band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high);
+  // A thin dashed curve that is no data and does not widen the axes, with a word at a place of its own.
+  struct Word {
+    std::string text;
+    double x = 0.0, y = 0.0;        // in data
+    const char* anchor = "middle";  // start, middle, end
+  };
+  void guide(Role role, std::vector<double> x, std::vector<double> y, Word word);
   void mark_x(double x, const std::string& label);  // a vertical rule
 
   [[nodiscard]] bool empty() const;  // nothing finite to draw
   [[nodiscard]] std::string svg(double width = 720, double height = 320) const;
 
+  // For a picture of several: the width that the numbers and the label of the y axis want, and the drawing
+  // without the element around it, under a heading, the frame `left` from its edge.
+  [[nodiscard]] double left_margin(double height) const;
+  [[nodiscard]] std::string panel(double width, double height, double left) const;
+
  private:
+  enum class Kind { line, points, band, guide };
   struct Series {
+    Kind kind;
     Role role;
     std::string label;
     std::vector<double> x, y;
-    bool joined;
+    std::vector<double> high;  // of a band
+    Word word;                 // of a guide
   };
+  struct Frame {
+    double left, right, top, bottom;
+  };
+  struct Legend {
+    std::string svg;
+    double rows = 0.0;
+  };
+  [[nodiscard]] Bounds bounds(bool of_x) const;
+  [[nodiscard]] Legend legend(double left, double right, double top) const;
+  [[nodiscard]] std::string axes(const Frame& f, const Scale& sx, const Scale& sy, double height) const;
+  [[nodiscard]] std::string curves(const Frame& f, const Scale& sx, const Scale& sy) const;
+  [[nodiscard]] std::string drawing(double width, double height, double left, bool headed) const;
+
   std::string title_, description_;
   ChartAxis x_, y_;
   std::vector<Series> series_;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "filters/effects/form.h"
+#include "filters/units/field_units.h"
 #include "tools/report/account.h"
 #include "tools/report/chart.h"
 #include "tools/report/style.h"
@@ -16,11 +16,6 @@ namespace ifog::report {
 namespace {
 
 using Series = std::vector<double>;
-
-Series scaled(Series x, double scale) {
-  for (double& value : x) value *= scale;
-  return x;
-}
 
 // About its mean, which is the switch-on bias.
 Series centred(Series x, double scale) {
@@ -233,12 +228,11 @@ std::string noise_table(const NoiseTerms& noise) {
     double scale;
     const char* unit;
   };
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const Row rows[] = {{"quantisation Q", noise.Q, 1e6, "µrad"},
-                      {"angle random walk N", noise.N, 60.0 / kDegree, "°/√h"},
-                      {"bias instability B", noise.B, 3600.0 / kDegree, "°/h"},
-                      {"rate random walk K", noise.K, 3600.0 * 60.0 / kDegree, "°/h/√h"},
-                      {"rate ramp R", noise.R, 3600.0 * 3600.0 / kDegree, "°/h/h"}};
+                      {"angle random walk N", noise.N, 1.0 / kDegreePerRootHour, "°/√h"},
+                      {"bias instability B", noise.B, 1.0 / kDegreePerHour, "°/h"},
+                      {"rate random walk K", noise.K, 1.0 / kDegreePerHourPerRootHour, "°/h/√h"},
+                      {"rate ramp R", noise.R, 1.0 / kDegreePerHourPerHour, "°/h/h"}};
   std::string out =
       "<div class=\"scroll\"><table><caption>Noise after the effects (IEEE Std 952 "
       "terms)</caption><thead><tr><th "
@@ -253,7 +247,6 @@ std::string noise_table(const NoiseTerms& noise) {
 
 std::string heading_picture(const HeadingPrediction& h) {
   if (h.after_s.empty()) return "";
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const TimeUnit unit = time_unit(h.after_s.back());
   Chart chart("Predicted heading error of the next capture",
               "Standard deviation of the heading error over time.",
@@ -356,7 +349,7 @@ std::string diagnosis_page(const Page& page) {
       "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light "
       "dark\">\n"
       "<link rel=\"icon\" href=\"data:,\">\n<title>" +
-      title + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
+      title + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
       "</h1>\n<p class=\"sub\">" + names + " · " + size + "</p>\n" + contents(page);
   for (const PageAxis& axis : page.axes) out += axis_sections(page, axis);
   out += section("apply", "Applying it", applying(page));

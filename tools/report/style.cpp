@@ -1,12 +1,56 @@
 #include "tools/report/style.h"
 
-namespace ifog::report {
+#include <array>
+#include <string_view>
+#include <utility>
 
-const char* const kStyle = R"css(
+namespace ifog::report {
+namespace {
+
+// What a chart is drawn with, in a page or in a picture of its own.
+constexpr const char* kChartRules = R"css(
+.chart text{font-size:12px;font-family:"DejaVu Sans",system-ui,"Segoe UI",Roboto,sans-serif;fill:var(--ink)}
+.chart .tick{fill:var(--muted)}
+.chart .heading{font-weight:bold}
+.chart .grid{stroke:var(--grid);stroke-width:1;fill:none}
+.chart .minor{stroke:var(--grid);stroke-width:.5;fill:none}
+.chart .frame{stroke:var(--rule);stroke-width:1;fill:none}
+.chart .mark{stroke:var(--muted);stroke-width:1;stroke-dasharray:2 3;fill:none}
+.chart .line{fill:none;stroke-width:1.5;stroke-linejoin:round}
+.chart .guide{fill:none;stroke-width:1;stroke-dasharray:6 4}
+.chart .band{stroke:none;fill-opacity:.18}
+.chart .band.before{fill:var(--before)}
+.chart .band.after{fill:var(--after)}
+.chart .band.fit{fill:var(--fit)}
+.chart .band.second{fill:var(--second)}
+.chart .band.raw{fill:var(--raw)}
+.chart .band.third{fill:var(--third)}
+.chart .band.fourth{fill:var(--fourth)}
+.chart .dots{fill:none;stroke-linecap:round;stroke-width:4.2}
+.chart .line.before,.chart .guide.before,.chart .dots.before{stroke:var(--before)}
+.chart .line.before{stroke-width:1.1}
+.chart .line.after,.chart .guide.after,.chart .dots.after{stroke:var(--after)}
+.chart .line.fit,.chart .guide.fit,.chart .dots.fit{stroke:var(--fit)}
+.chart .line.fit{stroke-width:2}
+.chart .line.second,.chart .guide.second,.chart .dots.second{stroke:var(--second)}
+.chart .line.second{stroke-dasharray:5 3}
+.chart .line.raw,.chart .guide.raw,.chart .dots.raw{stroke:var(--raw)}
+.chart .line.raw{stroke-width:1}
+.chart .line.third,.chart .guide.third,.chart .dots.third{stroke:var(--third)}
+.chart .line.third{stroke-dasharray:8 2 2 2}
+.chart .line.fourth,.chart .guide.fourth,.chart .dots.fourth{stroke:var(--fourth)}
+.chart .line.fourth{stroke-dasharray:2 2}
+.chart .line.key{stroke-width:2.5}
+.chart .dots.key{stroke-width:8}
+)css";
+
+constexpr const char* kPageRules = R"css(
 :root{color-scheme:light dark;--paper:#fdfdfb;--ink:#1c2127;--muted:#5b6672;--rule:#d9dde1;--grid:#e8ebee;
- --before:#c26a1b;--after:#1a5fb4;--fit:#10151a;--second:#3f7d4e;--card:#f3f5f6;--good:#1f6f3a}
+ --before:#c26a1b;--after:#1a5fb4;--fit:#10151a;--second:#3f7d4e;--raw:#a3acb5;--third:#7b4ba0;--fourth:#b3263a;
+ --card:#f3f5f6;--good:#1f6f3a}
 @media (prefers-color-scheme:dark){:root{--paper:#14181c;--ink:#e6e9ec;--muted:#a3adb7;--rule:#39424b;--grid:#262d34;
- --before:#f0a35c;--after:#6cb0ff;--fit:#ffffff;--second:#7fcf95;--card:#1d2329;--good:#7fd79a}}
+ --before:#f0a35c;--after:#6cb0ff;--fit:#ffffff;--second:#7fcf95;--raw:#77818b;--third:#c49be8;--fourth:#ff8a94;
+ --card:#1d2329;--good:#7fd79a}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,"Segoe UI",Roboto,"DejaVu Sans",sans-serif}
 main{max-width:60rem;margin:0 auto;padding:2rem 1.25rem 4rem}
@@ -35,24 +79,39 @@ code,pre{font-family:ui-monospace,"DejaVu Sans Mono",Consolas,monospace;font-siz
 pre{background:var(--card);padding:.8rem 1rem;border-radius:6px;overflow-x:auto;white-space:pre-wrap;overflow-wrap:anywhere}
 nav ul{list-style:none;padding:0;margin:.8rem 0;display:flex;flex-wrap:wrap;gap:.2rem 1.2rem}
 a{color:var(--after)}
-.chart text{font:12px system-ui,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;fill:var(--ink)}
-.chart .tick{fill:var(--muted)}
-.chart .grid{stroke:var(--grid);stroke-width:1;fill:none}
-.chart .mark{stroke:var(--muted);stroke-width:1;stroke-dasharray:2 3;fill:none}
-.chart .line{fill:none;stroke-width:1.5;stroke-linejoin:round}
-.chart .key{stroke-width:2.5}
-.chart .dots{fill:none;stroke-linecap:round;stroke-width:4.2}
-.chart .dots.key{stroke-width:8}
-.chart .before{stroke:var(--before)}
-.chart .line.before{stroke-width:1.1}
-.chart .after{stroke:var(--after)}
-.chart .fit{stroke:var(--fit);stroke-width:2}
-.chart .second{stroke:var(--second);stroke-dasharray:5 3}
 footer{margin-top:3rem;color:var(--muted);font-size:.88rem}
 @media print{:root{color-scheme:light;--paper:#fff;--ink:#000;--muted:#444;--rule:#bbb;--grid:#ddd;--before:#b55a0a;
- --after:#0b4a98;--fit:#000;--second:#2d6a3c;--card:#f4f4f4;--good:#14532d}
+ --after:#0b4a98;--fit:#000;--second:#2d6a3c;--raw:#999;--third:#5b2f86;--fourth:#8f1426;--card:#f4f4f4;--good:#14532d}
  main{max-width:none;padding:0}nav{display:none}h2,h3{break-after:avoid}tr{break-inside:avoid}
  .pair{grid-template-columns:1fr 1fr}}
 )css";
+
+// The page's colours in daylight, for programs that know no variables.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kDaylight{{{"--paper", "#ffffff"},
+                                                                                   {"--ink", "#1c2127"},
+                                                                                   {"--muted", "#4a545e"},
+                                                                                   {"--rule", "#8b949d"},
+                                                                                   {"--grid", "#e1e5e9"},
+                                                                                   {"--before", "#c26a1b"},
+                                                                                   {"--after", "#1a5fb4"},
+                                                                                   {"--fit", "#10151a"},
+                                                                                   {"--second", "#3f7d4e"},
+                                                                                   {"--raw", "#a3acb5"},
+                                                                                   {"--third", "#7b4ba0"},
+                                                                                   {"--fourth", "#b3263a"}}};
+
+}  // namespace
+
+std::string page_style() { return std::string(kPageRules) + kChartRules; }
+
+std::string picture_style() {
+  std::string rules = kChartRules;
+  for (const auto& [name, colour] : kDaylight) {
+    const std::string use = "var(" + std::string(name) + ")";
+    for (std::size_t at = rules.find(use); at != std::string::npos; at = rules.find(use, at))
+      rules.replace(at, use.size(), colour);
+  }
+  return rules;
+}
 
 }  // namespace ifog::report

@@ -1,9 +1,11 @@
+// The look of the report and of its charts: one style sheet inside the page, one inside each picture.
 #pragma once
+
+#include <string>
 
 namespace ifog::report {
 
-// The page's style sheet: colours for light, dark and paper, chosen so that before and after differ in
-// lightness too.
-extern const char* const kStyle;
+std::string page_style();     // light, dark and print
+std::string picture_style();  // the charts alone, in colours on white, without CSS variables
 
 }  // namespace ifog::report

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
+
+#include "drivers/ifog/quoted.h"
 
 namespace ifog::report {
 namespace {
@@ -40,7 +43,8 @@ int decade(double value) { return static_cast<int>(std::floor(std::log10(std::ab
 
 std::string escaped(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  // Control characters and broken UTF-8 have no place in XML, and as \xNN none is needed.
+  for (const char c : printable(text, std::numeric_limits<std::size_t>::max())) {
     switch (c) {
       case '&':
         out += "&amp;";
@@ -84,6 +88,11 @@ std::string with_error(double value, double std_error) {
   const std::string both = typeset(printed("%.*f", decimals, value / scale)) + " ± " +
                            printed("%.*f", decimals, std_error / scale);
   return plain ? both : "(" + both + ") × 10" + superscript(power);
+}
+
+std::vector<double> scaled(std::vector<double> values, double scale) {
+  for (double& value : values) value *= scale;
+  return values;
 }
 
 std::string duration(double seconds) {

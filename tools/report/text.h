@@ -3,9 +3,13 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "filters/units/field_units.h"
 
 namespace ifog::report {
 
+// For HTML and XML, whatever the text holds.
 std::string escaped(std::string_view text);
 
 // `digits` significant digits, no exponent where it reads well without: "0.0108", "440", "3.1 × 10⁻⁷".
@@ -14,7 +18,8 @@ std::string number(double value, int digits = 3);
 // value ± its standard error, both to the error's second digit: "−79.20 ± 0.15".
 std::string with_error(double value, double std_error);
 
-inline constexpr double kDegreePerHour = 4.848136811095360e-06;  // rad/s
+// Every value times `scale`: a column in the unit that it is shown in.
+std::vector<double> scaled(std::vector<double> values, double scale);
 
 // "2.1 h", "35 min", "12 s".
 std::string duration(double seconds);

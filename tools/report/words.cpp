@@ -2,16 +2,14 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "filters/effects/form.h"
+#include "filters/units/field_units.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 bool ends_with(const std::string& text, const std::string& end, std::string& head) {
   if (text.size() < end.size() || text.compare(text.size() - end.size(), end.size(), end) != 0) return false;

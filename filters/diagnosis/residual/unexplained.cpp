@@ -10,6 +10,7 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/effects/meaning.h"
+#include "filters/units/field_units.h"
 
 namespace ifog {
 namespace {
@@ -226,7 +227,6 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
 
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
   const std::string unit = unit_of(loop.channel);
-  constexpr double kDegreePerHour = M_PI / 180.0 / 3600.0;
   found.kind = "hysteresis";
   found.frequency_hz = 0.0;
   found.times_s.clear();

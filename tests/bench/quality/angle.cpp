@@ -19,11 +19,12 @@
 #include "filters/estimator/estimator.h"
 #include "filters/kalman/core.h"
 #include "filters/rules/rule.h"
+#include "filters/units/field_units.h"
 #include "tests/bench/quality/scenarios.h"
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+using ifog::kDegree;
 constexpr double kRatio = 1e-3;
 
 using Axes = std::array<double, 3>;

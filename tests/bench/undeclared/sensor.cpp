@@ -1,4 +1,5 @@
 #include "tests/bench/undeclared/sensor.h"
+#include "filters/units/field_units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@ namespace ifog::undeclared {
 namespace {
 
 using Series = std::vector<double>;
-constexpr double kDegreePerHour = std::numbers::pi / 180.0 / 3600.0;
-constexpr double kDegreePerRootHour = std::numbers::pi / 180.0 / 60.0;
 constexpr const char* kTemperature = "temperature_degC";
 constexpr const char* kReference = "reference_rate_radps";
 

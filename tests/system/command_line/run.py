@@ -34,7 +34,6 @@ channel = "temperature_degC"
 coefficient = {PER_DEGREE}
 reference = 25.0
 """
-failed = 0
 
 
 def ran(*arguments):
@@ -258,11 +257,12 @@ class Checks:
         assert ran("--help").returncode == 0
 
 
-def main():
-    global failed
+def main_of(kind):
+    """Runs every check of the class, each told in a line."""
+    failed = 0
     with tempfile.TemporaryDirectory() as folder:
-        checks = Checks(pathlib.Path(folder))
-        for name in [name for name in vars(Checks) if name.startswith("check_")]:
+        checks = kind(pathlib.Path(folder))
+        for name in [name for name in vars(kind) if name.startswith("check_")]:
             try:
                 getattr(checks, name)()
                 print(f"ok       {name[6:].replace('_', ' ')}", flush=True)
@@ -273,4 +273,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main_of(Checks))

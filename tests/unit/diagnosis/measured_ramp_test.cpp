@@ -12,6 +12,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensator.h"
+#include "filters/units/field_units.h"
 
 namespace ifog {
 namespace {
@@ -20,7 +21,6 @@ constexpr const char* kPath = IFOG_SHARED_DATA "/blueseis_bs1_ramp.csv.gz";
 constexpr double kPeriod = 32768.0;     // counts
 constexpr double kPerCount = -79.2e-9;  // rad/s per count per sample: the loop's own measure of rotation
 constexpr double kRampHz = 4.17;        // of the Earth's rate
-constexpr double kDegreePerHour = M_PI / 180.0 / 3600.0;
 
 struct Measured {
   Capture capture;

@@ -78,7 +78,9 @@ class Recording : public testing::Test {
     notices_ = encoder.notices();
     ifog::DriverInstance in(plugin, all);
     ifog::CaptureBuilder builder(in.description());
-    counts_ = ifog::decode_recording(file, in, "", [&](const ifog_sample& sample) { builder.add(sample); });
+    ifog::InputFile recorded(file);
+    counts_ =
+        ifog::decode_recording(recorded, in, "", [&](const ifog_sample& sample) { builder.add(sample); });
     missing_ = builder.missing();
     return builder.finish();
   }
@@ -168,8 +170,8 @@ TEST_F(Recording, ACutOffFileIsCounted) {
   there_and_back(capture, "kvh1750", {{"format", "a"}});
   fs::resize_file(path("bytes.bin"), 36 * 500 + 20);
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {});
-  const ifog::RecordingCounts counts =
-      ifog::decode_recording(path("bytes.bin"), driver, "", [](const ifog_sample&) {});
+  ifog::InputFile bytes(path("bytes.bin"));
+  const ifog::RecordingCounts counts = ifog::decode_recording(bytes, driver, "", [](const ifog_sample&) {});
   EXPECT_EQ(counts.samples, 500U);
   EXPECT_EQ(counts.bytes_at_end, 20U);
 }
@@ -212,9 +214,17 @@ TEST_F(Recording, FileKindsByNameAndContent) {
   EXPECT_EQ(file_kind("a.csv.gz"), FileKind::capture);
   EXPECT_EQ(file_kind("a.log"), FileKind::candump);
   EXPECT_EQ(file_kind("a.kvh"), FileKind::bytes);
-  std::ofstream(path("lcmlog-2026-01-01.00"), std::ios::binary) << "\xED\xA1\xDA\x01rest";
-  EXPECT_EQ(file_kind(path("lcmlog-2026-01-01.00")), FileKind::lcm_log);
   EXPECT_EQ(file_kind("nothing"), FileKind::unknown);
+  const auto kind_of = [](const char* name, const char* text) {
+    return file_kind(ifog::InputFile(name, text));
+  };
+  EXPECT_EQ(kind_of("lcmlog-2026-01-01.00", "\xED\xA1\xDA\x01rest"), FileKind::lcm_log);
+  // What comes through a pipe has no telling name.
+  EXPECT_EQ(kind_of("-", "# made today\r\n\n# by hand\ntime_s,rate_radps\n0,1\n"), FileKind::capture);
+  EXPECT_EQ(kind_of("/dev/fd/63", "(1436509052.249713) can0 123#1122AABB\n"), FileKind::candump);
+  EXPECT_EQ(kind_of("-", "#"), FileKind::unknown);
+  EXPECT_EQ(kind_of("-", ""), FileKind::unknown);
+  EXPECT_EQ(kind_of("-", "\xFE\x81\xFF\x55"), FileKind::unknown);
 }
 
 // A real gyro's record through the frames of a device, where the shared captures are at hand.

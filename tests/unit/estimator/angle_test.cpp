@@ -9,13 +9,14 @@
 
 #include "drivers/capture/capture.h"
 #include "filters/estimator/start_up.h"
+#include "filters/units/field_units.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {
 
 using namespace ifog::test;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+using ifog::kDegree;
 
 TEST(Heading, IsKeptOverTurnsByHand) {
   const std::string path = std::string(IFOG_SHARED_DATA) + "/kvh1750_direct_imu_rate.csv.gz";

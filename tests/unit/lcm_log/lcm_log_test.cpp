@@ -11,6 +11,8 @@
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
 
+#include "drivers/capture/text_file.h"
+
 namespace ifog::tools {
 namespace {
 
@@ -49,10 +51,18 @@ class LcmLog : public testing::Test {
     return out;
   }
   void finish() { writer_.reset(); }
+  [[nodiscard]] Capture read(const std::string& channel) const {
+    InputFile file(path_);
+    return read_lcm_log(file, channel);
+  }
+  [[nodiscard]] Table published(const std::string& channel) const {
+    InputFile file(path_);
+    return read_published(file, channel);
+  }
   std::string refusal(const std::string& channel = "") {
     finish();
     try {
-      read_lcm_log(path_, channel);
+      read(channel);
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -71,7 +81,7 @@ TEST_F(LcmLog, TakesTheOnlyChannelWithRates) {
     add("HULL", other);
   }
   finish();
-  const Capture capture = read_lcm_log(path_, "");
+  const Capture capture = read("");
   ASSERT_EQ(capture.time_s.size(), 5U);
   EXPECT_EQ(capture.axes, (std::vector<std::string>{"x", "y", "z"}));
   for (std::size_t n = 0; n < 5; ++n) {
@@ -84,7 +94,7 @@ TEST_F(LcmLog, TakesTheOnlyChannelWithRates) {
 TEST_F(LcmLog, TheSensorsOwnClockGoesBeforeTheFittedTime) {
   for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 1, 5'000'000'000 + n * 250'000'000LL));
   finish();
-  const Capture capture = read_lcm_log(path_, "IFOG_NOSE");
+  const Capture capture = read("IFOG_NOSE");
   EXPECT_EQ(capture.time_s, (std::vector<double>{0.0, 0.25, 0.5}));
   EXPECT_EQ(capture.axes, std::vector<std::string>{""});
 }
@@ -92,7 +102,7 @@ TEST_F(LcmLog, TheSensorsOwnClockGoesBeforeTheFittedTime) {
 TEST_F(LcmLog, WhatWasPublishedComesInTheColumnsOfDenoise) {
   for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 2));
   finish();
-  const Table table = read_published(path_, "");
+  const Table table = published("");
   std::vector<std::string> names;
   for (const CaptureColumn& column : table.columns) names.push_back(column.name);
   EXPECT_EQ(names, (std::vector<std::string>{"raw_x_radps", "compensated_x_radps", "denoised_x_radps",
@@ -144,7 +154,7 @@ TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
   finish();
   fs::resize_file(path_, fs::file_size(path_) - 20);
   testing::internal::CaptureStderr();
-  EXPECT_EQ(read_lcm_log(path_, "").time_s.size(), 3U);
+  EXPECT_EQ(read("").time_s.size(), 3U);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(said.rfind(path_ + ": its last ", 0), 0U) << said;
   EXPECT_NE(said.find(" bytes are no whole message (is the file cut off?)\n"), std::string::npos) << said;
@@ -154,8 +164,22 @@ TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
   add("IFOG_NOSE", sample(0, 1));
   finish();
   testing::internal::CaptureStderr();
-  EXPECT_EQ(read_lcm_log(path_, "").time_s.size(), 1U);
+  EXPECT_EQ(read("").time_s.size(), 1U);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// LCM's reader wants a name; a log that came packed or through a pipe has none that it could use.
+TEST_F(LcmLog, ReadsAPackedLogAndATextAtHand) {
+  for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 1));
+  finish();
+  const std::string text = InputFile(path_).bytes();
+  InputFile at_hand("-", text);
+  EXPECT_EQ(read_lcm_log(at_hand, "").time_s, read("").time_s);
+  const std::string packed = path_ + ".gz";
+  write_text_file(packed, text);
+  InputFile file(packed);
+  EXPECT_EQ(read_lcm_log(file, "").rate_radps, read("").rate_radps);
+  fs::remove(packed);
 }
 
 }  // namespace

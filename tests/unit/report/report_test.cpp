@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <regex>
+#include <stdexcept>
 
 #include "tests/unit/report/example.h"
 #include "tools/report/chart.h"
 #include "tools/report/diagnosis_page.h"
+#include "tools/report/picture.h"
 #include "tools/report/text.h"
 #include "tools/report/traced.h"
 #include "tools/report/words.h"
@@ -74,6 +79,74 @@ TEST(ReportChart, GapsAndImpossibleValuesAreLeftOut) {
   EXPECT_EQ(chart.svg().find("inf"), std::string::npos);
   Chart nothing("t", "d", {"x", true, {}, {}}, {"y", true, {}, {}});
   EXPECT_EQ(nothing.svg(), "");
+}
+
+// A band is drawn from its lower to its upper edge and widens the axis; a guide does not.
+TEST(ReportChart, BandsWidenTheAxesAndGuidesDoNot) {
+  Chart chart("t", "d", {"x", false, 0.0, 10.0}, {"y", false, {}, {}});
+  chart.line(Role::kAfter, "", {0.0, 10.0}, {1.0, 1.0});
+  chart.band(Role::kAfter, {0.0, 10.0}, {0.0, 0.0}, {2.0, 2.0});
+  chart.guide(Role::kAfter, {0.0, 10.0}, {100.0, 100.0}, {"far above", 5.0, 100.0});
+  const std::string svg = chart.svg(1000, 500);
+  std::smatch m;
+  ASSERT_TRUE(
+      std::regex_search(svg, m,
+                        std::regex("class=\"band after\" d=\"M[\\d.]+ ([\\d.]+)L[\\d.]+ ([\\d.]+)L[\\d.]+ "
+                                   "([\\d.]+)L[\\d.]+ ([\\d.]+)Z")));
+  EXPECT_EQ(m[1], m[2]);
+  EXPECT_EQ(m[3], m[4]);
+  // 2 at the upper edge and 0 at the lower one, less the margin of 4 % of the span on each side.
+  const double inner = 500.0 - 46.0 - 34.0;
+  EXPECT_NEAR(std::stod(m[3]) - std::stod(m[1]), inner / 1.08, 0.3);
+}
+
+TEST(ReportChart, LegendsThatAreLongTakeAnotherRow) {
+  Chart chart("t", "d", {"x", false, {}, {}}, {"y", false, {}, {}});
+  for (int i = 0; i < 6; ++i)
+    chart.line(role_of(static_cast<std::size_t>(i)), "a capture with a long name " + std::to_string(i),
+               {0.0, 1.0}, {0.0, 1.0});
+  const std::string svg = chart.svg(720, 320);
+  double right = 0.0;
+  const std::regex entry(
+      "<text class=\"tick\" x=\"([\\d.]+)\" y=\"[\\d.]+\" text-anchor=\"start\">(a capture[^<]*)");
+  int entries = 0;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), entry), end; at != end; ++at, ++entries)
+    right = std::max(right, std::stod((*at)[1]) + 6.0 * static_cast<double>((*at)[2].length()));
+  EXPECT_EQ(entries, 6);
+  EXPECT_LT(right, 720.0);
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// What librsvg makes of it is looked at by its bytes: the curve's blue is there, and nothing is black but
+// ink.
+TEST(ReportPicture, SvgAndPngByTheName) {
+  Chart chart("a <b> & \x1b[31m \xff", "d", {"x", false, {}, {}}, {"y", true, {}, {}});
+  chart.line(Role::kAfter, "name \x01", {0.0, 1.0, 2.0}, {1.0, 10.0, 100.0});
+  const std::string svg =
+      picture_svg("title \x07 & more", {{200.0, {{chart}, {chart, 2.0}}}, {100.0, {{chart}}}}, 600.0);
+  EXPECT_EQ(svg.find("var("), std::string::npos) << "librsvg knows no variables";
+  for (const char c : svg) EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 || c == '\n');
+  EXPECT_NE(svg.find("a &lt;b&gt; &amp; \\x1b[31m \\xff"), std::string::npos);
+  const std::string folder = ::testing::TempDir();
+  write_picture(folder + "picture.svg", svg);
+  EXPECT_EQ(bytes_of(folder + "picture.svg"), svg);
+  write_picture(folder + "picture.png", svg);
+  const std::string png = bytes_of(folder + "picture.png");
+  ASSERT_GT(png.size(), 5000U) << "an empty page packs to less";
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  // The header has width and height, two dots a pixel.
+  const auto word = [&](std::size_t at) {
+    return static_cast<unsigned char>(png[at + 2]) * 256 + static_cast<unsigned char>(png[at + 3]);
+  };
+  EXPECT_EQ(word(16), 1200);
+  EXPECT_EQ(word(20), 2 * (10 + 30 + 200 + 6 + 100 + 6 + 10));
+  EXPECT_THROW(write_picture(folder + "broken.png", "<svg"), std::runtime_error);
+  EXPECT_EQ(wrong_picture_name("a.svg"), "");
+  EXPECT_NE(wrong_picture_name("a.jpeg"), "");
 }
 
 // The dots are means of what was measured: they lie on the effect that was put in.

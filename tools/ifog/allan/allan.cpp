@@ -3,11 +3,14 @@
 #include <cstdio>
 #include <memory>
 
-#include "drivers/capture/text_file.h"
+#include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
+#include "tools/report/picture.h"
 
 namespace ifog::tools {
 namespace {
@@ -30,10 +33,14 @@ Table as_table(Capture capture) {
 }
 
 Table table_of(const Arguments& a, const std::string& path) {
-  return a.input.is_csv(path) ? read_table(path) : as_table(a.input.read(path));
+  InputFile file(path);
+  if (a.input.kind(file) == FileKind::capture && !a.input.has_driver()) return parse_table(file.text(), path);
+  return as_table(a.input.read(file));
 }
 
 void run(Arguments& a) {
+  will_write("--json", a.json);
+  will_write("--plot", a.picture);
   a.options.kind = a.estimator == "modified"   ? Deviation::kModified
                    : a.estimator == "hadamard" ? Deviation::kHadamard
                                                : Deviation::kAllan;
@@ -48,8 +55,8 @@ void run(Arguments& a) {
     }
   }
   for (const AllanRecord& record : records) print_allan(record, a.options);
-  if (!a.json.empty()) write_text_file(a.json, allan_json(records, a.options).dump(1) + "\n");
-  if (!a.picture.empty()) plot_allan(a.picture, records);
+  if (!a.json.empty()) write_json(a.json, allan_json(records, a.options), 1);
+  if (!a.picture.empty()) draw_allan(a.picture, records);
 }
 
 }  // namespace
@@ -85,7 +92,9 @@ void add_allan(CLI::App& app) {
   command->add_option("--from", a->options.from_s, "Leave out what is before this time, s");
   command->add_option("--to", a->options.to_s, "Leave out what is from this time on, s");
   command->add_option("--json", a->json, "Write the analysis here, in SI");
-  command->add_option("--plot", a->picture, "Write a picture here (.svg or .png)");
+  command->add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
+      ->check(report::wrong_picture_name, "")
+      ->type_name("FILE");
   command->callback([a] { run(*a); });
 }
 

@@ -1,4 +1,5 @@
 #include "tools/ifog/allan/allan_record.h"
+#include "filters/units/field_units.h"
 
 #include <algorithm>
 #include <array>
@@ -101,21 +102,23 @@ double trusted_tau(const AngleSum& sum, double period) {
   return trusted;
 }
 
+// Where a row stands in its file: "file:line", or the sample's number where the file is no text.
 class Gaps {
  public:
-  Gaps(std::string file, std::size_t first_row) : file_(std::move(file)), first_row_(first_row) {}
-  // "file:line" of a row, or the row's number where the file is no text.
+  Gaps(std::string file, const Table& table, std::size_t first_row)
+      : file_(std::move(file)), first_row_(first_row) {
+    lines_.header_line = table.header_line;
+    lines_.skipped = table.skipped;
+  }
   [[nodiscard]] std::string place(std::size_t row) const {
-    try {
-      const std::size_t line = line_of_row(file_, row + first_row_);
-      if (line > 0) return file_ + ":" + std::to_string(line);
-    } catch (const std::exception&) {  // a recording that went through a driver
-    }
-    return file_ + ": sample " + std::to_string(row + first_row_);
+    const std::size_t line = line_of_row(lines_, row + first_row_);
+    return line > 0 ? file_ + ":" + std::to_string(line)
+                    : file_ + ": sample " + std::to_string(row + first_row_);
   }
 
  private:
   std::string file_;
+  Table lines_;  // without its columns
   std::size_t first_row_;
 };
 
@@ -221,7 +224,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, Table table, con
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(name + ": " + error.what());
   }
-  const Gaps gaps(name, first_row);
+  const Gaps gaps(name, table, first_row);
   std::vector<AllanRecord> records;
   std::string signal, axis, known;
   for (CaptureColumn& column : table.columns) {
@@ -249,13 +252,12 @@ std::vector<AllanRecord> allan_records(const std::string& name, Table table, con
 }
 
 const std::vector<NamedCoefficient>& named_coefficients() {
-  constexpr double kDegree = 57.295779513082321;
   static const std::vector<NamedCoefficient> kNamed{
-      {"Q", "quantisation", "rad", "arcsec", kDegree * 3600.0, &NoiseFit::Q},
-      {"N", "angle random walk", "rad/s/√Hz", "°/√h", kDegree * 60.0, &NoiseFit::N},
-      {"B", "bias instability", "rad/s", "°/h", kDegree * 3600.0, &NoiseFit::B},
-      {"K", "rate random walk", "rad/s²/√Hz", "°/h/√h", kDegree * 3600.0 * 60.0, &NoiseFit::K},
-      {"R", "rate ramp", "rad/s²", "°/h/h", kDegree * 3600.0 * 3600.0, &NoiseFit::R}};
+      {"Q", "quantisation", "rad", "arcsec", 1.0 / kArcsecond, &NoiseFit::Q},
+      {"N", "angle random walk", "rad/s/√Hz", "°/√h", 1.0 / kDegreePerRootHour, &NoiseFit::N},
+      {"B", "bias instability", "rad/s", "°/h", 1.0 / kDegreePerHour, &NoiseFit::B},
+      {"K", "rate random walk", "rad/s²/√Hz", "°/h/√h", 1.0 / kDegreePerHourPerRootHour, &NoiseFit::K},
+      {"R", "rate ramp", "rad/s²", "°/h/h", 1.0 / kDegreePerHourPerHour, &NoiseFit::R}};
   return kNamed;
 }
 

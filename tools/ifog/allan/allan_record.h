@@ -10,7 +10,6 @@
 #include "drivers/capture/capture.h"
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise_fit.h"
-#include "tools/ifog/plot.h"
 
 namespace ifog::tools {
 
@@ -61,7 +60,5 @@ const std::vector<NamedCoefficient>& named_coefficients();
 
 nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
 void print_allan(const AllanRecord& record, const AllanOptions& options);
-void plot_allan(const std::string& path, const std::vector<AllanRecord>& records);
-Panel allan_panel(const std::vector<AllanRecord>& records);
 
 }  // namespace ifog::tools

@@ -6,7 +6,9 @@
 
 #include "drivers/capture/capture_builder.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 
@@ -39,32 +41,44 @@ DriverSettings CaptureInput::settings() const {
 
 DriverInstance CaptureInput::make_driver() const {
   DriverInstance made = ifog::make_driver(driver_name(), settings());
-  for (const std::string& warning : made.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
+  for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
   return made;
 }
 
-bool CaptureInput::is_csv(const std::string& path) const {
-  const FileKind kind = file_kind(path);
-  return kind == FileKind::capture || (kind == FileKind::unknown && !has_driver());
+FileKind CaptureInput::kind(const InputFile& file) const {
+  const FileKind found = file_kind(file);
+  if (found != FileKind::unknown) return found;
+  return has_driver() ? FileKind::bytes : FileKind::capture;
 }
 
-RecordingCounts CaptureInput::for_each_sample(const std::string& path, DriverInstance& instance,
+RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,
                                               const std::function<void(const ifog_sample&)>& sink) const {
-  const RecordingCounts counts = decode_recording(path, instance, instance.takes_can() ? channel : "", sink);
+  const RecordingCounts counts = decode_recording(file, instance, instance.takes_can() ? channel : "", sink);
   if (counts.samples != 0) return counts;
   std::string why;
   for (const std::string& loss : losses(counts)) why += (why.empty() ? "" : "; ") + loss;
-  throw std::runtime_error(path + ": driver " + driver_name() + " finds no sample in it" +
+  throw std::runtime_error(file.path() + ": driver " + driver_name() + " finds no sample in it" +
                            (why.empty() ? "" : " (" + why + ")"));
 }
 
-Capture CaptureInput::read(const std::string& path) const {
-  if (is_csv(path)) {
+Capture CaptureInput::read(const std::string& path, std::string* sha256) const {
+  InputFile file(path);
+  if (sha256 == nullptr) return read(file);
+  std::string text = file.bytes();
+  *sha256 = sha256_hex(text);
+  InputFile at_hand(path, std::move(text));
+  return read(at_hand);
+}
+
+Capture CaptureInput::read(InputFile& file) const {
+  const std::string& path = file.path();
+  const FileKind found = kind(file);
+  if (found == FileKind::capture) {
     if (has_driver())
       throw std::runtime_error(path + ": is a CSV capture, expected none of --driver and --dbc with it");
-    return read_capture(path);
+    return parse_capture(file.text(), path);
   }
-  if (file_kind(path) == FileKind::lcm_log) return read_lcm_log(path, channel);
+  if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
   if (!has_driver())
     throw std::runtime_error(path +
                              ": is no CSV capture, expected --driver NAME (or --dbc FILE) to decode it with");
@@ -72,15 +86,14 @@ Capture CaptureInput::read(const std::string& path) const {
   CaptureBuilder builder(instance.description());
   RecordingCounts counts;
   try {
-    counts = for_each_sample(path, instance, [&](const ifog_sample& sample) { builder.add(sample); });
+    counts = for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
   }
-  for (const std::string& loss : losses(counts)) std::fprintf(stderr, "%s: %s\n", path.c_str(), loss.c_str());
+  for (const std::string& loss : losses(counts)) warn("%s: %s\n", path.c_str(), loss.c_str());
   if (builder.missing() != 0)
-    std::fprintf(stderr, "%s: %zu samples are missing by the device's counter\n", path.c_str(),
-                 builder.missing());
+    warn("%s: %zu samples are missing by the device's counter\n", path.c_str(), builder.missing());
   return builder.finish();
 }
 

@@ -35,17 +35,19 @@ struct CaptureInput {
   // Throws std::runtime_error with one line.
   [[nodiscard]] DriverInstance make_driver() const;
 
-  // Whether the file is read as CSV rather than through a driver.
-  [[nodiscard]] bool is_csv(const std::string& path) const;
+  // As it will be read: where neither name nor first bytes tell, CSV without a driver and bytes with one.
+  [[nodiscard]] FileKind kind(const InputFile& file) const;
 
   // The recorded samples as the driver delivers them, bit for bit those that the daemon gets.
   // Throws std::runtime_error with one line, also when the driver finds nothing in the file.
-  RecordingCounts for_each_sample(const std::string& path, DriverInstance& instance,
+  RecordingCounts for_each_sample(InputFile& file, DriverInstance& instance,
                                   const std::function<void(const ifog_sample&)>& sink) const;
 
   // Any kind as columns. What the driver could not use is told on standard error, one line a counter that
   // moved. Throws std::runtime_error with one line.
-  [[nodiscard]] Capture read(const std::string& path) const;
+  // `sha256`, where it is wanted: of the file as it was unpacked.
+  [[nodiscard]] Capture read(InputFile& file) const;
+  [[nodiscard]] Capture read(const std::string& path, std::string* sha256 = nullptr) const;
 };
 
 // "3 frames with a wrong checksum", … : one line for each counter that says something was lost.

@@ -8,8 +8,10 @@
 
 #include "drivers/capture/candump.h"
 #include "drivers/capture/capture_encoder.h"
+#include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -22,7 +24,7 @@ void to_bytes(CaptureEncoder& encoder, std::size_t rows, const std::string& to) 
   while (encoder.next(bytes))
     if (encoder.rows_done() % kProgressStep == 0) progress.at(encoder.rows_done());
   write_text_file(to, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  std::printf("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), bytes.size());
+  say("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), bytes.size());
 }
 
 void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to, const CaptureInput& input) {
@@ -40,8 +42,8 @@ void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to
     if (encoder.rows_done() % kProgressStep == 0) progress.at(encoder.rows_done());
   }
   write_text_file(to, text);
-  std::printf("%s: %zu samples in %zu frames on %s\n", to.c_str(), rows - encoder.rows_left_out(), count,
-              interface.c_str());
+  say("%s: %zu samples in %zu frames on %s\n", to.c_str(), rows - encoder.rows_left_out(), count,
+      interface.c_str());
 }
 
 }  // namespace
@@ -53,7 +55,7 @@ void write_recording(const Capture& capture, const std::string& from, const std:
                                "is no CSV capture, expected --driver NAME (or --dbc FILE) to encode it with");
   const auto plugin = find_plugin(input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate_of(capture, *plugin, input.settings()));
-  const bool log = file_kind(to) == FileKind::candump;
+  const bool log = is_standard_output(to) ? driver.takes_can() : file_kind(to) == FileKind::candump;
   if (log != driver.takes_can())
     throw CLI::ValidationError(to,
                                "driver " + input.driver_name() + " speaks " +
@@ -61,21 +63,20 @@ void write_recording(const Capture& capture, const std::string& from, const std:
                                                        : "bytes, expected a name ending in .bin or .kvh"));
   try {
     CaptureEncoder encoder(capture, driver, axis);
-    for (const std::string& notice : encoder.notices())
-      std::fprintf(stderr, "%s: %s\n", from.c_str(), notice.c_str());
+    for (const std::string& notice : encoder.notices()) warn("%s: %s\n", from.c_str(), notice.c_str());
     if (log)
       to_candump(encoder, capture.size(), to, input);
     else
       to_bytes(encoder, capture.size(), to);
     if (encoder.rows_left_out() != 0)
-      std::fprintf(stderr, "%s: %zu rows without a rate are left out: the format cannot say so\n",
-                   from.c_str(), encoder.rows_left_out());
+      warn("%s: %zu rows without a rate are left out: the format cannot say so\n", from.c_str(),
+           encoder.rows_left_out());
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(from) || line.starts_with(to) ? line : from + ": " + line);
   }
   if (driver.description().nominal_rate_hz > 0.0 && input.settings().count("rate_hz") == 0)
-    std::printf("to decode it again, add --option rate_hz=%.7g\n", driver.description().nominal_rate_hz);
+    say("to decode it again, add --option rate_hz=%.7g\n", driver.description().nominal_rate_hz);
 }
 
 }  // namespace ifog::tools

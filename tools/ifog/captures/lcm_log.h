@@ -4,6 +4,7 @@
 #include <string>
 
 #include "drivers/capture/capture.h"
+#include "drivers/capture/input_file.h"
 
 namespace ifog::tools {
 
@@ -11,10 +12,10 @@ namespace ifog::tools {
 // else the fitted time, counted from the first message. Throws std::runtime_error with one line: no log, no
 // such channel (those there are named), several where none was chosen, a message that is no rate_t, time that
 // does not go on.
-Capture read_lcm_log(const std::string& path, const std::string& channel);
+Capture read_lcm_log(InputFile& file, const std::string& channel);
 
 // What the daemon published, in the columns of `ifog denoise`: raw, compensated and denoised rate and
 // variance by axis. Throws as above.
-Table read_published(const std::string& path, const std::string& channel);
+Table read_published(InputFile& file, const std::string& channel);
 
 }  // namespace ifog::tools

@@ -6,29 +6,28 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 
-#include "drivers/capture/text_file.h"
 #include "filters/allan/stretches.h"
 #include "filters/estimator/start_up.h"
 #include "filters/model_file/model.h"
 #include "filters/rules/rule.h"
 #include "filters/settings/filter_table.h"
+#include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/compare_picture.h"
 #include "tools/ifog/console/filter_options.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
+#include "tools/report/picture.h"
 
 namespace ifog::tools {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDegPerHour = 180.0 / std::numbers::pi * 3600.0;  // of 1 rad/s
-constexpr double kDeg = 180.0 / std::numbers::pi;
 
 struct Options {
   CaptureInput input;
@@ -107,30 +106,32 @@ std::string cell(const std::optional<double>& value, double scale, const char* f
 }
 
 void print_axis(const Comparison& result, int axis, bool reference) {
-  std::printf("%-10s %10s", "rule", "std");
-  for (const double tau : kComparedTaus) std::printf(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
-  if (reference) std::printf(" %10s %10s %8s", "RMSE", "bias", "lag s");
-  std::printf(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
-              "5s 90%");
+  say("%-10s %10s", "rule", "std");
+  for (const double tau : kComparedTaus) say(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
+  if (reference) say(" %10s %10s %8s", "RMSE", "bias", "lag s");
+  say(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
+      "5s 90%");
   for (const ComparisonRow& row : result.rows) {
     if (row.axis != axis) continue;
-    std::printf("%-10s %10s", row.rule.c_str(), cell(row.std_radps, kDegPerHour, "%.4g").c_str());
-    for (const auto& value : row.adev_radps) std::printf(" %9s", cell(value, kDegPerHour, "%.4g").c_str());
+    say("%-10s %10s", row.rule.c_str(), cell(row.std_radps, 1.0 / kDegreePerHour, "%.4g").c_str());
+    for (const auto& value : row.adev_radps) say(" %9s", cell(value, 1.0 / kDegreePerHour, "%.4g").c_str());
     if (reference)
-      std::printf(" %10s %10s %8s", cell(row.rmse_radps, kDegPerHour, "%.4g").c_str(),
-                  cell(row.bias_radps, kDegPerHour, "%.3g").c_str(), cell(row.lag_s, 1.0, "%.4f").c_str());
+      say(" %10s %10s %8s", cell(row.rmse_radps, 1.0 / kDegreePerHour, "%.4g").c_str(),
+          cell(row.bias_radps, 1.0 / kDegreePerHour, "%.3g").c_str(), cell(row.lag_s, 1.0, "%.4f").c_str());
     if (row.rule == "raw") {
-      std::printf("\n");
+      say("\n");
       continue;
     }
-    std::printf(" %11.2e %8.1e %7.3f %7s %6s %7s %7s\n", row.heading_end_rad * kDeg,
-                row.heading_max_rad * kDeg, row.share_at_rest, cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
-                cell(row.nis_typical, 1.0, "%.2f").c_str(), cell(row.step[0].samples, 1.0, "%.0f").c_str(),
-                cell(row.step[1].samples, 1.0, "%.0f").c_str());
+    say(" %11.2e %8.1e %7.3f %7s %6s %7s %7s\n", row.heading_end_rad / kDegree, row.heading_max_rad / kDegree,
+        row.share_at_rest, cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
+        cell(row.nis_typical, 1.0, "%.2f").c_str(), cell(row.step[0].samples, 1.0, "%.0f").c_str(),
+        cell(row.step[1].samples, 1.0, "%.0f").c_str());
   }
 }
 
 void run(const Options& options) {
+  will_write("--json", options.json_file);
+  will_write("--plot", options.plot_file);
   const Capture capture = options.input.read(options.capture);
   ComparisonInput in;
   in.time_s = capture.time_s;
@@ -159,16 +160,15 @@ void run(const Options& options) {
   const Comparison result = compare_rules(in, compare);
 
   const FilterSettings& s = compare.settings;
-  std::printf("%s: %zu samples at %.6g Hz; state %s, Q %.4g (rad/s)^2/s, R %.4g (rad/s)^2, window %d\n",
-              options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
-              s.measurement_noise, s.window);
-  std::printf(
-      "rates in deg/h; heading: integral of denoised - compensated; at rest: share of samples outside\n"
+  say("%s: %zu samples at %.6g Hz; state %s, Q %.4g (rad/s)^2/s, R %.4g (rad/s)^2, window %d\n",
+      options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
+      s.measurement_noise, s.window);
+  say("rates in deg/h; heading: integral of denoised - compensated; at rest: share of samples outside\n"
       "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
       "over\n"
       "that of a normal law; steps of 20 and 5 sigma in samples to 90 %%\n");
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    if (!capture.axes[a].empty()) std::printf("\naxis %s\n", capture.axes[a].c_str());
+    if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
     print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());
   }
   if (!options.json_file.empty()) {
@@ -176,18 +176,16 @@ void run(const Options& options) {
     for (const ComparisonRow& row : result.rows)
       (row.rule == "raw" ? raw : rows)
           .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], s));
-    write_text_file(options.json_file, json{{"schema", "ifog.compare/1"},
-                                            {"capture", options.capture},
-                                            {"samples", capture.size()},
-                                            {"sample_rate_hz", 1.0 / in.period_s},
-                                            {"raw", raw},
-                                            {"rows", rows}}
-                                               .dump(2) +
-                                           "\n");
+    write_json(options.json_file, json{{"schema", "ifog.compare/1"},
+                                       {"capture", options.capture},
+                                       {"samples", capture.size()},
+                                       {"sample_rate_hz", 1.0 / in.period_s},
+                                       {"raw", raw},
+                                       {"rows", rows}});
   }
   if (!options.plot_file.empty()) {
     draw_comparison(options.plot_file, capture, result, compare.rules);
-    std::printf("picture: %s\n", options.plot_file.c_str());
+    say("picture: %s\n", options.plot_file.c_str());
   }
 }
 
@@ -200,7 +198,9 @@ void add_compare(CLI::App& app) {
   command->add_option("capture", options->capture, "a capture")->required();
   command->add_option("--model", options->model, "model file whose [filter] gives the settings");
   command->add_option("--json", options->json_file, "write the figures as JSON");
-  command->add_option("--plot", options->plot_file, "write a picture, .svg or .png");
+  command->add_option("--plot", options->plot_file, "write a picture, .svg or .png")
+      ->check(report::wrong_picture_name, "")
+      ->type_name("FILE");
   options->input.add_to(*command);
   add_filter_options(*command, options->choice, false);
   command->callback([options] { run(*options); });

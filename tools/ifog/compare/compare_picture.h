@@ -9,9 +9,8 @@
 
 namespace ifog::tools {
 
-// For each axis the record under the output of the daemon's default rule, and the outputs of all rules by
-// themselves in the range they keep to; then the Allan deviation of all outputs of the first axis. Throws as
-// plot() does.
+// For each axis a row a rule, on shared axes: the denoised rate over time, in the range that the rules keep
+// to once they have started, and its Allan deviation over that of the raw rate. Throws as write_picture does.
 void draw_comparison(const std::string& path, const Capture& capture, const Comparison& result,
                      const std::vector<std::string>& rules);
 

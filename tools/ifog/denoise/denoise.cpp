@@ -16,16 +16,18 @@
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/settings/filter_table.h"
+#include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
+#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/offline_chain.h"
-#include "tools/ifog/plot.h"
+#include "tools/report/picture.h"
+#include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
-
-constexpr double kDegPerHour = 180.0 / 3.14159265358979323846 * 3600.0;
 
 struct Options {
   std::string capture, output, model, config, sensor, json, picture;
@@ -126,35 +128,38 @@ nlohmann::json summary(const Options& options, const Columns& columns, const Off
           {"axes", axes}};
 }
 
+// A row an axis, one more where a model corrects it, with one time axis below all of them.
 void draw(const std::string& path, const Columns& columns, const OfflineResult& result) {
-  constexpr std::size_t kMostPoints = 4000;
-  const std::size_t step = std::max<std::size_t>(1, columns.time_s.size() / kMostPoints);
-  std::vector<Panel> panels;
+  const report::TimeUnit unit = report::time_unit(columns.time_s.back() - columns.time_s.front());
+  const std::vector<double> time = report::scaled(columns.time_s, 1.0 / unit.seconds);
+  std::vector<report::PictureRow> rows;
+  const auto row = [&](const std::string& title, const char* noisy, const std::vector<double>& values,
+                       const Series& axis, bool last) {
+    // The same range for raw and compensated, so that they compare at a glance.
+    report::Bounds range;
+    for (const double value : axis.raw) range.take(value / kDegreePerHour, false);
+    for (const double value : axis.compensated) range.take(value / kDegreePerHour, false);
+    report::ChartAxis rate{"rate (°/h)", false, {}, {}};
+    if (range.low < range.high) rate.low = range.low, rate.high = range.high;
+    report::Chart chart(
+        title, "The rate before and after the filter, over time.",
+        {last ? std::string("time (") + unit.name + ")" : "", false, time.front(), time.back(), last}, rate);
+    chart.line(report::Role::kRaw, noisy, time, report::scaled(values, 1.0 / kDegreePerHour));
+    chart.line(report::Role::kAfter, "denoised", time, report::scaled(axis.denoised, 1.0 / kDegreePerHour));
+    rows.push_back({last ? 320.0 : 270.0, {{std::move(chart)}}});
+  };
+  const bool corrected = !result.model.empty();
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
-    Panel panel;
-    panel.title = result.axes[a].empty() ? "Rate" : "Rate, axis " + result.axes[a];
-    panel.x_label = "time, s";
-    panel.y_label = "°/h";
-    const auto curve = [&](const char* title, const std::vector<double>& values, const char* color) {
-      Curve out;
-      out.title = title;
-      out.color = color;
-      for (std::size_t i = 0; i < values.size(); i += step) {
-        out.x.push_back(columns.time_s[i]);
-        out.y.push_back(values[i] * kDegPerHour);
-      }
-      return out;
-    };
-    panel.curves.push_back(curve("raw", columns.axes[a].raw, "#b0b0b0"));
-    if (!result.model.empty())
-      panel.curves.push_back(curve("compensated", columns.axes[a].compensated, "#7fa8d9"));
-    panel.curves.push_back(curve("denoised", columns.axes[a].denoised, "#c02020"));
-    panels.push_back(std::move(panel));
+    const bool last = a + 1 == result.axes.size();
+    const Series& axis = columns.axes[a];
+    const std::string name = result.axes[a].empty() ? "" : "axis " + result.axes[a];
+    row(name, "raw", axis.raw, axis, last && !corrected);
+    if (corrected) row("", "compensated", axis.compensated, axis, last);
   }
-  plot(path, panels);
+  report::write_picture(path, report::picture_svg("Rate, denoised by " + result.filter.rule, rows));
 }
 
-OfflineSettings settings_of(Options& options) {
+OfflineSettings settings_of(Options& options, const InputFile& capture) {
   OfflineSettings out;
   if (!options.config.empty()) {
     const Config config = read_config(options.config);
@@ -168,7 +173,7 @@ OfflineSettings settings_of(Options& options) {
                                     ? "has several sensors; expected --sensor NAME"
                                     : "has no sensor \"" + printable(options.sensor) + "\""));
     out.sensor = *found;
-    if (file_kind(options.capture) != FileKind::capture && !options.input.has_driver()) {
+    if (file_kind(capture) != FileKind::capture && !options.input.has_driver()) {
       options.input.driver = out.sensor.driver;
       for (const auto& [key, value] : out.sensor.options) options.input.options.push_back(key + "=" + value);
     }
@@ -184,32 +189,33 @@ OfflineSettings settings_of(Options& options) {
 
 void tell(const Options& options, const Columns& columns, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
-    std::fprintf(stderr, "%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
+    warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
   if (!result.noise_known)
-    std::fprintf(
-        stderr,
+    warn(
         "%s: shorter than the start-up that would show its noise: denoised is the compensated rate; expected "
         "--process-noise and --measurement-noise, or a shorter --start-up\n",
         options.capture.c_str());
-  std::printf("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(),
-              columns.time_s.size(), result.sample_rate_hz,
-              static_cast<unsigned long long>(result.counts.gaps),
-              static_cast<unsigned long long>(result.counts.missing));
-  std::printf("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
-              result.filter.rule.c_str(), result.filter.state.c_str(), result.filter.process_noise,
-              result.filter.measurement_noise,
-              result.noise_learned ? " (from the first seconds of the capture)" : "");
+  say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), columns.time_s.size(),
+      result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
+      static_cast<unsigned long long>(result.counts.missing));
+  say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
+      result.filter.rule.c_str(), result.filter.state.c_str(), result.filter.process_noise,
+      result.filter.measurement_noise,
+      result.noise_learned ? " (from the first seconds of the capture)" : "");
   for (std::size_t a = 0; a < result.axes.size(); ++a)
-    std::printf("%s%sstd raw %.4g, compensated %.4g, denoised %.4g deg/h\n",
-                result.axes[a].empty() ? "" : "axis ",
-                result.axes[a].empty() ? "" : (result.axes[a] + ": ").c_str(),
-                moments(columns.axes[a].raw).second * kDegPerHour,
-                moments(columns.axes[a].compensated).second * kDegPerHour,
-                moments(columns.axes[a].denoised).second * kDegPerHour);
+    say("%s%sstd raw %.4g, compensated %.4g, denoised %.4g deg/h\n", result.axes[a].empty() ? "" : "axis ",
+        result.axes[a].empty() ? "" : (result.axes[a] + ": ").c_str(),
+        moments(columns.axes[a].raw).second / kDegreePerHour,
+        moments(columns.axes[a].compensated).second / kDegreePerHour,
+        moments(columns.axes[a].denoised).second / kDegreePerHour);
 }
 
 void run(Options options) {
-  const OfflineSettings settings = settings_of(options);
+  will_write("--output", options.output);
+  will_write("--json", options.json);
+  will_write("--plot", options.picture);
+  InputFile capture(options.capture);
+  const OfflineSettings settings = settings_of(options, capture);
   Columns columns;
   columns.axes.resize(kMaxAxes);
   const auto sink = [&](double time_s, const Increment& increment, const ChainOutput& out) {
@@ -227,19 +233,20 @@ void run(Options options) {
     if ((out.flags & kNoiseUnknown) != 0) ++columns.unknown_noise;
   };
   OfflineResult result;
-  if (!options.input.is_csv(options.capture) && file_kind(options.capture) != FileKind::lcm_log) {
+  const FileKind kind = options.input.kind(capture);
+  if (kind != FileKind::capture && kind != FileKind::lcm_log) {
     if (!options.input.has_driver())
       throw std::runtime_error(options.capture +
                                ": is no CSV capture, expected --driver NAME, --dbc FILE or --config F");
     DriverInstance driver = options.input.make_driver();
-    result = denoise_recording(options.input, options.capture, driver, settings, sink);
+    result = denoise_recording(options.input, capture, driver, settings, sink);
   } else {
-    result = denoise_capture(options.input.read(options.capture), settings, sink);
+    result = denoise_capture(options.input.read(capture), settings, sink);
   }
   columns.axes.resize(result.axes.size());
   write_text_file(options.output, as_text(columns, result));
-  if (options.output != "/dev/stdout") tell(options, columns, result);
-  if (!options.json.empty()) write_text_file(options.json, summary(options, columns, result).dump(2) + "\n");
+  tell(options, columns, result);
+  if (!options.json.empty()) write_json(options.json, summary(options, columns, result));
   if (!options.picture.empty()) draw(options.picture, columns, result);
 }
 
@@ -267,7 +274,9 @@ void add_denoise(CLI::App& app) {
   command->add_option("--start-up", options->start_up_s, "Seconds that show the noise when none is given (4)")
       ->check(CLI::PositiveNumber);
   command->add_option("--json", options->json, "Summary as JSON")->type_name("FILE");
-  command->add_option("--plot", options->picture, "Picture, .svg or .png")->type_name("FILE");
+  command->add_option("--plot", options->picture, "Picture, .svg or .png")
+      ->check(report::wrong_picture_name, "")
+      ->type_name("FILE");
   command->callback([options] { run(*options); });
 }
 

@@ -9,6 +9,7 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -114,7 +115,7 @@ OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& set
   return chain.finish();
 }
 
-OfflineResult denoise_recording(const CaptureInput& input, const std::string& path, DriverInstance& driver,
+OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink) {
   const ChainSettings chain_settings =
       sensor_chain_settings(settings.sensor, driver.description(), settings.model);
@@ -127,14 +128,14 @@ OfflineResult denoise_recording(const CaptureInput& input, const std::string& pa
   ChainOutput out;
   double time_s = 0.0;
   bool first = true;
-  const RecordingCounts counts = input.for_each_sample(path, driver, [&](const ifog_sample& sample) {
+  const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
     read_sample(sample, facts.frame_channels, reading);
     const Increment* const increment = chain.run(reading, out);
     if (increment == nullptr) return;
     if (!std::exchange(first, false)) time_s += increment->dt_s;
     sink(time_s, *increment, out);
   });
-  for (const std::string& loss : losses(counts)) std::fprintf(stderr, "%s: %s\n", path.c_str(), loss.c_str());
+  for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
   return chain.finish();
 }
 

@@ -37,7 +37,7 @@ struct OfflineResult {
 // All throw std::runtime_error or std::invalid_argument with one line.
 OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& settings,
                               const OfflineSink& sink);
-OfflineResult denoise_recording(const CaptureInput& input, const std::string& path, DriverInstance& driver,
+OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink);
 
 }  // namespace ifog::tools

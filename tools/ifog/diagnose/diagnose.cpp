@@ -8,17 +8,20 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 
+#include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/model_file/sha256.h"
+#include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/diagnosis_json.h"
 #include "tools/ifog/diagnose/diagnosis_text.h"
 #include "tools/report/diagnosis_page.h"
@@ -108,13 +111,12 @@ std::string vertical_rate(const Capture& capture) {
   constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
   const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
   if (std::abs(up) > kEarth) return "";
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   std::array<char, 240> text{};
   std::snprintf(text.data(), text.size(),
                 "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
                 "Earth's rate "
                 "at latitude %.2f°",
-                up * kDegrees * 3600.0, std::asin(up / kEarth) * kDegrees);
+                up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
   return text.data();
 }
 
@@ -156,7 +158,8 @@ std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const 
   return found;
 }
 
-Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& arguments, Model model) {
+Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& arguments,
+               const std::vector<std::string>& hashes, Model model) {
   for (const AxisDiagnosis& each : found) {
     add_to_model(each.diagnosis, each.axis, model);
     const std::string prefix = each.axis.empty() ? "" : each.axis + ".";
@@ -164,12 +167,11 @@ Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& argumen
     for (const auto& [name, value] : each.diagnosis.after) model.source.after[prefix + name] = value;
   }
   model.source.capture.clear();
-  std::string contents;
-  for (const std::string& path : arguments.captures) {
-    model.source.capture += (model.source.capture.empty() ? "" : ", ") + path;
-    contents += sha256_hex(read_bytes_file(path));
-  }
-  model.source.sha256 = arguments.captures.size() == 1 ? contents : sha256_hex(contents);
+  for (const std::string& path : arguments.captures)
+    model.source.capture += (model.source.capture.empty() ? "" : ", ") + printable(path, kLongestMessage);
+  std::string all;
+  for (const std::string& hash : hashes) all += hash;
+  model.source.sha256 = hashes.size() == 1 ? all : sha256_hex(all);
   model.source.date = today();
   return model;
 }
@@ -194,8 +196,15 @@ void write_report(const std::vector<Capture>& captures, const std::vector<AxisDi
 }
 
 void run(const Arguments& arguments) {
+  will_write("--json", arguments.json);
+  will_write("--write-model", arguments.write_model);
+  will_write("--report", arguments.report);
   std::vector<Capture> captures;
-  for (const std::string& path : arguments.captures) captures.push_back(arguments.input.read(path));
+  std::vector<std::string> hashes;  // for the model file, which says what it was found on
+  for (const std::string& path : arguments.captures) {
+    hashes.emplace_back();
+    captures.push_back(arguments.input.read(path, arguments.write_model.empty() ? nullptr : &hashes.back()));
+  }
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
@@ -204,10 +213,11 @@ void run(const Arguments& arguments) {
   const std::vector<AxisDiagnosis> found = all_axes(captures, arguments);
   if (!arguments.quiet) {
     for (const AxisDiagnosis& each : found)
-      std::printf("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
+      say("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
   }
-  if (!arguments.json.empty()) write_text_file(arguments.json, diagnosis_json(found).dump(2) + "\n");
-  if (!arguments.write_model.empty()) write_model(model_of(found, arguments, model), arguments.write_model);
+  if (!arguments.json.empty()) write_json(arguments.json, diagnosis_json(found));
+  if (!arguments.write_model.empty())
+    write_file(arguments.write_model, model_text(model_of(found, arguments, hashes, model)));
   if (!arguments.report.empty()) write_report(captures, found, arguments);
 }
 

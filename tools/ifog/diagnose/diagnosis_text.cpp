@@ -1,15 +1,12 @@
 #include "tools/ifog/diagnose/diagnosis_text.h"
+#include "filters/units/field_units.h"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 namespace ifog::tools {
 namespace {
-
-constexpr double kDegPerHour = 180.0 / std::numbers::pi * 3600.0;  // °/h per rad/s
-constexpr double kDeg = 180.0 / std::numbers::pi;
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
@@ -32,7 +29,7 @@ std::string chance(double p) { return p < 1e-6 ? "under one in a million" : text
 // The coefficient in the field's units: °/h for what is rad/s.
 std::string value_of(const ModelParameter& parameter) {
   const bool rate = parameter.unit.starts_with("rad/s");
-  const double scale = rate ? kDegPerHour : 1.0;
+  const double scale = rate ? 1.0 / kDegreePerHour : 1.0;
   const std::string unit = rate ? "°/h" + parameter.unit.substr(5) : parameter.unit;
   return text("%.4g ± %.2g %s", parameter.value * scale, parameter.std_error * scale, unit.c_str());
 }
@@ -49,7 +46,7 @@ std::string effect_lines(const FoundEffect& found, std::size_t number) {
   }
   if (effect.form == "line") {
     const double amplitude = std::hypot(effect.parameters[0].value, effect.parameters[1].value);
-    lines += text("     %-18s %.4g °/h\n", "amplitude", amplitude * kDegPerHour);
+    lines += text("     %-18s %.4g °/h\n", "amplitude", amplitude / kDegreePerHour);
   }
   if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
   lines += text("     explains %s of the error's variance; by chance: %s\n",
@@ -65,16 +62,16 @@ struct FigureName {
 };
 
 constexpr std::array<FigureName, 11> kFigures = {{
-    {"residual_rms_radps", "single samples, RMS", "°/h", kDegPerHour},
-    {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", kDegPerHour},
-    {"rms_1s_radps", "1 s means, RMS", "°/h", kDegPerHour},
-    {"rms_10s_radps", "10 s means, RMS", "°/h", kDegPerHour},
-    {"rms_100s_radps", "100 s means, RMS", "°/h", kDegPerHour},
-    {"adev_0.1s_radps", "Allan deviation, 0.1 s", "°/h", kDegPerHour},
-    {"adev_1s_radps", "Allan deviation, 1 s", "°/h", kDegPerHour},
-    {"adev_10s_radps", "Allan deviation, 10 s", "°/h", kDegPerHour},
-    {"adev_100s_radps", "Allan deviation, 100 s", "°/h", kDegPerHour},
-    {"heading_drift_rad", "heading drift at the end", "°", kDeg},
+    {"residual_rms_radps", "single samples, RMS", "°/h", 1.0 / kDegreePerHour},
+    {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
+    {"rms_1s_radps", "1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
+    {"rms_10s_radps", "10 s means, RMS", "°/h", 1.0 / kDegreePerHour},
+    {"rms_100s_radps", "100 s means, RMS", "°/h", 1.0 / kDegreePerHour},
+    {"adev_0.1s_radps", "Allan deviation, 0.1 s", "°/h", 1.0 / kDegreePerHour},
+    {"adev_1s_radps", "Allan deviation, 1 s", "°/h", 1.0 / kDegreePerHour},
+    {"adev_10s_radps", "Allan deviation, 10 s", "°/h", 1.0 / kDegreePerHour},
+    {"adev_100s_radps", "Allan deviation, 100 s", "°/h", 1.0 / kDegreePerHour},
+    {"heading_drift_rad", "heading drift at the end", "°", 1.0 / kDegree},
     {"whiteness", "correlation of neighbours", "", 1.0},
 }};
 
@@ -92,9 +89,9 @@ std::string figure_lines(const Diagnosis& diagnosis) {
 
 std::string noise_line(const NoiseTerms& noise) {
   std::string line = "Noise:";
-  if (noise.N) line += text(" angle random walk %.3g °/√h", *noise.N * kDeg * 60.0);
-  if (noise.B) line += text(", bias instability %.3g °/h", *noise.B * kDegPerHour);
-  if (noise.K) line += text(", rate random walk %.3g °/h/√h", *noise.K * kDegPerHour * 60.0);
+  if (noise.N) line += text(" angle random walk %.3g °/√h", *noise.N / kDegreePerRootHour);
+  if (noise.B) line += text(", bias instability %.3g °/h", *noise.B / kDegreePerHour);
+  if (noise.K) line += text(", rate random walk %.3g °/h/√h", *noise.K / kDegreePerHourPerRootHour);
   if (!noise.B && !noise.K) line += ", nothing slower that this record shows";
   return line + "\n";
 }
@@ -130,7 +127,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
     report += text("\nNext capture, bias taken over %.3g s at rest: heading error (1 sigma)",
                    diagnosis.heading.aligned_s);
     for (std::size_t i = 0; i < diagnosis.heading.after_s.size(); ++i) {
-      report += text("%s %.3g° after %.4g s", i ? "," : "", diagnosis.heading.sigma_rad[i] * kDeg,
+      report += text("%s %.3g° after %.4g s", i ? "," : "", diagnosis.heading.sigma_rad[i] / kDegree,
                      diagnosis.heading.after_s[i]);
     }
     report += "\n";

@@ -17,12 +17,13 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "drivers/capture/text_file.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/pace.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
 #include "tools/ifog/replay/lateness.h"
 #include "tools/ifog/replay/replay_target.h"
 #include "tools/ifog/replay/replay_timeline.h"
@@ -106,8 +107,7 @@ void prepare(const ReplaySettings& settings) {
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (!settings.realtime) return;
   const auto warn = [](const char* what) {
-    std::fprintf(stderr, "ifog replay: no %s (%s), going on without\n", what,
-                 std::generic_category().message(errno).c_str());
+    warn("ifog replay: no %s (%s), going on without\n", what, std::generic_category().message(errno).c_str());
   };
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) warn("locked memory");
   sched_param priority{};
@@ -119,14 +119,12 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
             const ReplayResult& result) {
   const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
   const bool paced = settings.speed > 0.0 && result.sent > 0;
-  // Standard output may be where the bytes went.
-  std::FILE* out = settings.to == "-" ? stderr : stdout;
-  std::fprintf(out, "sent %llu %s in %.3f s%s, %llu retries\n", static_cast<unsigned long long>(result.sent),
-               timeline.is_can() ? "frames" : "blocks", result.seconds, interrupted() ? " (interrupted)" : "",
-               static_cast<unsigned long long>(target.retries()));
+  say("sent %llu %s in %.3f s%s, %llu retries\n", static_cast<unsigned long long>(result.sent),
+      timeline.is_can() ? "frames" : "blocks", result.seconds, interrupted() ? " (interrupted)" : "",
+      static_cast<unsigned long long>(target.retries()));
   if (paced)
-    std::fprintf(out, "lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", us(result.late.percentile_ns(0.5)),
-                 us(result.late.percentile_ns(0.99)), us(result.late.max_ns()));
+    say("lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", us(result.late.percentile_ns(0.5)),
+        us(result.late.percentile_ns(0.99)), us(result.late.max_ns()));
   if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
                          {"sent", result.sent},
@@ -139,11 +137,14 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
     json["lateness_us"] = {{"p50", us(result.late.percentile_ns(0.5))},
                            {"p99", us(result.late.percentile_ns(0.99))},
                            {"max", us(result.late.max_ns())}};
-  write_text_file(settings.json, json.dump(2) + "\n");
+  write_json(settings.json, json);
 }
 
 void run(ReplaySettings settings) {
   const ReplayDestination to = ReplayDestination::parse(settings.to);
+  if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
+  if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
+  will_write("--json", settings.json);
   settings.source.prefer_can = to.is_can();
   const ReplayTimeline timeline = read_timeline(settings.source);
 
@@ -156,7 +157,7 @@ void run(ReplaySettings settings) {
   try {
     replay(timeline, settings, *target, result);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "ifog replay: %s\n", error.what());
+    warn("ifog replay: %s\n", error.what());
     report(settings, timeline, *target, result);
     throw Failed(error.what());
   }

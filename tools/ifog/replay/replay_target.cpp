@@ -14,8 +14,10 @@
 
 #include "drivers/capture/candump.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/capture/output_file.h"
 #include "drivers/transport/can_socket.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -59,11 +61,11 @@ class ByteTarget final : public ReplayTarget {
       : ByteTarget(name, port->fd(), timeline, hold) {
     port_ = std::move(port);
   }
-  ~ByteTarget() override {
-    if (port_ == nullptr && outlet_.fd() != STDOUT_FILENO) close(outlet_.fd());
+  ByteTarget(std::unique_ptr<OutputFile> file, const std::string& name, const ReplayTimeline& timeline,
+             bool hold)
+      : ByteTarget(name, file->descriptor(), timeline, hold) {
+    file_ = std::move(file);
   }
-  ByteTarget(const ByteTarget&) = delete;
-  ByteTarget& operator=(const ByteTarget&) = delete;
 
   bool send(std::size_t i) override {
     if (timeline_.is_can()) {
@@ -78,6 +80,7 @@ class ByteTarget final : public ReplayTarget {
   bool finish() override {
     if (!flush()) return false;
     if (port_ != nullptr) tcdrain(outlet_.fd());
+    if (file_ != nullptr) file_->finish();
     return true;
   }
 
@@ -95,23 +98,23 @@ class ByteTarget final : public ReplayTarget {
 
   const ReplayTimeline& timeline_;
   bool hold_;
-  std::unique_ptr<SerialPort> port_;
+  std::unique_ptr<SerialPort> port_;  // one of the two
+  std::unique_ptr<OutputFile> file_;
   std::vector<std::uint8_t> held_;
 };
 
-int open_file(const ReplayDestination& to) {
-  const bool fifo = to.kind == ReplayDestination::Kind::fifo;
+// The wait for a FIFO's reader can be interrupted: null.
+std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   struct stat info {};
-  const bool there = stat(to.name.c_str(), &info) == 0;
-  if (fifo && !there && mkfifo(to.name.c_str(), 0644) != 0) fail(to.name, "cannot make a FIFO", errno);
-  if (fifo && there && !S_ISFIFO(info.st_mode))
-    throw std::runtime_error(to.name + ": is no FIFO, expected one");
-  if (fifo) std::fprintf(stderr, "%s: waiting for a reader\n", to.name.c_str());
+  const bool there = stat(name.c_str(), &info) == 0;
+  if (!there && mkfifo(name.c_str(), 0644) != 0) fail(name, "cannot make a FIFO", errno);
+  if (there && !S_ISFIFO(info.st_mode)) throw std::runtime_error(name + ": is no FIFO, expected one");
+  warn("%s: waiting for a reader\n", name.c_str());
   for (;;) {
-    const int fd =
-        open(to.name.c_str(), fifo ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (fd >= 0 || interrupted()) return fd;
-    if (errno != EINTR) fail(to.name, "cannot open for writing", errno);
+    const int fd = open(name.c_str(), O_WRONLY | O_CLOEXEC);
+    if (fd >= 0) return std::make_unique<OutputFile>(name, fd);
+    if (interrupted()) return nullptr;
+    if (errno != EINTR) fail(name, "cannot open for writing", errno);
   }
 }
 
@@ -147,9 +150,11 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
     std::string warning;
     return std::make_unique<ByteTarget>(open_serial_port(line, warning), to.name, timeline, hold);
   }
-  const int fd = to.kind == Kind::standard_output ? STDOUT_FILENO : open_file(to);
-  if (fd < 0) return nullptr;
-  return std::make_unique<ByteTarget>(to.name, fd, timeline, hold);
+  std::unique_ptr<OutputFile> file =
+      to.kind == Kind::fifo ? open_fifo(to.name)
+                            : std::make_unique<OutputFile>(to.kind == Kind::standard_output ? "-" : to.name);
+  if (file == nullptr) return nullptr;
+  return std::make_unique<ByteTarget>(std::move(file), to.name, timeline, hold);
 }
 
 }  // namespace ifog::tools

@@ -8,28 +8,27 @@
 #include "drivers/capture/candump.h"
 #include "drivers/capture/capture.h"
 #include "drivers/capture/capture_encoder.h"
+#include "drivers/capture/input_file.h"
 #include "drivers/capture/recording.h"
-#include "drivers/capture/text_file.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
-FileKind kind_of(const ReplaySource& source) {
+FileKind kind_of(const ReplaySource& source, const InputFile& file) {
   if (source.format == "candump") return FileKind::candump;
   if (source.format == "bytes") return FileKind::bytes;
   if (source.format == "csv") return FileKind::capture;
-  return file_kind(source.path);
+  return file_kind(file);
 }
 
-ReplayTimeline from_candump(const ReplaySource& source) {
-  Candump log = read_candump(source.path, source.input.channel);
+ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
+  Candump log = parse_candump(file.text(), source.path, source.input.channel);
   if (log.remote + log.error > 0)
-    std::fprintf(stderr, "%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(),
-                 log.remote, log.error);
-  if (log.cut_off)
-    std::fprintf(stderr, "%s: the last line is no whole frame and is not sent\n", source.path.c_str());
+    warn("%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(), log.remote, log.error);
+  if (log.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
   ReplayTimeline timeline;
   timeline.frames = std::move(log.frames);
   timeline.interface = std::move(log.interface);
@@ -72,12 +71,12 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
   timeline.blocks.back().end = timeline.bytes.size();
 }
 
-ReplayTimeline from_bytes(const ReplaySource& source) {
+ReplayTimeline from_bytes(const ReplaySource& source, InputFile& file) {
   const bool even = source.block_bytes != 0 && source.rate_hz > 0.0;
   if (!even && !source.input.has_driver())
     throw std::runtime_error(
         source.path + ": raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME");
-  const std::string text = read_bytes_file(source.path);
+  const std::string text = file.bytes();
   ReplayTimeline timeline;
   timeline.bytes.assign(text.begin(), text.end());
   if (timeline.bytes.empty()) return timeline;
@@ -85,16 +84,15 @@ ReplayTimeline from_bytes(const ReplaySource& source) {
   return timeline;
 }
 
-ReplayTimeline from_capture(const ReplaySource& source) {
+ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   if (!source.input.has_driver())
     throw std::runtime_error(source.path +
                              ": a CSV capture needs --driver NAME, whose frames its rows become");
-  const Capture capture = read_capture(source.path);
+  const Capture capture = parse_capture(file.text(), source.path);
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate_of(capture, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, source.axis);
-  for (const std::string& notice : encoder.notices())
-    std::fprintf(stderr, "%s: %s\n", source.path.c_str(), notice.c_str());
+  for (const std::string& notice : encoder.notices()) warn("%s: %s\n", source.path.c_str(), notice.c_str());
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;
   if (driver.takes_can() && (source.prefer_can || !driver.takes_bytes())) {
@@ -108,8 +106,8 @@ ReplayTimeline from_capture(const ReplaySource& source) {
             {nanoseconds(capture.time_s[encoder.rows_done() - 1]), timeline.bytes.size()});
   }
   if (encoder.rows_left_out() > 0)
-    std::fprintf(stderr, "%s: %zu rows without a rate are not sent: the format cannot say so\n",
-                 source.path.c_str(), encoder.rows_left_out());
+    warn("%s: %zu rows without a rate are not sent: the format cannot say so\n", source.path.c_str(),
+         encoder.rows_left_out());
   return timeline;
 }
 
@@ -117,15 +115,16 @@ ReplayTimeline from_capture(const ReplaySource& source) {
 
 ReplayTimeline read_timeline(const ReplaySource& source) {
   ReplayTimeline timeline;
-  switch (kind_of(source)) {
+  InputFile file(source.path);
+  switch (kind_of(source, file)) {
     case FileKind::candump:
-      timeline = from_candump(source);
+      timeline = from_candump(source, file);
       break;
     case FileKind::bytes:
-      timeline = from_bytes(source);
+      timeline = from_bytes(source, file);
       break;
     case FileKind::capture:
-      timeline = from_capture(source);
+      timeline = from_capture(source, file);
       break;
     case FileKind::lcm_log:
     case FileKind::unknown:

@@ -1,12 +1,6 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cstdio>
-#include <stdexcept>
-#include <system_error>
 #include <type_traits>
 
 #include "filters/model_file/model.h"
@@ -134,10 +128,6 @@ void write_source(Text& text, const ModelSource& source) {
   for (const auto& [name, value] : source.after) text.line(quoted(name), number(value));
 }
 
-[[noreturn]] void fail(const std::string& path, const char* what) {
-  throw std::runtime_error(path + ": " + what + ": " + std::generic_category().message(errno));
-}
-
 }  // namespace
 
 std::string model_text(const Model& model) {
@@ -159,29 +149,5 @@ std::string model_text(const Model& model) {
 }
 
 std::string Model::identity() const { return sha256_hex(model_text(*this)).substr(0, 12); }
-
-void write_model(const Model& model, const std::string& path) {
-  const std::string text = model_text(model);
-  const std::string beside = path + "." + std::to_string(::getpid()) + ".part";
-  const int file = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail(path, "cannot write");
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t wrote = ::write(file, text.data() + done, text.size() - done);
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) break;
-    done += static_cast<std::size_t>(wrote);
-  }
-  const bool kept = done == text.size() && ::fsync(file) == 0;
-  const int cause = errno;
-  ::close(file);
-  if (!kept || ::rename(beside.c_str(), path.c_str()) != 0) {
-    if (!kept) errno = cause;
-    const int why = errno;
-    ::unlink(beside.c_str());
-    errno = why;
-    fail(path, "cannot write");
-  }
-}
 
 }  // namespace ifog

@@ -1,0 +1,143 @@
+#include "drivers/capture/input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+std::string reason() { return std::generic_category().message(errno); }
+
+int opened(const std::string& path) {
+  if (path != "-") return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  // What one reader has taken no other will find.
+  static std::atomic_flag taken = ATOMIC_FLAG_INIT;
+  if (taken.test_and_set())
+    throw std::runtime_error("-: standard input is read already, expected it once among the inputs");
+  return fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
+}
+
+// A gzip file's content is held to this many times its size, beyond what any memory has room for.
+constexpr std::size_t kMostGrowth = 100;
+constexpr std::size_t kGrowthFree = 256U << 20U;
+
+// Follows where the last line begins, block by block: no second look at each byte.
+class LineLength {
+ public:
+  // Of text, whose last n bytes are new. Throws when a line is too long, also one without its end so far.
+  void check(const std::string& path, std::string_view text, std::size_t n) {
+    const std::size_t from = text.size() - n;
+    const std::size_t first = std::min(text.find('\n', from), text.size());
+    if (first - line_ > kLongestLine) refuse(path, text);
+    const std::size_t last = text.rfind('\n');
+    if (last != std::string_view::npos && last >= from) line_ = last + 1;
+    if (text.size() - line_ > kLongestLine) refuse(path, text);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& path, std::string_view text) const {
+    const auto number = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(line_), '\n') + 1;
+    throw std::runtime_error(path + ":" + std::to_string(number) + ": a line of more than " +
+                             std::to_string(kLongestLine) + " bytes, begins " +
+                             in_quotes(text.substr(line_, kLongestQuote)));
+  }
+  std::size_t line_ = 0;
+};
+
+}  // namespace
+
+void InputFile::Close::operator()(gzFile_s* file) const { gzclose(file); }
+
+InputFile::InputFile(std::string path) : path_(std::move(path)) {
+  const int fd = opened(path_);
+  if (fd < 0) throw std::runtime_error(path_ + ": cannot open: " + reason());
+  struct stat info {};
+  if (fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) {
+    ::close(fd);
+    throw std::runtime_error(path_ + ": is a folder, expected a file");
+  }
+  file_.reset(gzdopen(fd, "rb"));
+  if (!file_) {
+    ::close(fd);
+    throw std::runtime_error(path_ + ": cannot open: " + reason());
+  }
+  gzbuffer(file_.get(), 1U << 18U);
+  if (S_ISREG(info.st_mode) && gzdirect(file_.get()) == 0)
+    most_ = std::max(kGrowthFree, static_cast<std::size_t>(info.st_size) * kMostGrowth);
+  held_.resize(kHead);
+  held_.resize(unpack(held_.data(), kHead));
+  reopens_ = path_ != "-" && S_ISREG(info.st_mode) && gzdirect(file_.get()) == 1;
+}
+
+InputFile::InputFile(std::string path, std::string text) : path_(std::move(path)), held_(std::move(text)) {}
+
+std::size_t InputFile::unpack(char* to, std::size_t most) {
+  std::size_t done = 0;
+  while (file_ && done < most) {
+    const auto wanted = static_cast<unsigned>(std::min<std::size_t>(most - done, 1U << 30U));
+    const int n = gzread(file_.get(), to + done, wanted);
+    if (n > 0) done += static_cast<std::size_t>(n);
+    if (n > 0 && most_ > 0 && (unpacked_ += static_cast<std::size_t>(n)) > most_)
+      throw std::runtime_error(path_ + ": grows to more than " + std::to_string(most_ >> 20U) + " MiB, " +
+                               std::to_string(kMostGrowth) +
+                               " times its size, when unpacked, expected a recording");
+    if (n == static_cast<int>(wanted)) continue;
+    // gzread also returns short at a truncated stream, and says so only through gzerror.
+    int error = Z_OK;
+    const char* message = gzerror(file_.get(), &error);
+    if (error != Z_OK && error != Z_STREAM_END)
+      throw std::runtime_error(path_ + ": cannot read: " +
+                               (error == Z_BUF_ERROR ? "the gzip stream ends early (truncated file)"
+                                : error == Z_ERRNO   ? reason()
+                                                     : std::string(message)));
+    break;
+  }
+  return done;
+}
+
+std::size_t InputFile::read(char* to, std::size_t most) {
+  const std::size_t ready = std::min(most, held_.size() - taken_);
+  std::memcpy(to, held_.data() + taken_, ready);
+  taken_ += ready;
+  return ready + unpack(to + ready, most - ready);
+}
+
+std::string InputFile::bytes() {
+  std::string all = std::exchange(held_, {});
+  all.erase(0, std::exchange(taken_, 0));
+  constexpr std::size_t kBlock = 1U << 20U;
+  for (std::size_t n = kBlock; n == kBlock;) {
+    const std::size_t before = all.size();
+    all.resize(before + kBlock);
+    n = unpack(all.data() + before, kBlock);
+    all.resize(before + n);
+  }
+  return all;
+}
+
+std::string InputFile::text() {
+  std::string all;
+  LineLength lines;
+  // No larger than a line may be: then only lines that cross the end of a block can be too long.
+  std::vector<char> block(kLongestLine);
+  while (const std::size_t n = read(block.data(), block.size())) {
+    all.append(block.data(), n);
+    lines.check(path_, all, n);
+  }
+  return all;
+}
+
+}  // namespace ifog

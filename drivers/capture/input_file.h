@@ -1,0 +1,58 @@
+// A file read once, from its start, plain or gzip by its first bytes, whatever its name. Nothing is opened
+// twice and nothing rewound, so that standard input, a FIFO and a shell's <(command) do as well as a file.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+struct gzFile_s;  // zlib's
+
+namespace ifog {
+
+// No line of a text that people or instruments write comes near it.
+inline constexpr std::size_t kLongestLine = 1U << 20U;
+
+class InputFile {
+ public:
+  // "-" is standard input, once in a process. Throws std::runtime_error with one line: missing, unreadable, a
+  // folder.
+  explicit InputFile(std::string path);
+  // A text already at hand; `path` stands for the file.
+  InputFile(std::string path, std::string text);
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+  // The first bytes of what will be read, unpacked: kHead of them, fewer where the file is shorter. Valid
+  // until the first read.
+  static constexpr std::size_t kHead = 4096;
+  [[nodiscard]] std::string_view head() const { return std::string_view(held_).substr(taken_, kHead); }
+
+  // Up to `most` further bytes, fewer only at the end, 0 there. Throws std::runtime_error with one line: a
+  // gzip stream that ends early or is damaged, a packed file that grows beyond 256 MiB and 100 times its size,
+  // which no recording does and which would fill the memory; a device's error.
+  std::size_t read(char* to, std::size_t most);
+  // All of the rest. Of a text a line longer than kLongestLine is refused with its number.
+  std::string bytes();
+  std::string text();
+
+  // Whether path() opened again gives the same bytes: a regular file that is not packed. For libraries that
+  // want a name.
+  [[nodiscard]] bool reopens() const { return reopens_; }
+
+ private:
+  struct Close {
+    void operator()(gzFile_s* file) const;
+  };
+  std::size_t unpack(char* to, std::size_t most);
+
+  std::string path_;
+  std::unique_ptr<gzFile_s, Close> file_;
+  std::string held_;  // at hand: the head, or all of a given text
+  std::size_t taken_ = 0;
+  bool reopens_ = false;
+  std::size_t unpacked_ = 0, most_ = 0;  // most_ 0: as much as comes
+};
+
+}  // namespace ifog

@@ -1,0 +1,47 @@
+// The one way by which anything here is written. A regular file is never seen half-written: its bytes go into
+// a file without a name, are synced, and take the name at the end. Links are followed to the file they lead
+// to; devices, FIFOs and open descriptors (/dev/stdout) are written as they are, never replaced.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace ifog {
+
+class OutputFile {
+ public:
+  // "-" is standard output. An existing file keeps its mode and, where that is allowed, its owner. Throws
+  // std::runtime_error with one line: no such folder, a folder, no permission.
+  explicit OutputFile(std::string path);
+  // One that is open already, and from here on this object's to close; `path` stands for it in messages.
+  OutputFile(std::string path, int descriptor);
+  // Without finish() a regular file stays as it was, and nothing stays beside it.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  // Both throw std::runtime_error with one line: disk full, pipe closed, … SIGPIPE is the program's to
+  // ignore.
+  void write(std::string_view bytes);
+  void finish();
+
+  [[nodiscard]] int descriptor() const { return fd_; }
+
+ private:
+  [[noreturn]] void fail(const char* what) const;
+  void open_beside();
+  void take_the_name();
+
+  std::string path_;    // as given, for messages
+  std::string target_;  // the regular file; empty: written in place
+  std::string beside_;  // the name of the bytes until finish(), where a file without one cannot be had
+  int fd_ = -1;
+};
+
+// "-", /dev/stdout, /dev/fd/1 and whatever else leads to descriptor 1.
+[[nodiscard]] bool is_standard_output(const std::string& path);
+
+// All of it at once: nothing is touched if it fails.
+void write_file(const std::string& path, std::string_view bytes);
+
+}  // namespace ifog

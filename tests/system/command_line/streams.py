@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+"""What `ifog` reads and writes, attacked: pipes and standard streams in place of files, devices, links, full disks, closed
+pipes, interrupts, and names that a shell, a terminal or a picture could take for more than a name.
+
+usage: streams.py PATH_OF_IFOG SOURCE_DIR
+"""
+import gzip
+import json
+import os
+import pathlib
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+from run import IFOG, SCENARIO, SOURCE, columns, ifog, main_of, ran, refused
+
+FRAMES = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter",
+          "--option", "rate_hz=50"]
+
+
+def piped(bytes_in, *arguments):
+    return subprocess.run([IFOG, *map(str, arguments)], input=bytes_in, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120, check=False)
+
+
+def shell(line, **names):
+    return subprocess.run(["bash", "-c", line], env={**os.environ, "ifog": IFOG, **{k: str(v) for k, v in names.items()}},
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+
+
+def one_line(text, *parts):
+    assert len(text.strip().splitlines()) == 1, f"expected one line: {text}"
+    for part in parts:
+        assert part in text, f"'{part}' is not in '{text.strip()}'"
+
+
+class Checks:
+    def __init__(self, folder):
+        self.folder = folder
+        (folder / "rest.toml").write_text(SCENARIO.replace("duration_s = 400", "duration_s = 100"))
+        self.capture = folder / "rest.csv"
+        ifog("simulate", folder / "rest.toml", "--output", self.capture)
+
+    def fresh(self, name):
+        """An empty folder: what is in it afterwards is what the command left."""
+        folder = self.folder / name
+        folder.mkdir()
+        return folder
+
+    def outputs(self):
+        """Every option that names a file to write, in a command that is quick."""
+        model = self.folder / "m.toml"
+        if not model.exists():
+            ifog("tune", self.capture, "--samples", "2000", "--state", "random-walk", "--write-model", model)
+        tune = ["tune", self.capture, "--samples", "2000", "--state", "random-walk"]
+        compare = ["compare", self.capture]
+        denoise = ["denoise", self.capture, "--filter", "ckf"]
+        diagnose = ["diagnose", self.capture]
+        return [(["allan", self.capture], "--json"), (["allan", self.capture], "--plot"), (denoise, "--output"),
+                ([*denoise, "--output", "/dev/null"], "--json"), ([*denoise, "--output", "/dev/null"], "--plot"),
+                (tune, "--json"), (tune, "--write-model"), (compare, "--json"), (compare, "--plot"),
+                (diagnose, "--json"), (diagnose, "--write-model"), (diagnose, "--report"),
+                (["simulate", self.folder / "rest.toml"], "--output"), (["convert", self.capture], ""),
+                (["replay", self.capture, "--speed", "0", *FRAMES], "--to")]
+
+    @staticmethod
+    def target(option, path):
+        if option == "--to":
+            return [option, path if path == "-" else f"file:{path}"]
+        return [option, path] if option else [path]
+
+    # --- reading ---
+
+    def check_standard_input_for_every_capture(self):
+        """The same answer as from the file, plain and packed."""
+        text = self.capture.read_bytes()
+        for command in (["allan"], ["tune", "--samples", "2000", "--state", "random-walk"], ["compare"], ["diagnose"]):
+            path = self.folder / "in.json"
+            ifog(*command, self.capture, "--json", path)
+            expected = json.loads(path.read_text())
+            for sent in (text, gzip.compress(text)):
+                result = piped(sent, *command, "-", "--json", "-")
+                assert result.returncode == 0, f"{command}: {result.stderr.decode()}"
+                found = json.loads(result.stdout)
+                for answer in (expected, found):
+                    for key in ("capture", "notes"):
+                        answer.pop(key, None)
+                    for axis in answer.get("axes", []):
+                        axis.pop("capture")
+                assert found == expected, f"{command} says other things of standard input"
+        out = self.folder / "in.csv"
+        ifog("denoise", self.capture, "--output", out)
+        assert piped(text, "denoise", "-", "--output", "-").stdout == out.read_bytes()
+
+    def check_pipes_without_a_name(self):
+        for command in ('allan <(cat "$capture")', 'allan <(gzip -c "$capture")', 'tune <(cat "$capture") --samples 2000 --state random-walk',
+                        'denoise <(gzip -c "$capture") --output /dev/null', 'compare <(cat "$capture")', 'convert <(cat "$capture") "$out"'):
+            result = shell(f'"$ifog" {command}', capture=self.capture, out=self.folder / "piped.csv")
+            assert result.returncode == 0, f"{command}: {result.stderr}"
+        assert columns(self.folder / "piped.csv") == columns(self.capture)
+
+    def check_frames_through_a_pipe(self):
+        log = self.folder / "rest.log"
+        ifog("convert", self.capture, log, *FRAMES)
+        ifog("convert", log, self.folder / "frames.csv", *FRAMES)
+        result = piped(log.read_bytes(), "convert", "-", "-", *FRAMES)
+        assert result.returncode == 0, result.stderr.decode()
+        assert result.stdout == (self.folder / "frames.csv").read_bytes()
+        back = piped(self.capture.read_bytes(), "convert", "-", "-", *FRAMES)
+        assert back.returncode == 0 and back.stdout == log.read_bytes(), back.stderr.decode()
+
+    def check_lines_are_named_without_a_second_look(self):
+        lines = self.capture.read_text().splitlines()
+        header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
+        lines.insert(header + 11, "# a remark")
+        del lines[header + 2002:header + 2102]
+        result = piped(("\n".join(lines) + "\n").encode(), "allan", "-", "--gaps", "refuse")
+        assert result.returncode == 1
+        # Data row 2000, counted from one, stands a line lower for the remark.
+        one_line(result.stderr.decode(), f"-:{header + 2002}: 1 gap")
+
+    def check_standard_input_is_read_once(self):
+        result = piped(self.capture.read_bytes(), "allan", "-", "-")
+        assert result.returncode == 1
+        one_line(result.stderr.decode(), "standard input", "once")
+
+    # --- writing ---
+
+    def check_standard_output_for_every_output(self):
+        """Nothing but the data there, and no file of that name."""
+        folder = self.fresh("standard_output")
+        for command, option in self.outputs():
+            result = subprocess.run([IFOG, *map(str, command), *self.target(option, "-")], cwd=folder, stdin=subprocess.DEVNULL,
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120, check=False)
+            what = f"{command[0]} {option} -"
+            assert result.returncode == 0, f"{what}: {result.stderr.decode()}"
+            text = result.stdout.decode()
+            if option == "--json":
+                json.loads(text)
+            elif option in ("--plot", "--report"):
+                assert text.startswith("<") and text.rstrip().endswith(("</svg>", "</html>")), f"{what}: {text[:80]}"
+            elif option == "--write-model":
+                assert text.startswith("version = "), f"{what}: {text[:80]}"
+            elif option == "--to":
+                assert text.startswith("(") and len(text.splitlines()) == 5000, f"{what}: {text[:80]}"
+            else:
+                assert text.lstrip("#").strip() and all("," in line or line.startswith("#") for line in text.splitlines()), f"{what}: {text[:80]}"
+            assert result.stderr, f"{what}: the text for people is lost"
+        assert not os.listdir(folder), os.listdir(folder)
+        refused(2, "denoise", self.capture, "--output", "-", "--json", "/dev/stdout", says=["--json", "--output", "only one"])
+
+    def check_dev_stdout(self):
+        expected = self.folder / "expected.csv"
+        ifog("denoise", self.capture, "--output", expected)
+        assert ran("denoise", self.capture, "--output", "/dev/stdout").stdout == expected.read_text()
+        into = self.folder / "into.csv"
+        result = shell('{ echo before; "$ifog" denoise "$capture" --output /dev/stdout; echo after; } > "$into"', capture=self.capture, into=into)
+        assert result.returncode == 0 and into.read_text() == "before\n" + expected.read_text() + "after\n"
+
+    def check_a_full_disk_and_a_closed_pipe(self):
+        for command, option in self.outputs():
+            result = ran(*command, *self.target(option, "/dev/full"))
+            assert result.returncode == 1, f"{command[0]} {option} /dev/full: exit {result.returncode}"
+            assert "/dev/full: cannot write: No space left" in result.stderr or option == "--to" and "/dev/full" in result.stderr, result.stderr
+            for where in (">/dev/full", ">&-", "| true"):
+                line = " ".join(["set -o pipefail; \"$ifog\"", *(f"'{part}'" for part in [*command, *self.target(option, "-")]), where])
+                result = shell(line)
+                assert result.returncode == 1, f"{line}: exit {result.returncode}: {result.stderr}"
+                assert "cannot write" in result.stderr or "standard output" in result.stderr, f"{line}: {result.stderr}"
+        for where in (">/dev/full", ">&-"):
+            for command in ('allan "$capture"', "drivers", "--help"):
+                result = shell(f'"$ifog" {command} {where}', capture=self.capture)
+                assert result.returncode == 1, f"{command} {where}: exit {result.returncode}"
+                one_line(result.stderr, "standard output: cannot write")
+        folder = self.fresh("limit")
+        result = shell('ulimit -f 8; cd "$folder" && "$ifog" denoise "$capture" --output out.csv', folder=folder, capture=self.capture)
+        assert result.returncode == 1 and not os.listdir(folder), f"exit {result.returncode}: {os.listdir(folder)}"
+        one_line(result.stderr, "out.csv: cannot write: File too large")
+
+    def check_devices_and_links_stay(self):
+        folder = self.fresh("devices")
+        null = folder / "null"
+        if os.geteuid() == 0:
+            os.mknod(null, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+        else:
+            null = pathlib.Path("/dev/null")
+        (folder / "there").mkdir()
+        link = folder / "link"
+        for command, option in self.outputs():
+            if option == "--plot":
+                continue  # its name must tell the kind
+            ifog(*command, *self.target(option, null))
+            assert stat.S_ISCHR(os.stat(null).st_mode), f"{command[0]} {option} replaced the device"
+            file = folder / "there" / "f.csv"
+            file.write_text("old")
+            file.chmod(0o600)
+            link.unlink(missing_ok=True)
+            link.symlink_to("there/f.csv")
+            if option in ("", "--output", "--to"):
+                linked = link.with_suffix(".csv")
+                linked.unlink(missing_ok=True)
+                linked.symlink_to("there/f.csv")
+            else:
+                linked = link
+            ifog(*command, *self.target(option, linked))
+            assert linked.is_symlink(), f"{command[0]} {option} replaced the link"
+            assert len(file.read_text()) > 10 and stat.S_IMODE(file.stat().st_mode) == 0o600, f"{command[0]} {option}: the file behind the link"
+
+    def check_killed_half_way(self):
+        """A replay of 100 s into a file, ended within its first second."""
+        folder = self.fresh("killed")
+        target = folder / "out.log"
+        target.write_text("old")
+        for how in (signal.SIGKILL, signal.SIGHUP):
+            player = subprocess.Popen([IFOG, "replay", str(self.capture), "--to", f"file:{target}", *map(str, FRAMES)],
+                                      stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(0.7)
+            assert player.poll() is None, "the replay ended too soon to be killed"
+            player.send_signal(how)
+            player.wait(timeout=20)
+            assert os.listdir(folder) == ["out.log"] and target.read_text() == "old", f"{how}: {os.listdir(folder)}"
+
+    def check_no_picture_without_data(self):
+        folder = self.fresh("pictures")
+        bad = self.folder / "bad.csv"
+        bad.write_text("time_s,rate_radps\n0,abc\n")
+        for name in ("p.svg", "p.png"):
+            refused(1, "allan", bad, "--plot", folder / name, says=["bad.csv:2"])
+        refused(2, "allan", self.capture, "--plot", folder / "p.jpeg", says=[".svg or .png"])
+        refused(1, "allan", self.capture, "--plot", folder / "no" / "p.svg", says=["No such file"])
+        assert not os.listdir(folder), os.listdir(folder)
+
+    # --- names that are more than names ---
+
+    def check_no_name_is_a_command(self):
+        """To a shell, to a terminal, or to what reads a picture."""
+        folder = self.fresh("names")
+        text = self.capture.read_text()
+        names = ["x`touch PWNED`.csv", "$(touch PWNED).csv", "\x1b]0;owned\x07\x1b[31m.csv", "<b>&amp;\"'.csv", "\x9b31m\u202e.csv", "line\nend.csv"]
+        for name in names:
+            (folder / name).write_text(text)
+        (folder / "col.csv").write_text(text.replace("rate_radps", "rate_`touch PWNED`\x1b[2J<_radps"))
+        for name in [*names, "col.csv"]:
+            for command in (["allan", name, "--plot", "p.svg"], ["allan", name, "--plot", "p.png"],
+                            ["denoise", name, "--output", "o.csv", "--plot", "d.svg"], ["compare", name, "--plot", "c.svg"], ["allan", name + "?"]):
+                result = subprocess.run([IFOG, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, timeout=120, check=False)
+                assert result.returncode == (1 if name + "?" in command else 0), f"{command}: {result.stderr}"
+                said = (result.stdout + result.stderr).decode()
+                assert not [c for c in said if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160 or c == "\u202e")], f"{command}: {said!r}"
+            for picture in ("p.svg", "d.svg", "c.svg"):
+                xml.etree.ElementTree.parse(folder / picture)
+            assert (folder / "p.png").read_bytes().startswith(b"\x89PNG")
+        assert not (folder / "PWNED").exists(), "a name was run as a command"
+
+    def check_json_of_a_name_that_is_no_text(self):
+        name = os.fsencode(self.folder) + b"/\xff\xfe.csv"
+        with open(name, "wb") as file:
+            file.write(self.capture.read_bytes())
+        result = subprocess.run([os.fsencode(IFOG), b"allan", name, b"--json", b"-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120, check=False)
+        assert result.returncode == 0, result.stderr
+        json.loads(result.stdout)
+
+
+if __name__ == "__main__":
+    sys.exit(main_of(Checks))

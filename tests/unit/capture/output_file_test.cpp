@@ -1,0 +1,143 @@
+// What is written is there whole or not at all, and nothing that is not a regular file is ever replaced.
+#include "drivers/capture/output_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ifog::OutputFile;
+using ifog::write_file;
+
+class Output : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("ifog-output-" + std::to_string(getpid()));
+    fs::create_directory(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] static std::string text(const std::string& file) {
+    std::ostringstream out;
+    out << std::ifstream(file).rdbuf();
+    return out.str();
+  }
+  [[nodiscard]] std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+  static std::string refusal(const std::string& file) {
+    try {
+      write_file(file, "new");
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  fs::path folder_;
+};
+
+TEST_F(Output, IsNotSeenBeforeItIsWhole) {
+  std::ofstream(path("f")) << "old";
+  {
+    OutputFile file(path("f"));
+    file.write("half of the n");
+    EXPECT_EQ(text(path("f")), "old");
+    EXPECT_EQ(files(), 1U) << "a file beside it is to be seen";
+  }
+  EXPECT_EQ(text(path("f")), "old") << "given up, yet changed";
+  OutputFile file(path("f"));
+  file.write("ne");
+  file.write("w");
+  file.finish();
+  EXPECT_EQ(text(path("f")), "new");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(Output, KeepsTheModeAndAsksForTheRight) {
+  std::ofstream(path("f")) << "old";
+  fs::permissions(path("f"), fs::perms::owner_read | fs::perms::owner_write);
+  write_file(path("f"), "new");
+  EXPECT_EQ(fs::status(path("f")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  const mode_t before = umask(027);
+  write_file(path("g"), "new");
+  umask(before);
+  EXPECT_EQ(static_cast<unsigned>(fs::status(path("g")).permissions()), 0640U);
+}
+
+TEST_F(Output, FollowsLinksToFilesThereAreAndThatAreYetToBe) {
+  fs::create_directory(path("there"));
+  std::ofstream(path("there/f")) << "old";
+  fs::create_symlink("there/f", path("near"));
+  fs::create_symlink(path("near"), path("far"));
+  write_file(path("far"), "new");
+  EXPECT_TRUE(fs::is_symlink(path("far")));
+  EXPECT_TRUE(fs::is_symlink(path("near")));
+  EXPECT_EQ(text(path("there/f")), "new");
+  fs::create_symlink("there/g", path("dangling"));
+  write_file(path("dangling"), "new");
+  EXPECT_TRUE(fs::is_symlink(path("dangling")));
+  EXPECT_EQ(text(path("there/g")), "new");
+  fs::create_symlink("round", path("round"));
+  EXPECT_NE(refusal(path("round")).find("cannot create: Too many levels of symbolic links"),
+            std::string::npos)
+      << refusal(path("round"));
+}
+
+TEST_F(Output, DevicesAndPipesAreWrittenNotReplaced) {
+  write_file("/dev/null", "new");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_EQ(refusal("/dev/full"), "/dev/full: cannot write: No space left on device");
+  // Root can make a device node: the one that a careless rename would take away.
+  if (geteuid() == 0 && mknod(path("null").c_str(), S_IFCHR | 0666, makedev(1, 3)) == 0) {
+    write_file(path("null"), "new");
+    EXPECT_TRUE(fs::is_character_file(path("null")));
+  }
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  std::string got;
+  std::thread reader([&] { got = text(path("fifo")); });
+  write_file(path("fifo"), "new");
+  reader.join();
+  EXPECT_EQ(got, "new");
+  EXPECT_TRUE(fs::is_fifo(path("fifo")));
+}
+
+TEST_F(Output, OpenDescriptorsAreWrittenWhereTheyAre) {
+  const int fd = open(path("f").c_str(), O_WRONLY | O_CREAT, 0600);
+  ASSERT_GE(fd, 0);
+  ASSERT_EQ(write(fd, "one ", 4), 4);
+  write_file("/dev/fd/" + std::to_string(fd), "two ");
+  write_file("/proc/self/fd/" + std::to_string(fd), "three");
+  close(fd);
+  EXPECT_EQ(text(path("f")), "one two three");
+  EXPECT_TRUE(ifog::is_standard_output("-"));
+  EXPECT_TRUE(ifog::is_standard_output("/dev/stdout"));
+  EXPECT_FALSE(ifog::is_standard_output("/dev/stderr"));
+  EXPECT_FALSE(ifog::is_standard_output(path("f")));
+  EXPECT_FALSE(ifog::is_standard_output(""));
+}
+
+TEST_F(Output, SaysWhatIsInTheWay) {
+  EXPECT_EQ(refusal(path("no/f")), path("no/f") + ": cannot create: No such file or directory");
+  EXPECT_EQ(refusal(folder_), folder_.string() + ": is a folder, expected a file to write");
+  EXPECT_EQ(refusal(path("x/")), path("x/") + ": cannot create: No such file or directory");
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  close(ends[0]);
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::string pipe = "/dev/fd/" + std::to_string(ends[1]);
+  EXPECT_EQ(refusal(pipe), pipe + ": cannot write: Broken pipe");
+  close(ends[1]);
+}
+
+}  // namespace

@@ -1,0 +1,106 @@
+#include "tools/ifog/console/say.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog::tools {
+namespace {
+
+std::FILE* people = stdout;
+std::string data_option;  // that took standard output
+int failure = 0;          // of the first write to standard output that could not be done
+
+constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();
+
+std::string printable_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    out += printable(std::string_view(text).substr(begin, end - begin), kWhole);
+    if (end < text.size()) out += '\n';
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::string formatted(const char* format, std::va_list arguments) {
+  std::va_list again;
+  va_copy(again, arguments);
+  const int length = std::vsnprintf(nullptr, 0, format, arguments);
+  std::vector<char> text(static_cast<std::size_t>(length > 0 ? length : 0) + 1);
+  std::vsnprintf(text.data(), text.size(), format, again);
+  va_end(again);
+  return printable_lines(text.data());
+}
+
+void put(const std::string& text, std::FILE* where) {
+  if (std::fwrite(text.data(), 1, text.size(), where) != text.size() && where == stdout && failure == 0)
+    failure = errno;
+}
+
+}  // namespace
+
+void say(const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  put(formatted(format, arguments), people);
+  va_end(arguments);
+}
+
+void warn(const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  put(formatted(format, arguments), stderr);
+  va_end(arguments);
+}
+
+void will_write(const std::string& option, const std::string& path) {
+  if (!is_standard_output(path)) return;
+  if (!data_option.empty())
+    throw CLI::ValidationError(
+        option, "is to go to standard output, as is " + data_option + "; expected only one of them there");
+  data_option = option;
+  people = stderr;
+}
+
+void redraw(std::size_t before, const std::vector<std::string>& lines) {
+  const bool terminal = isatty(fileno(people)) == 1;
+  std::string text = terminal && before > 0 ? "\x1b[" + std::to_string(before) + "A" : "";
+  for (const std::string& line : lines)
+    text += printable(line, kLongestMessage) + (terminal ? "\x1b[K\n" : "\n");
+  put(text, people);
+  finish_saying();
+}
+
+void finish_saying() {
+  if (std::fflush(stdout) != 0 && failure == 0) failure = errno;
+  if (std::ferror(stdout) != 0 || failure != 0)
+    throw std::runtime_error("standard output: cannot write: " + std::generic_category().message(failure));
+}
+
+void prepare_standard_streams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(fd, F_GETFD) != -1 || errno != EBADF) continue;
+    // The way round that is of no use: reading and writing still say that there is nothing to use.
+    const int stand_in = ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    if (stand_in >= 0 && stand_in != fd) ::close(stand_in);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace ifog::tools

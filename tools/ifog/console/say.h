@@ -1,0 +1,34 @@
+// Text for people. Everything that a command tells goes through here, so that no name or value that came from
+// a file, a device or the network reaches the terminal as a command to it, and so that it stands on standard
+// error when standard output is where the data goes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace ifog::tools {
+
+// To standard output, or to standard error once data has taken that. The text may have several lines; every
+// other control character in it is shown as \xNN. A name that could hold a line end goes through printable().
+[[gnu::format(printf, 1, 2)]] void say(const char* format, ...);
+
+// To standard error: what went wrong or was passed over.
+[[gnu::format(printf, 1, 2)]] void warn(const char* format, ...);
+
+// An output option that may be "-". Call for each before the first say(): from then on people read standard
+// error if it leads to standard output. Throws CLI::ValidationError (usage) when a second one wants it, too.
+void will_write(const std::string& option, const std::string& path);
+
+// Lines that take the place of the `before` lines drawn last, where people sit at a terminal; elsewhere they
+// follow. Throws as finish_saying() does: nobody reads any more.
+void redraw(std::size_t before, const std::vector<std::string>& lines);
+
+// Of the whole run: what was said has arrived. Throws std::runtime_error with one line: full, closed, …
+void finish_saying();
+
+// Before anything else in main: descriptors 0, 1 and 2 are open (a file opened later must not become standard
+// output), and a write that cannot be done is an error to report, not a signal to die from.
+void prepare_standard_streams();
+
+}  // namespace ifog::tools

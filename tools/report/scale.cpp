@@ -1,0 +1,83 @@
+#include "tools/report/scale.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/report/text.h"
+
+namespace ifog::report {
+namespace {
+
+std::string trimmed(std::string text) {
+  if (text.find('.') == std::string::npos || text.find("×") != std::string::npos) return text;
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+void Bounds::take(double value, bool log) {
+  if (!std::isfinite(value) || (log && value <= 0.0)) return;
+  low = std::min(low, value);
+  high = std::max(high, value);
+}
+
+Scale::Scale(const ChartAxis& axis, const Bounds& data, double from_px, double to_px)
+    : log_(axis.log), from_(from_px), to_(to_px) {
+  low_ = axis.low.value_or(data.low);
+  high_ = axis.high.value_or(data.high);
+  if (log_) {
+    low_ = std::log10(low_);
+    high_ = std::log10(high_);
+  }
+  const double span = high_ - low_;
+  const double margin = span > 0.0 ? 0.04 * span : (log_ ? 0.5 : std::max(std::abs(low_), 1e-30));
+  if (!axis.low) low_ -= margin;
+  if (!axis.high) high_ += margin;
+}
+
+double Scale::operator()(double value) const {
+  return from_ + ((log_ ? std::log10(value) : value) - low_) / (high_ - low_) * (to_ - from_);
+}
+
+bool Scale::drawable(double value) const { return std::isfinite(value) && (!log_ || value > 0.0); }
+
+bool Scale::inside(double exponent) const { return exponent >= low_ - 1e-9 && exponent <= high_ + 1e-9; }
+
+std::vector<double> Scale::ticks(int wanted) const {
+  std::vector<double> out;
+  if (log_) {
+    const bool dense = high_ - low_ < 2.5;
+    for (int d = static_cast<int>(std::floor(low_)); d <= static_cast<int>(std::ceil(high_)); ++d)
+      for (const double m : {1.0, 2.0, 5.0})
+        if ((dense || m == 1.0) && inside(d + std::log10(m))) out.push_back(m * std::pow(10.0, d));
+    return out;
+  }
+  const double raw = (high_ - low_) / wanted;
+  const double ten = std::pow(10.0, std::floor(std::log10(raw)));
+  const double step = ten * (raw / ten < 1.5 ? 1.0 : raw / ten < 3.5 ? 2.0 : raw / ten < 7.5 ? 5.0 : 10.0);
+  for (double v = std::ceil(low_ / step); v * step <= high_; v += 1.0) out.push_back(v * step);
+  return out;
+}
+
+std::vector<double> Scale::minor_ticks() const {
+  std::vector<double> out;
+  if (!log_) return out;
+  for (int d = static_cast<int>(std::floor(low_)); d <= static_cast<int>(std::ceil(high_)); ++d)
+    for (int m = 2; m < 10; ++m)
+      if (inside(d + std::log10(m))) out.push_back(m * std::pow(10.0, d));
+  return out;
+}
+
+std::string Scale::tick_text(double value) const {
+  if (log_) return number(value, 1);
+  const double reach = std::max(std::abs(low_), std::abs(high_));
+  if (std::abs(value) < 1e-9 * reach) return "0";
+  const double span = high_ - low_;
+  // As many digits as neighbours need to differ.
+  const int digits = 1 + std::max(0, static_cast<int>(std::ceil(std::log10(std::abs(value) / span))) + 1);
+  return trimmed(number(value, std::min(digits + 1, 9)));
+}
+
+}  // namespace ifog::report

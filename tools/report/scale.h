@@ -1,0 +1,45 @@
+// Data to pixels along one axis of a chart, and the round numbers that stand at it.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ifog::report {
+
+struct ChartAxis {
+  std::string label;
+  bool log = false;  // values that are not positive are left out
+  std::optional<double> low, high;
+  bool numbered = true;  // false: a neighbour that shares the axis has the numbers
+};
+
+// The least and the greatest value that can be drawn.
+struct Bounds {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  void take(double value, bool log);
+  [[nodiscard]] bool empty() const { return !(low <= high); }
+};
+
+class Scale {
+ public:
+  // Where the axis does not say its ends, those of the data with a little room.
+  Scale(const ChartAxis& axis, const Bounds& data, double from_px, double to_px);
+
+  [[nodiscard]] double operator()(double value) const;
+  [[nodiscard]] bool drawable(double value) const;
+  // Decades (with 2 and 5 when there are few), or steps of 1, 2, 5.
+  [[nodiscard]] std::vector<double> ticks(int wanted) const;
+  // Between the decades of a logarithmic axis: 2, 3, … 9; none on a linear one.
+  [[nodiscard]] std::vector<double> minor_ticks() const;
+  [[nodiscard]] std::string tick_text(double value) const;
+
+ private:
+  [[nodiscard]] bool inside(double exponent) const;
+  bool log_;
+  double low_ = 0.0, high_ = 1.0, from_, to_;
+};
+
+}  // namespace ifog::report
