@@ -143,6 +143,16 @@ class Recorder {
   bool header_ = true;
 };
 
+// The generated decoder throws at a length that no vector can have; who sends it must not end the monitor.
+template <typename Message>
+bool decoded(Message& message, const lcm_recv_buf_t& buffer) {
+  try {
+    return message.decode(buffer.data, 0, static_cast<int>(buffer.data_size)) >= 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 class Monitor {
  public:
   explicit Monitor(const Options& options) : options_(options), recorder_(options.record) {
@@ -185,23 +195,29 @@ class Monitor {
   std::exception_ptr failure_;  // of the first message that could not be taken or recorded
   lcm_t* lcm_ = nullptr;
   std::map<std::string, Sensor> sensors_;
+  std::uint64_t not_understood_ = 0;
   std::size_t lines_drawn_ = 0;
 };
 
 void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
   constexpr std::string_view kPrefix = "IFOG_", kStatus = "_STATUS";
-  const int size = static_cast<int>(buffer.data_size);
   std::string name = channel.substr(kPrefix.size());
   if (name.ends_with(kStatus)) {
     status_t status{};
-    if (status.decode(buffer.data, 0, size) < 0) return;
+    if (!decoded(status, buffer)) {
+      ++not_understood_;
+      return;
+    }
     name.resize(name.size() - kStatus.size());
     sensors_[name].status = std::move(status);
     sensors_[name].has_status = true;
     return;
   }
   rate_t message{};
-  if (message.decode(buffer.data, 0, size) < 0) return;
+  if (!decoded(message, buffer)) {
+    ++not_understood_;
+    return;
+  }
   take_rate(sensors_[name], message);
   recorder_.add(name, message);
 }
@@ -286,6 +302,7 @@ void Monitor::show(double interval_s) {
     sensor.shown = sensor.messages;
     sensor.in_interval = 0;
   }
+  if (not_understood_ > 0) line(std::to_string(not_understood_) + " messages that are none of ours");
   redraw(lines_drawn_, lines);
   lines_drawn_ = lines.size();
 }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kLeft = 68.0, kRight = 16.0, kLegendRow = 17.0;
 constexpr double kCharacter = 6.9;  // mean width of the 12 px face
-constexpr int kYTicks = 5;
 
 const char* css_class(Role role) {
   switch (role) {
@@ -40,6 +39,9 @@ std::string fixed(double value) {
   std::snprintf(text, sizeof text, "%.1f", value);
   return text;
 }
+
+// One for every so many pixels, so that low panels are not crowded.
+int y_ticks(double pixels) { return std::clamp(static_cast<int>(pixels / 48.0), 2, 6); }
 
 // By characters, not bytes: ° and τ take two.
 double text_width(const std::string& text) {
@@ -186,7 +188,7 @@ std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double
     rule("grid", upright(sx(v)));
     if (x_.numbered) out += words("tick", sx(v), f.bottom + 16.0, "middle", sx.tick_text(v));
   }
-  for (const double v : sy.ticks(kYTicks)) {
+  for (const double v : sy.ticks(y_ticks(f.bottom - f.top))) {
     if (sy(v) < f.top - 0.5 || sy(v) > f.bottom + 0.5) continue;
     rule("grid", level(sy(v)));
     if (y_.numbered) out += words("tick", f.left - 7.0, sy(v) + 4.0, "end", sy.tick_text(v));
@@ -237,7 +239,7 @@ std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) cons
 double Chart::left_margin(double height) const {
   double widest = 0.0;
   const Scale sy(y_, bounds(false), height, 0.0);
-  for (const double v : sy.ticks(kYTicks)) widest = std::max(widest, text_width(sy.tick_text(v)));
+  for (const double v : sy.ticks(y_ticks(height))) widest = std::max(widest, text_width(sy.tick_text(v)));
   return (y_.label.empty() ? 8.0 : 26.0) + (y_.numbered ? widest + 7.0 : 0.0);
 }
 

@@ -48,7 +48,7 @@ bool Scale::inside(double exponent) const { return exponent >= low_ - 1e-9 && ex
 std::vector<double> Scale::ticks(int wanted) const {
   std::vector<double> out;
   if (log_) {
-    const bool dense = high_ - low_ < 2.5;
+    const bool dense = high_ - low_ < 0.5 * wanted;
     for (int d = static_cast<int>(std::floor(low_)); d <= static_cast<int>(std::ceil(high_)); ++d)
       for (const double m : {1.0, 2.0, 5.0})
         if ((dense || m == 1.0) && inside(d + std::log10(m))) out.push_back(m * std::pow(10.0, d));

@@ -7,7 +7,6 @@ usage: streams.py PATH_OF_IFOG SOURCE_DIR
 import gzip
 import json
 import os
-import pathlib
 import signal
 import stat
 import subprocess
@@ -50,6 +49,16 @@ class Checks:
         folder.mkdir()
         return folder
 
+    def link(self, name, to):
+        link = self.folder / ("link_" + name)
+        link.unlink(missing_ok=True)
+        link.symlink_to(to)
+        return link
+
+    @staticmethod
+    def ending(option):
+        return {"--plot": ".svg", "--output": ".csv", "": ".csv"}.get(option, "")
+
     def outputs(self):
         """Every option that names a file to write, in a command that is quick."""
         model = self.folder / "m.toml"
@@ -89,7 +98,8 @@ class Checks:
                     for key in ("capture", "notes"):
                         answer.pop(key, None)
                     for axis in answer.get("axes", []):
-                        axis.pop("capture")
+                        axis.pop("capture", None)
+                        axis.pop("notes", None)  # they begin with the file's name
                 assert found == expected, f"{command} says other things of standard input"
         out = self.folder / "in.csv"
         ifog("denoise", self.capture, "--output", out)
@@ -150,21 +160,25 @@ class Checks:
                 assert text.lstrip("#").strip() and all("," in line or line.startswith("#") for line in text.splitlines()), f"{what}: {text[:80]}"
             assert result.stderr, f"{what}: the text for people is lost"
         assert not os.listdir(folder), os.listdir(folder)
-        refused(2, "denoise", self.capture, "--output", "-", "--json", "/dev/stdout", says=["--json", "--output", "only one"])
+        refused(2, "denoise", self.capture, "--output", "-", "--json", self.link("stdout", "/proc/self/fd/1"), says=["--json", "--output", "only one"])
 
-    def check_dev_stdout(self):
+    def check_a_link_to_standard_output(self):
+        """As /dev/stdout is one; a program that replaced it must not replace the machine's."""
+        stdout = self.link("out", "/proc/self/fd/1")
         expected = self.folder / "expected.csv"
         ifog("denoise", self.capture, "--output", expected)
-        assert ran("denoise", self.capture, "--output", "/dev/stdout").stdout == expected.read_text()
+        assert ran("denoise", self.capture, "--output", stdout).stdout == expected.read_text()
         into = self.folder / "into.csv"
-        result = shell('{ echo before; "$ifog" denoise "$capture" --output /dev/stdout; echo after; } > "$into"', capture=self.capture, into=into)
+        result = shell('{ echo before; "$ifog" denoise "$capture" --output "$stdout"; echo after; } > "$into"', capture=self.capture, into=into, stdout=stdout)
         assert result.returncode == 0 and into.read_text() == "before\n" + expected.read_text() + "after\n"
+        assert stdout.is_symlink()
 
     def check_a_full_disk_and_a_closed_pipe(self):
         for command, option in self.outputs():
-            result = ran(*command, *self.target(option, "/dev/full"))
-            assert result.returncode == 1, f"{command[0]} {option} /dev/full: exit {result.returncode}"
-            assert "/dev/full: cannot write: No space left" in result.stderr or option == "--to" and "/dev/full" in result.stderr, result.stderr
+            full = self.link("full" + self.ending(option), "/dev/full")
+            result = ran(*command, *self.target(option, full))
+            assert result.returncode == 1, f"{command[0]} {option} {full}: exit {result.returncode}: {result.stderr}"
+            assert str(full) in result.stderr and "No space left" in result.stderr, result.stderr
             for where in (">/dev/full", ">&-", "| true"):
                 line = " ".join(["set -o pipefail; \"$ifog\"", *(f"'{part}'" for part in [*command, *self.target(option, "-")]), where])
                 result = shell(line)
@@ -182,31 +196,20 @@ class Checks:
 
     def check_devices_and_links_stay(self):
         folder = self.fresh("devices")
-        null = folder / "null"
-        if os.geteuid() == 0:
-            os.mknod(null, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
-        else:
-            null = pathlib.Path("/dev/null")
-        (folder / "there").mkdir()
-        link = folder / "link"
         for command, option in self.outputs():
-            if option == "--plot":
-                continue  # its name must tell the kind
-            ifog(*command, *self.target(option, null))
-            assert stat.S_ISCHR(os.stat(null).st_mode), f"{command[0]} {option} replaced the device"
-            file = folder / "there" / "f.csv"
+            # A device of its own, where one can be made: the machine's is needed.
+            null = folder / ("null" + self.ending(option))
+            if os.geteuid() == 0 and not null.exists():
+                os.mknod(null, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+            if null.exists():
+                ifog(*command, *self.target(option, null))
+                assert stat.S_ISCHR(os.stat(null).st_mode), f"{command[0]} {option} replaced the device"
+            file = folder / "behind"
             file.write_text("old")
             file.chmod(0o600)
-            link.unlink(missing_ok=True)
-            link.symlink_to("there/f.csv")
-            if option in ("", "--output", "--to"):
-                linked = link.with_suffix(".csv")
-                linked.unlink(missing_ok=True)
-                linked.symlink_to("there/f.csv")
-            else:
-                linked = link
-            ifog(*command, *self.target(option, linked))
-            assert linked.is_symlink(), f"{command[0]} {option} replaced the link"
+            link = self.link("link" + self.ending(option), file)
+            ifog(*command, *self.target(option, link))
+            assert link.is_symlink(), f"{command[0]} {option} replaced the link"
             assert len(file.read_text()) > 10 and stat.S_IMODE(file.stat().st_mode) == 0o600, f"{command[0]} {option}: the file behind the link"
 
     def check_killed_half_way(self):

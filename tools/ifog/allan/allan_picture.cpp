@@ -1,14 +1,15 @@
 #include "tools/ifog/allan/allan_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "filters/units/field_units.h"
 #include "tools/report/picture.h"
+#include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
@@ -22,6 +23,15 @@ struct Curve {
 struct Extent {
   double first = std::numeric_limits<double>::infinity(), last = 0.0;  // s
   double low = std::numeric_limits<double>::infinity(), high = 0.0;    // °/h
+
+  // Along the averaging times, 0 to 1.
+  [[nodiscard]] double tau_at(double place) const { return first * std::pow(last / first, place); }
+  [[nodiscard]] double place_of(double tau) const { return std::log(tau / first) / std::log(last / first); }
+  // Of the picture, which leaves some room above and below.
+  [[nodiscard]] double bottom() const { return low / 3.0; }
+  [[nodiscard]] double top() const { return high * 2.0; }
+  [[nodiscard]] bool shows(double sigma) const { return sigma > bottom() && sigma < top(); }
+  [[nodiscard]] double decades() const { return std::log10(top() / bottom()); }
 };
 
 std::string file_name(const AllanRecord& record) {
@@ -69,65 +79,83 @@ double height_at(const Curve& curve, double tau) {
   return curve.sigma[i - 1] * std::pow(curve.sigma[i] / curve.sigma[i - 1], part);
 }
 
-// Draws the fitted terms as the straight lines that they are, each with its letter and value where it is
-// farthest from every curve and every other word.
+// The fitted terms as the straight lines that they are, each with its letter and value where the word is
+// farthest from every line and every other word.
 class TermLines {
  public:
-  TermLines(Chart& chart, const std::vector<Curve>& curves, const Extent& extent)
-      : chart_(chart), curves_(curves), extent_(extent), bottom_(extent.low / 4.0), top_(extent.high * 2.5) {}
+  TermLines(const std::vector<Curve>& curves, const Extent& extent) : extent_(extent), obstacles_(curves) {}
 
   void add(report::Role role, const NoiseFit& fit, const NamedCoefficient& named) {
     NoiseFit alone;
     alone.*named.member = fit.*named.member;
+    Curve line;
     constexpr int kSteps = 200;
-    std::vector<double> tau_s, sigma;
-    double best = -1.0;
-    std::array<char, 64> words{};
-    std::snprintf(words.data(), words.size(), "%s = %.3g %s", named.letter,
-                  (fit.*named.member).value * named.factor, named.unit);
-    Chart::Word word{words.data(), 0.0, 0.0, anchor_of(named.letter[0])};
     for (int i = 0; i <= kSteps; ++i) {
-      const double place = static_cast<double>(i) / kSteps;
-      const double tau = extent_.first * std::pow(extent_.last / extent_.first, place);
-      const double height = modelled_deviation(alone, tau) / kDegreePerHour;
-      const double share = modelled_deviation(alone, tau) / modelled_deviation(fit, tau);
-      if (height < bottom_ || height > top_ || share < 0.1) continue;
-      tau_s.push_back(tau);
-      sigma.push_back(height);
-      if (place < 0.2 || place > 0.85 || height < bottom_ * 1.6 || height > top_ / 1.6) continue;
-      const double clear = clearance(tau, height, place);
-      if (clear <= best) continue;
-      best = clear;
-      word.x = tau;
-      word.y = height / kBelow;
+      const double tau = extent_.tau_at(static_cast<double>(i) / kSteps);
+      const double term = modelled_deviation(alone, tau);
+      if (term < 0.1 * modelled_deviation(fit, tau) || !extent_.shows(term / kDegreePerHour)) continue;
+      line.tau_s.push_back(tau);
+      line.sigma.push_back(term / kDegreePerHour);
     }
-    if (tau_s.size() < 2 || best < 0.0) return;
-    words_.emplace_back(word.x, word.y * kBelow);
-    chart_.guide(role, std::move(tau_s), std::move(sigma), std::move(word));
+    if (line.tau_s.size() < 2) return;
+    const double value = (fit.*named.member).value * named.factor;
+    terms_.push_back({role, obstacles_.size(),
+                      std::string(named.letter) + " = " + report::number(value) + " " + named.unit});
+    obstacles_.push_back(std::move(line));
+  }
+
+  void draw(Chart& chart) {
+    for (const Term& term : terms_) {
+      const Curve& line = obstacles_[term.line];
+      chart.guide(term.role, line.tau_s, line.sigma, place(term.words, line));
+    }
   }
 
  private:
-  static constexpr double kBelow = 1.25;  // the word's distance from its line, as a factor
+  struct Term {
+    report::Role role;
+    std::size_t line;  // among the obstacles
+    std::string words;
+  };
 
-  // Below a falling line on its left, below a rising one on its right: clear of the line itself.
-  static const char* anchor_of(char letter) {
-    return letter == 'Q' || letter == 'N' ? "end" : letter == 'B' ? "middle" : "start";
+  // The word stands beside its line: below it or above, its beginning, middle or end there.
+  Chart::Word place(const std::string& words, const Curve& line) {
+    Chart::Word best{words, line.tau_s.front(), line.sigma.front(), "start"};
+    double most = -1.0;
+    for (std::size_t i = 0; i < line.tau_s.size(); i += 4)
+      for (const auto& [anchor, begins] : {std::pair{"start", 0.0}, {"end", -1.0}})
+        for (const double beside : {1.0 / 1.25, 1.15}) {
+          const double height = line.sigma[i] * beside;
+          const double clear =
+              clearance(extent_.place_of(line.tau_s[i]) + begins * width_of(words), height, width_of(words));
+          if (clear <= most) continue;
+          most = clear;
+          best = {words, line.tau_s[i], height, anchor};
+        }
+    const double begins = std::string_view(best.anchor) == "end" ? -1.0 : 0.0;
+    const double at = extent_.place_of(best.x) + begins * width_of(words);
+    // Where a word is, no other goes: it becomes one more line.
+    obstacles_.push_back(
+        {{extent_.tau_at(at), extent_.tau_at(at + width_of(words))}, {best.y, best.y}, {}, {}});
+    return best;
   }
-  [[nodiscard]] double clearance(double tau, double height, double place) const {
-    double clear = 0.4 - 0.1 * std::abs(place - 0.5);
-    for (const Curve& curve : curves_)
-      if (const double y = height_at(curve, tau); y > 0.0)
-        clear = std::min(clear, std::abs(std::log10(height / kBelow / y)));
-    for (const auto& [x, y] : words_)
-      clear = std::min(clear, std::hypot(std::log10(tau / x) / 4.0, std::log10(height / y)));
+  // Shares of the picture's width and height, roughly: 7 pixels a letter of 800, half a line of 460.
+  static double width_of(const std::string& words) { return 0.0085 * static_cast<double>(words.size()); }
+  [[nodiscard]] double clearance(double from, double height, double width) const {
+    if (from < 0.02 || from + width > 0.97 || !extent_.shows(height * 1.2) || !extent_.shows(height / 1.2))
+      return -1.0;
+    constexpr int kProbes = 8;
+    double clear = 0.1;  // farther away is no better
+    for (int i = 0; i <= kProbes; ++i)
+      for (const Curve& curve : obstacles_)
+        if (const double y = height_at(curve, extent_.tau_at(from + width * i / kProbes)); y > 0.0)
+          clear = std::min(clear, std::abs(std::log10(height * 1.05 / y)) / extent_.decades());
     return clear;
   }
 
-  Chart& chart_;
-  const std::vector<Curve>& curves_;
   const Extent& extent_;
-  double bottom_, top_;
-  std::vector<std::pair<double, double>> words_;
+  std::vector<Curve> obstacles_;
+  std::vector<Term> terms_;
 };
 
 }  // namespace
@@ -139,15 +167,15 @@ Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& reco
   for (const AllanRecord& record : records) curves.push_back(curve_of(record, extent));
   report::ChartAxis sigma{"Allan deviation (°/h)", true, {}, {}};
   if (extent.low <= extent.high) {
-    sigma.low = extent.low / 3.0;
-    sigma.high = extent.high * 2.0;
+    sigma.low = extent.bottom();
+    sigma.high = extent.top();
   }
   Chart chart(title, "Allan deviation over averaging time, both on logarithmic axes.",
               {"averaging time τ (s)", true, {}, {}}, sigma);
   const bool several = several_files(records);
   for (std::size_t r = 0; r < records.size(); ++r)
     chart.band(report::role_of(r), curves[r].tau_s, curves[r].low, curves[r].high);
-  TermLines terms(chart, curves, extent);
+  TermLines terms(curves, extent);
   // For as many records as the eye can take.
   for (std::size_t r = 0; r < std::min<std::size_t>(records.size(), 3); ++r) {
     // A filter's output is not made of the standard's terms, and a curve that covers another needs no second
@@ -157,6 +185,7 @@ Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& reco
     for (const NamedCoefficient& named : named_coefficients())
       if (((*records[r].fit).*named.member).present) terms.add(report::role_of(r), *records[r].fit, named);
   }
+  terms.draw(chart);
   for (std::size_t r = 0; r < records.size(); ++r) {
     const std::string name = title_of(records[r], several);
     const std::string label = records.size() == 1 ? "" : name;

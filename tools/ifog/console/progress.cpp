@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <utility>
+
+#include "drivers/ifog/quoted.h"
 
 namespace ifog::tools {
 
-Progress::Progress(std::string what, std::size_t total)
-    : what_(std::move(what)),
+Progress::Progress(const std::string& what, std::size_t total)
+    : what_(printable(what)),  // an axis has its name from the capture
       total_(std::max<std::size_t>(total, 1)),
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),

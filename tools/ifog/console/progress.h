@@ -9,7 +9,7 @@ namespace ifog::tools {
 
 class Progress {
  public:
-  Progress(std::string what, std::size_t total);
+  Progress(const std::string& what, std::size_t total);
   ~Progress();  // clears the line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -106,13 +106,13 @@ void prepare(const ReplaySettings& settings) {
   // A sleep of an ordinary thread may otherwise end 50 µs late.
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (!settings.realtime) return;
-  const auto warn = [](const char* what) {
+  const auto going_without = [](const char* what) {
     warn("ifog replay: no %s (%s), going on without\n", what, std::generic_category().message(errno).c_str());
   };
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) warn("locked memory");
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) going_without("locked memory");
   sched_param priority{};
   priority.sched_priority = 50;
-  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) warn("SCHED_FIFO");
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) going_without("SCHED_FIFO");
 }
 
 void report(const ReplaySettings& settings, const ReplayTimeline& timeline, const ReplayTarget& target,
