@@ -30,8 +30,8 @@ class InputFile {
   [[nodiscard]] std::string_view head() const { return std::string_view(held_).substr(taken_, kHead); }
 
   // Up to `most` further bytes, fewer only at the end, 0 there. Throws std::runtime_error with one line: a
-  // gzip stream that ends early or is damaged, a packed file that grows beyond 256 MiB and 100 times its size,
-  // which no recording does and which would fill the memory; a device's error.
+  // gzip stream that ends early or is damaged, a packed file that grows beyond 256 MiB and 100 times its
+  // size, which no recording does and which would fill the memory; a device's error.
   std::size_t read(char* to, std::size_t most);
   // All of the rest. Of a text a line longer than kLongestLine is refused with its number.
   std::string bytes();

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "drivers/capture/candump.h"
-#include "drivers/ifog/quoted.h"
 #include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/can_socket.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"
