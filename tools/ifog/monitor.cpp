@@ -23,10 +23,10 @@
 #include <utility>
 #include <vector>
 
-#include "msgs/state_name.h"
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
+#include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
 
