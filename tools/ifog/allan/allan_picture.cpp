@@ -106,7 +106,7 @@ class TermLines {
 
   void draw(Chart& chart) {
     for (const Term& term : terms_) {
-      const Curve& line = obstacles_[term.line];
+      const Curve line = obstacles_[term.line];  // a copy: the words placed are added to the obstacles
       chart.guide(term.role, line.tau_s, line.sigma, place(term.words, line));
     }
   }
