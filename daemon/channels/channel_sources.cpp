@@ -19,31 +19,48 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
 #include "drivers/transport/clock.h"
+#include "filters/chain/plausibility.h"
 
 namespace ifog {
 namespace {
 
 constexpr auto kTurn = std::chrono::milliseconds(250);
 
-void put(const ChannelSources::Wanted& wanted, double number, std::int64_t time_ns) {
-  wanted.table->set(wanted.index, number * wanted.config.scale + wanted.config.offset, time_ns);
-}
-
-// A file that holds one number: hwmon, thermal zones, IIO.
-class FileChannel {
+// The way of a value into the sensor's table: scaled, and refused where it cannot be.
+class Entrance {
  public:
-  explicit FileChannel(ChannelSources::Wanted wanted) : wanted_(std::move(wanted)) {}
-  [[nodiscard]] std::int64_t due_ns() const { return due_ns_; }
-  void read(std::int64_t now_ns) {
-    due_ns_ = now_ns + static_cast<std::int64_t>(wanted_.config.period_s * 1e9);
-    std::ifstream file(wanted_.config.path);
-    double number = 0.0;
-    // What cannot be read grows old, and is flagged as stale: no other message is needed.
-    if (file >> number) put(wanted_, number, arrival_clock_ns());
+  explicit Entrance(ChannelSources::Wanted wanted)
+      : wanted_(std::move(wanted)), plausible_(wanted_.config.limits, kMostChannel) {}
+  [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
+
+  void put(double number, std::int64_t time_ns) {
+    const double value = number * wanted_.config.scale + wanted_.config.offset;
+    if (plausible_.take(value))
+      wanted_.table->set(wanted_.index, value, time_ns);
+    else
+      wanted_.table->refuse();
   }
 
  private:
   ChannelSources::Wanted wanted_;
+  PlausibleValue plausible_;
+};
+
+// A file that holds one number: hwmon, thermal zones, IIO.
+class FileChannel {
+ public:
+  explicit FileChannel(ChannelSources::Wanted wanted) : in_(std::move(wanted)) {}
+  [[nodiscard]] std::int64_t due_ns() const { return due_ns_; }
+  void read(std::int64_t now_ns) {
+    due_ns_ = now_ns + static_cast<std::int64_t>(in_.config().period_s * 1e9);
+    std::ifstream file(in_.config().path);
+    double number = 0.0;
+    // What cannot be read grows old, and is flagged as stale: no other message is needed.
+    if (file >> number) in_.put(number, arrival_clock_ns());
+  }
+
+ private:
+  Entrance in_;
   std::int64_t due_ns_ = 0;
 };
 
@@ -51,11 +68,10 @@ class FileChannel {
 class LcmChannel {
  public:
   explicit LcmChannel(ChannelSources::Wanted wanted)
-      : wanted_(std::move(wanted)),
-        field_(wanted_.config.field.empty() ? wanted_.config.name : wanted_.config.field) {}
-  [[nodiscard]] const std::string& lcm_channel() const { return wanted_.config.lcm_channel; }
+      : in_(std::move(wanted)), field_(in_.config().field.empty() ? in_.config().name : in_.config().field) {}
+  [[nodiscard]] const std::string& lcm_channel() const { return in_.config().lcm_channel; }
 
-  void take(const lcm_recv_buf_t& message) const {
+  void take(const lcm_recv_buf_t& message) {
     double value = 0.0;
     std::int64_t utime = 0;
     const std::span bytes(static_cast<const std::uint8_t*>(message.data), message.data_size);
@@ -63,25 +79,25 @@ class LcmChannel {
     // What was measured in the future was measured now: else it would never grow old.
     const std::int64_t measured_ns =
         utime > 0 && utime < INT64_MAX / 1000 ? utime * 1000 : message.recv_utime * 1000;
-    put(wanted_, value, arrival_clock_ns() - std::max<std::int64_t>(0, realtime_ns() - measured_ns));
+    in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, realtime_ns() - measured_ns));
   }
 
  private:
-  ChannelSources::Wanted wanted_;
+  Entrance in_;
   LcmField field_;
 };
 
 // All signals wanted from one CAN interface.
 struct CanGroup {
-  std::vector<std::pair<ChannelSources::Wanted, CanChannel>> channels;
+  std::vector<std::pair<Entrance, CanChannel>> channels;
   std::unique_ptr<Transport> transport;
 
   void listen() {
     while (!transport->stopped()) {
       const Delivery delivery = transport->read(kTurn);
       for (const ifog_can_frame& frame : delivery.frames)
-        for (const auto& [wanted, channel] : channels)
-          if (double value = 0.0; channel.decode(frame, value)) put(wanted, value, frame.arrival_ns);
+        for (auto& [in, channel] : channels)
+          if (double value = 0.0; channel.decode(frame, value)) in.put(value, frame.arrival_ns);
     }
   }
 };
@@ -102,7 +118,7 @@ struct ChannelSources::Impl {
   }
 
   static void received(const lcm_recv_buf_t* message, const char* channel, void* user) {
-    for (const LcmChannel& one : static_cast<Impl*>(user)->messages)
+    for (LcmChannel& one : static_cast<Impl*>(user)->messages)
       if (one.lcm_channel() == channel) one.take(*message);
   }
 
@@ -138,7 +154,8 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
         break;
       case ChannelConfig::Source::can: {
         CanChannel channel(one.config.dbc, one.config.signal);
-        impl_->buses[one.config.interface].channels.emplace_back(std::move(one), std::move(channel));
+        impl_->buses[one.config.interface].channels.emplace_back(Entrance(std::move(one)),
+                                                                 std::move(channel));
         break;
       }
     }

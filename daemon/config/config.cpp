@@ -10,6 +10,7 @@
 #include "daemon/config/table_reader.h"
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/chain/plausibility.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
 
@@ -113,11 +114,21 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
   return out;
 }
 
+Limits read_limits(TableReader& in, double most) {
+  Limits out;
+  take(in.number("minimum", {-most, most}), out.minimum);
+  take(in.number("maximum", {-most, most}), out.maximum);
+  take(in.number("max_step", {0.0, 2.0 * most}), out.max_step);
+  if (!(out.minimum < out.maximum)) in.complain("maximum", ": not above minimum; expected minimum < maximum");
+  return out;
+}
+
 ChannelConfig read_channel(const toml::table& table, const std::string& where, Context& context) {
   TableReader in(table, where, context.file, context.errors);
   ChannelConfig out;
   out.name = in.required_text("name", "a channel's name with its unit, \"temperature_degC\"");
   take(in.number("max_age_s", kNotNegative), out.max_age_s);
+  out.limits = read_limits(in, kMostChannel);
   const auto source = in.choice("source", {"frame", "can", "lcm", "file"});
   if (!source) {
     if (!in.has("source"))
@@ -127,8 +138,8 @@ ChannelConfig read_channel(const toml::table& table, const std::string& where, C
   if (*source == "frame") {
     out.source = ChannelConfig::Source::frame;
   } else {
-    take(in.number("scale", {-kInfinity, kInfinity}), out.scale);
-    take(in.number("offset", {-kInfinity, kInfinity}), out.offset);
+    take(in.number("scale", {-kMostChannel, kMostChannel}), out.scale);
+    take(in.number("offset", {-kMostChannel, kMostChannel}), out.offset);
   }
   if (*source == "can") {
     out.source = ChannelConfig::Source::can;
@@ -159,6 +170,8 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   out.driver = in.required_text("driver", "the name of a driver, see `ifog drivers`");
   out.model = context.absolute(in.text("model").value_or(""));
   take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
+  take(in.number("range_radps", {1e-9, kMostRate_radps}), out.range_radps);
+  out.limits = read_limits(in, kMostRate_radps);
   if (const toml::table* const transport = in.table("transport"))
     out.transport = read_transport(*transport, "sensor.transport", context);
   else if (!in.has("transport"))

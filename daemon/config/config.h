@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/transport/serial_port.h"
+#include "filters/chain/reading.h"
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
@@ -41,6 +42,7 @@ struct ChannelConfig {
   std::string field;                 // lcm: which of it, see LcmField; "": the name
   std::string path;                  // file: holds one number, as hwmon's temp1_input
   double scale = 1.0, offset = 0.0;  // value = number * scale + offset; lcm, can and file
+  Limits limits;                     // of the value; what is beyond is no measurement
   double period_s = 1.0;             // file: how often it is read
 };
 
@@ -57,6 +59,8 @@ struct SensorConfig {
   std::string driver;
   std::string model;             // path, "" for none
   double nominal_rate_hz = 0.0;  // 0: what the driver says
+  double range_radps = 0.0;      // full scale of every axis; 0: what the driver says
+  Limits limits;                 // of every axis's rate, rad/s
   double start_up_s = 4.0;
   TransportConfig transport;
   std::map<std::string, std::string> options;  // of the driver

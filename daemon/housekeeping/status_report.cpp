@@ -34,6 +34,9 @@ constexpr std::array kFaults{
     Named{"reopened", &status_t::reopened},
     Named{"lcm_failures", &status_t::lcm_failures},
     Named{"invalid_samples", &status_t::invalid_samples},
+    Named{"saturated_samples", &status_t::saturated_samples},
+    Named{"implausible_samples", &status_t::implausible_samples},
+    Named{"channel_implausible", &status_t::channel_implausible},
     Named{"channel_stale", &status_t::channel_stale},
     Named{"out_of_range", &status_t::out_of_range},
     Named{"divergences", &status_t::divergences},
@@ -124,6 +127,9 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.reopened = as_signed(line.reopened);
   now_.lcm_failures = as_signed(filter.lcm_failures.value());
   now_.invalid_samples = as_signed(reader.invalid.value());
+  now_.saturated_samples = as_signed(reader.saturated.value());
+  now_.implausible_samples = as_signed(reader.implausible.value());
+  now_.channel_implausible = as_signed(reader.channel_implausible.value());
   now_.gated = as_signed(snapshot.health.gated);
   now_.channel_stale = as_signed(filter.channel_stale.value());
   now_.out_of_range = as_signed(filter.out_of_range.value());

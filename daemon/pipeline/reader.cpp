@@ -70,6 +70,8 @@ void Reader::publish_counters() noexcept {
   counters_.missing.set(counts.missing);
   counters_.invalid.set(counts.invalid);
   counters_.repeated.set(counts.repeated);
+  counters_.saturated.set(counts.saturated);
+  counters_.implausible.set(counts.implausible);
   counters_.device_restarts.set(counts.restarts);
   counters_.clock_steps.set(counts.clock_steps);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
@@ -80,6 +82,8 @@ void Reader::publish_counters() noexcept {
   counters_.bytes_skipped.set(driver.bytes_skipped);
   counters_.frames_repeated.set(driver.frames_repeated);
   counters_.samples_incomplete.set(driver.samples_incomplete);
+  counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
+                                    (outside_ != nullptr ? outside_->refused() : 0));
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

@@ -23,6 +23,7 @@ namespace ifog {
 // Any thread may read them; relaxed, for each stands for itself.
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
+  Counter saturated, implausible, channel_implausible;
   Counter frames_good, frames_crc, frames_format, bytes_skipped, frames_repeated, samples_incomplete;
   Counter bytes_at_end;                          // of a file that ends within a frame; also in bytes_skipped
   std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, arrival clock; 0: none yet

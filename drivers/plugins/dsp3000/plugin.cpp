@@ -53,6 +53,8 @@ class Driver {
     out.axes = 1;
     out.nominal_rate_hz = rate_hz_;
     out.angle_wrap_rad = output_.kind == IFOG_ANGLE ? 2.0 * std::numbers::pi : 0.0;
+    // KVH, DSP-3000 data sheet: maximum input rate +-375 deg/s.
+    out.full_scale[0] = 375.0 * std::numbers::pi / 180.0;
     out.baud = 38400;
     if (!set_output_) return;
     // Three times, because the device may miss a character while it sends.

@@ -62,6 +62,7 @@ class Driver {
     out.axes = 1;          // more: plugin::set_name(out.axis[0], "x"), …
     out.sequence_modulus = 256;
     out.nominal_rate_hz = rate_hz_;
+    out.full_scale[0] = 35.0;  // rad/s, from the data sheet; 0 if it says nothing
     out.baud = 115200;
     out.environments = 1;
     ifog::plugin::set_name(out.environment[0], "temperature_degC");  // the name a capture's column would have
