@@ -1,5 +1,6 @@
 #include "daemon/channels/can_channel.h"
 
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
@@ -10,6 +11,9 @@
 namespace ifog {
 
 CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
+  std::error_code ignored;
+  if (std::filesystem::exists(dbc_file, ignored) && !std::filesystem::is_regular_file(dbc_file, ignored))
+    throw std::runtime_error(dbc_file + ": is no regular file, expected a DBC file");
   const dbc::Database database = dbc::parse_database(read_text_file(dbc_file), dbc_file);
   const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, signal);
   if (found.empty())

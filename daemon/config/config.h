@@ -29,6 +29,8 @@ struct TransportConfig {
   double bytes_per_second = 0.0;
   std::uint32_t block_bytes = 0;
   bool await_writer = true;  // of a FIFO
+
+  bool operator==(const TransportConfig&) const = default;
 };
 
 struct ChannelConfig {
@@ -44,6 +46,8 @@ struct ChannelConfig {
   double scale = 1.0, offset = 0.0;  // value = number * scale + offset; lcm, can and file
   Limits limits;                     // of the value; what is beyond is no measurement
   double period_s = 1.0;             // file: how often it is read
+
+  bool operator==(const ChannelConfig&) const = default;
 };
 
 struct RealtimeConfig {
@@ -52,6 +56,8 @@ struct RealtimeConfig {
   bool spin = false;   // the filter thread never sleeps
   bool direct = true;  // the reader thread does an idle filter's step
   int ring_slots = 1024;
+
+  bool operator==(const RealtimeConfig&) const = default;
 };
 
 struct SensorConfig {
@@ -70,6 +76,9 @@ struct SensorConfig {
   std::uint32_t line = 0;  // in the file, for messages
 
   [[nodiscard]] std::string lcm_channel() const;  // "IFOG_NAME"
+  // Keys and tables in which `other` differs and that only a restart can change: a model, a filter and its
+  // start-up are exchanged between two samples, a device or a driver is not. "" for none.
+  [[nodiscard]] std::string restart_for(const SensorConfig& other) const;
 };
 
 struct Config {
@@ -79,6 +88,8 @@ struct Config {
   std::string log_level = "info";
   bool lock_memory = true;
   std::vector<SensorConfig> sensors;
+
+  [[nodiscard]] std::string restart_for(const Config& other) const;  // of the table [daemon], likewise
 };
 
 // Everything that is wrong, one line each, joined by '\n'.

@@ -39,33 +39,12 @@ constexpr std::array kFaults{
     Named{"channel_implausible", &status_t::channel_implausible},
     Named{"channel_stale", &status_t::channel_stale},
     Named{"out_of_range", &status_t::out_of_range},
+    Named{"corrections_refused", &status_t::corrections_refused},
     Named{"divergences", &status_t::divergences},
     Named{"events_lost", &status_t::events_lost},
 };
 
 std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(count); }
-
-std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
-  const Transport& transport = pipeline.reader().transport();
-  switch (transport.state()) {
-    case TransportState::gone:
-      return status_t::STATE_REOPENING;
-    case TransportState::ended:
-      // A fault at the end is a file that is cut off or damaged.
-      if (transport.reason() != 0 || transport.fault().what != nullptr ||
-          pipeline.reader().counters().bytes_at_end.value() != 0)
-        return status_t::STATE_FAILED;
-      return status_t::STATE_ENDED;
-    case TransportState::open:
-      break;
-  }
-  // One word says whether there is a sample and when: two counters could be seen in either order.
-  const std::int64_t last = pipeline.reader().counters().last_arrival_ns.load(std::memory_order_relaxed);
-  if (last == 0) return status_t::STATE_STARTING;
-  const bool silent = !transport.holds_back() && static_cast<double>(now_ns - last) * 1e-9 > kSilence_s;
-  if (silent) return status_t::STATE_NO_DATA;
-  return status_t::STATE_RUNNING;
-}
 
 std::string fault_of(const Reader& reader) {
   const Transport& transport = reader.transport();
@@ -98,16 +77,36 @@ StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels
   before_ = now_;
 }
 
+std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
+  const Transport& transport = pipeline.reader().transport();
+  switch (transport.state()) {
+    case TransportState::gone:
+      return status_t::STATE_REOPENING;
+    case TransportState::ended:
+      // A fault at the end is a file that is cut off or damaged.
+      if (transport.reason() != 0 || transport.fault().what != nullptr ||
+          pipeline.reader().counters().bytes_at_end.value() != 0)
+        return status_t::STATE_FAILED;
+      return status_t::STATE_ENDED;
+    case TransportState::open:
+      break;
+  }
+  const std::int64_t now_ns = monotonic_ns();
+  if (now_.samples_in + now_.samples_repeated != before_.samples_in + before_.samples_repeated)
+    sample_ns_ = now_ns;
+  if (sample_ns_ == 0) return status_t::STATE_STARTING;
+  return static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s ? status_t::STATE_NO_DATA
+                                                                      : status_t::STATE_RUNNING;
+}
+
 const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
   before_ = now_;
   const ReaderCounters& reader = pipeline.reader().counters();
   const FilterCounters& filter = pipeline.filter().counters();
   const Transport& transport = pipeline.reader().transport();
   const TransportCounters line = transport.counters();
-  const std::int64_t now_ns = arrival_clock_ns();
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
-  now_.state = state_of(pipeline, now_ns);
   now_.fault = fault_of(pipeline.reader());
   now_.samples_in = as_signed(reader.samples.value());
   now_.samples_published = as_signed(filter.published.value());
@@ -133,11 +132,13 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.gated = as_signed(snapshot.health.gated);
   now_.channel_stale = as_signed(filter.channel_stale.value());
   now_.out_of_range = as_signed(filter.out_of_range.value());
+  now_.corrections_refused = as_signed(filter.corrections_refused.value());
   now_.events_lost = as_signed(pipeline.events_lost());
   now_.floor_hits = as_signed(snapshot.health.floor_hits);
   now_.manoeuvres = as_signed(snapshot.health.manoeuvres);
   now_.divergences = as_signed(snapshot.health.divergences);
   now_.filter_resets = as_signed(filter.filter_resets.value());
+  now_.state = state_of(pipeline);
   if (interval_s > 0.0) {
     now_.input_rate_hz = static_cast<double>(now_.samples_in - before_.samples_in) / interval_s;
     now_.output_rate_hz =

@@ -22,7 +22,10 @@ class StatusReport {
   [[nodiscard]] const ifog::status_t& message() const { return now_; }
 
  private:
+  [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
+
   ifog::status_t before_, now_;
+  std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
 };
 
 }  // namespace ifog

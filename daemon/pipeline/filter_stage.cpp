@@ -78,6 +78,7 @@ void FilterStage::process(const Increment& in) noexcept {
   }
   if ((out_.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) counters_.channel_stale.add(1);
   if ((out_.compensator_flags & kOutOfRange) != 0) counters_.out_of_range.add(1);
+  if ((out_.flags & kNotCompensated) != 0) counters_.corrections_refused.add(1);
   if ((out_.estimate.flags & kRestarted) != 0) {
     counters_.filter_resets.add(1);
     events_.report({.kind = EventKind::divergence, .utime_ns = in.utime_ns, .sequence = in.sequence});
@@ -131,7 +132,7 @@ void FilterStage::collect_retired() noexcept { delete retired_.exchange(nullptr,
 void FilterStage::answer() noexcept {
   const ChainParts& parts = chain_.parts();
   current_.has_health = parts.health() != nullptr;
-  if (current_.has_health) current_.health = *parts.health();
+  current_.health = chain_.health();
   current_.allan_period_s = intervals_ > 0 ? mean_interval_s_ : 1.0 / facts_.nominal_rate_hz;
   current_.allan_octaves = StreamingAllan::kOctaves;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {

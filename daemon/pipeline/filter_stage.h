@@ -36,6 +36,7 @@ struct FilterSnapshot {
 
 struct FilterCounters {
   Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
+  Counter corrections_refused;
 };
 
 class FilterStage {

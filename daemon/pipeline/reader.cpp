@@ -35,7 +35,6 @@ void Reader::take(const ifog_sample& sample) noexcept {
   if (!incrementer_.next(reading_, increment)) return;
   report(increment, before);
   queue_.push();
-  counters_.last_arrival_ns.store(came_ns, std::memory_order_relaxed);
 }
 
 void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {

@@ -26,7 +26,6 @@ struct ReaderCounters {
   Counter saturated, implausible, channel_implausible;
   Counter frames_good, frames_crc, frames_format, bytes_skipped, frames_repeated, samples_incomplete;
   Counter bytes_at_end;                          // of a file that ends within a frame; also in bytes_skipped
-  std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, arrival clock; 0: none yet
   std::atomic<double> clock_offset_ppm{0.0};
 };
 

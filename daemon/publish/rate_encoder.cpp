@@ -22,6 +22,7 @@ std::int32_t flags(const Increment& in, const ChainOutput& out) noexcept {
   pass(out.compensator_flags, kOutOfRange, rate_t::FLAG_OUT_OF_RANGE);
   pass(out.flags, kNoiseUnknown, rate_t::FLAG_NOISE_UNKNOWN);
   pass(out.flags, kFilterReset, rate_t::FLAG_FILTER_RESET);
+  pass(out.flags, kNotCompensated, rate_t::FLAG_NOT_COMPENSATED);
   pass(out.estimate.flags, kGated, rate_t::FLAG_GATED);
   pass(out.estimate.flags, kManoeuvre, rate_t::FLAG_MANOEUVRE);
   pass(out.estimate.flags, kRestarted, rate_t::FLAG_FILTER_RESET);

@@ -23,6 +23,8 @@ struct Limits {
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   double max_step = std::numeric_limits<double>::infinity();  // between two samples
+
+  bool operator==(const Limits&) const = default;
 };
 
 // Constant while the sensor runs.

@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <ifog/decode.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -13,8 +14,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <ifog/rate_t.hpp>
-#include <ifog/status_t.hpp>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -167,22 +166,28 @@ class Monitor {
   lcm_t* lcm_ = nullptr;
   std::map<std::string, Sensor> sensors_;
   int lines_drawn_ = 0;
+  std::uint64_t refused_ = 0;  // that are no message of their channel's type
 };
 
 void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
   constexpr std::string_view kPrefix = "IFOG_", kStatus = "_STATUS";
-  const int size = static_cast<int>(buffer.data_size);
   std::string name = channel.substr(kPrefix.size());
   if (name.ends_with(kStatus)) {
     status_t status{};
-    if (status.decode(buffer.data, 0, size) < 0) return;
+    if (!decode_message(buffer.data, buffer.data_size, status)) {
+      ++refused_;
+      return;
+    }
     name.resize(name.size() - kStatus.size());
     sensors_[name].status = std::move(status);
     sensors_[name].has_status = true;
     return;
   }
   rate_t message{};
-  if (message.decode(buffer.data, 0, size) < 0) return;
+  if (!decode_message(buffer.data, buffer.data_size, message)) {
+    ++refused_;
+    return;
+  }
   take_rate(sensors_[name], message);
   recorder_.add(name, message);
 }
@@ -272,6 +277,8 @@ void Monitor::show(double interval_s) {
     sensor.shown = sensor.messages;
     sensor.in_interval = 0;
   }
+  if (refused_ > 0)
+    line(std::to_string(refused_) + " messages refused: not of their channel's type, or damaged");
   if (terminal && lines_drawn_ > 0) std::printf("\x1b[%dA", lines_drawn_);
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
