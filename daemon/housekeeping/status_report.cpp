@@ -95,8 +95,8 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
   if (now_.samples_in + now_.samples_repeated != before_.samples_in + before_.samples_repeated)
     sample_ns_ = now_ns;
   if (sample_ns_ == 0) return status_t::STATE_STARTING;
-  return static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s ? status_t::STATE_NO_DATA
-                                                                      : status_t::STATE_RUNNING;
+  if (static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s) return status_t::STATE_NO_DATA;
+  return status_t::STATE_RUNNING;
 }
 
 const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
