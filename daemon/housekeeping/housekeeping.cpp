@@ -134,8 +134,10 @@ void Housekeeping::start_all() {
 
 void Housekeeping::drain_events(Sensor& sensor) {
   Event event;
-  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty())
+  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty()) {
     sensor.log->warn("{}", warning);
+    sensor.report.count_warning();
+  }
   while (sensor.parts.pipeline->take_event(event)) {
     const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
     if (fault && sensor.worded >= kWordedPerSecond) {

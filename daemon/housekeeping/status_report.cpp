@@ -30,6 +30,7 @@ constexpr std::array kFaults{
     Named{"ring_overflows", &status_t::ring_overflows},
     Named{"samples_merged", &status_t::samples_merged},
     Named{"kernel_drops", &status_t::kernel_drops},
+    Named{"transport_warnings", &status_t::transport_warnings},
     Named{"can_error_frames", &status_t::can_error_frames},
     Named{"reopened", &status_t::reopened},
     Named{"lcm_failures", &status_t::lcm_failures},
@@ -107,24 +108,32 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   const TransportCounters line = transport.counters();
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
-  now_.fault = fault_of(pipeline.reader());
-  now_.samples_in = as_signed(reader.samples.value());
-  now_.samples_published = as_signed(filter.published.value());
+  // The snapshot is from before, so that whatever it has taken is in these, too.
+  const ReaderBooks books = pipeline.reader().books();
+  now_.fault = imbalance(books, snapshot.books);
+  if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
+  now_.bytes_read = as_signed(books.bytes_read);
+  now_.bytes_framed = as_signed(books.bytes_framed);
+  now_.bytes_skipped = as_signed(books.bytes_skipped);
+  now_.bytes_pending = as_signed(books.bytes_pending);
+  now_.samples_decoded = as_signed(books.decoded);
+  now_.samples_in = as_signed(books.samples);
+  now_.samples_repeated = as_signed(books.repeated);
+  now_.samples_published = as_signed(snapshot.books.sent);
+  now_.samples_merged = as_signed(snapshot.books.merged);
+  now_.lcm_failures = as_signed(snapshot.books.failed);
+  now_.samples_waiting = as_signed(books.samples - snapshot.books.samples);
   now_.frames_good = as_signed(reader.frames_good.value());
   now_.frames_crc = as_signed(reader.frames_crc.value());
   now_.frames_format = as_signed(reader.frames_format.value() + line.malformed);
-  now_.bytes_skipped = as_signed(reader.bytes_skipped.value());
   now_.frames_repeated = as_signed(reader.frames_repeated.value());
-  now_.samples_repeated = as_signed(reader.repeated.value());
   now_.samples_incomplete = as_signed(reader.samples_incomplete.value());
   now_.sequence_gaps = as_signed(reader.gaps.value());
   now_.sequence_missing = as_signed(reader.missing.value());
   now_.ring_overflows = as_signed(pipeline.queue().overflows());
-  now_.samples_merged = as_signed(pipeline.queue().merged());
   now_.kernel_drops = as_signed(line.kernel_drops);
   now_.can_error_frames = as_signed(line.error_frames);
   now_.reopened = as_signed(line.reopened);
-  now_.lcm_failures = as_signed(filter.lcm_failures.value());
   now_.invalid_samples = as_signed(reader.invalid.value());
   now_.saturated_samples = as_signed(reader.saturated.value());
   now_.implausible_samples = as_signed(reader.implausible.value());

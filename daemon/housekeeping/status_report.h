@@ -19,6 +19,8 @@ class StatusReport {
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
 
+  // A warning of the transport has been logged.
+  void count_warning() { ++now_.transport_warnings; }
   [[nodiscard]] const ifog::status_t& message() const { return now_; }
 
  private:

@@ -24,6 +24,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       events_(events) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
+  ++decoded_;
   read_sample(sample, facts_.frame_channels, reading_);
   const std::int64_t came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
@@ -83,6 +84,13 @@ void Reader::publish_counters() noexcept {
   counters_.samples_incomplete.set(driver.samples_incomplete);
   counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
                                     (outside_ != nullptr ? outside_->refused() : 0));
+  books_.write({.bytes_read = transport_->counters().bytes,
+                .bytes_framed = driver.bytes_framed,
+                .bytes_skipped = driver.bytes_skipped,
+                .bytes_pending = driver.bytes_pending,
+                .decoded = decoded_,
+                .samples = counts.samples,
+                .repeated = counts.repeated});
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

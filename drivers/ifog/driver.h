@@ -84,6 +84,9 @@ typedef struct ifog_driver_counters {
   uint64_t bytes_skipped;   /* bytes passed over to find the next frame */
   uint64_t frames_repeated; /* good frames that came a second time and were left out */
   uint64_t samples_incomplete; /* begun but never whole: some of their frames are missing */
+  uint64_t bytes_framed;       /* bytes of complete frames, whatever became of these; with a text, of its lines */
+  uint64_t bytes_pending;      /* the one that falls, too: bytes that may yet begin a frame. Every byte that was fed is
+                                  in bytes_framed, bytes_skipped or bytes_pending; the host checks it. 0 for CAN */
   uint64_t values_refused;     /* environment values beyond what the format states; the last good one stays */
 } ifog_driver_counters;
 

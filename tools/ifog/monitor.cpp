@@ -71,6 +71,21 @@ std::string rate_text(double radps) {
 }
 
 // Environment channels by name; the age of one that is not fresh.
+// What came in and where it went, as status_t's identities have it.
+std::string books_text(const status_t& status) {
+  std::array<char, 320> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "  books: %lld bytes = %lld in frames + %lld skipped + %lld pending; %lld samples = %lld published + "
+      "%lld merged + %lld not sent + %lld waiting, %lld came twice",
+      static_cast<long long>(status.bytes_read), static_cast<long long>(status.bytes_framed),
+      static_cast<long long>(status.bytes_skipped), static_cast<long long>(status.bytes_pending),
+      static_cast<long long>(status.samples_in), static_cast<long long>(status.samples_published),
+      static_cast<long long>(status.samples_merged), static_cast<long long>(status.lcm_failures),
+      static_cast<long long>(status.samples_waiting), static_cast<long long>(status.samples_repeated));
+  return text.data();
+}
+
 std::string channels_text(const status_t& status) {
   constexpr double kFresh_s = 2.0;
   std::string out;
@@ -271,6 +286,7 @@ void Monitor::show(double interval_s) {
                     static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
                     clock_text(status.clock_offset_ppm).c_str());
       line(row.data());
+      line(books_text(status));
       if (const std::string channels = channels_text(status); !channels.empty()) line("  " + channels);
       if (!status.fault.empty()) line("  " + status.fault);
     }

@@ -84,6 +84,8 @@ class Driver {
     out.frames_good = c.good;
     out.frames_format = c.malformed;
     out.bytes_skipped = c.bytes_skipped;
+    out.bytes_framed = c.bytes_framed;
+    out.bytes_pending = finder_.waiting();
   }
 
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {

@@ -191,6 +191,8 @@ class Driver {
     out.frames_crc = found.crc_failed;
     out.frames_format = other_format_;
     out.bytes_skipped = found.bytes_skipped;
+    out.bytes_framed = found.bytes_framed;
+    out.bytes_pending = finder_.waiting();
   }
 
   // Throws std::invalid_argument: a value the format has no room for.

@@ -99,7 +99,12 @@ class Driver {
     filled_ = 0;
   }
 
-  void counters(ifog_driver_counters& out) const { out = counters_; }
+  // Every byte is somewhere: in a frame, skipped, or waiting for the rest of its frame.
+  void counters(ifog_driver_counters& out) const {
+    out = counters_;
+    out.bytes_framed = counters_.frames_good * kFrame;
+    out.bytes_pending = filled_;
+  }
 
   // STEP 5, optional: the inverse. With it `ifog convert` and `ifog replay` can play a capture as your device
   // would. Throws when the sample does not fit into the format.
