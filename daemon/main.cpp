@@ -1,9 +1,12 @@
 // ifogd: reads gyros, denoises, publishes. Exit 0 good, 1 failed, 2 usage or a configuration that cannot
 // work.
+#include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string>
 
@@ -21,9 +24,18 @@ void block_signals() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
+// A standard stream that was closed would be the number of the next thing opened, and the log would go into a
+// gyro's serial line. And whoever reads the log may go away without taking the daemon along.
+void keep_standard_streams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) std::abort();
+  signal(SIGPIPE, SIG_IGN);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
   app.set_version_flag("--version", IFOG_VERSION);
   std::string file;

@@ -1,5 +1,7 @@
 #include "daemon/channels/can_channel.h"
 
+#include <filesystem>
+#include <limits>
 #include <stdexcept>
 
 #include "drivers/capture/text_file.h"
@@ -9,6 +11,9 @@
 namespace ifog {
 
 CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
+  std::error_code ignored;
+  if (std::filesystem::exists(dbc_file, ignored) && !std::filesystem::is_regular_file(dbc_file, ignored))
+    throw std::runtime_error(dbc_file + ": is no regular file, expected a DBC file");
   const dbc::Database database = dbc::parse_database(read_text_file(dbc_file), dbc_file);
   const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, signal);
   if (found.empty())
@@ -29,6 +34,7 @@ bool CanChannel::decode(const ifog_can_frame& frame, double& value) const noexce
   const std::span<const std::uint8_t> data(frame.data, frame.length);
   if (data.size() < dbc::bytes_needed(signal) || !dbc::selected(message_, signal, data)) return false;
   value = dbc::physical(signal, dbc::raw_bits(signal, data));
+  if (!dbc::in_range(signal, value)) value = std::numeric_limits<double>::quiet_NaN();
   return true;
 }
 

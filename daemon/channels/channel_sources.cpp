@@ -1,14 +1,21 @@
 #include "daemon/channels/channel_sources.h"
 
+#include <fcntl.h>
 #include <lcm/lcm.h>
+#include <net/if.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -19,69 +26,115 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
 #include "drivers/transport/clock.h"
+#include "filters/chain/plausibility.h"
 
 namespace ifog {
 namespace {
 
 constexpr auto kTurn = std::chrono::milliseconds(250);
 
-void put(const ChannelSources::Wanted& wanted, double number, std::int64_t time_ns) {
-  wanted.table->set(wanted.index, number * wanted.config.scale + wanted.config.offset, time_ns);
+// The way of a value into the sensor's table: scaled, and refused where it cannot be.
+class Entrance {
+ public:
+  explicit Entrance(ChannelSources::Wanted wanted)
+      : wanted_(std::move(wanted)), plausible_(wanted_.config.limits, kMostChannel) {}
+  [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
+
+  void put(double number, std::int64_t time_ns) {
+    const double value = number * wanted_.config.scale + wanted_.config.offset;
+    if (plausible_.take(value))
+      wanted_.table->set(wanted_.index, value, time_ns);
+    else
+      refuse();
+  }
+  // What came is no value.
+  void refuse() { wanted_.table->refuse(); }
+
+ private:
+  ChannelSources::Wanted wanted_;
+  PlausibleValue plausible_;
+};
+
+// Never waits: a FIFO in the place of the file would hold up every other channel, and the end of the daemon.
+std::optional<double> read_number(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (fd < 0) return std::nullopt;
+  std::array<char, 128> text{};
+  struct stat info {};
+  const bool regular = fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
+  const ssize_t length = regular ? ::read(fd, text.data(), text.size()) : -1;
+  close(fd);
+  if (length <= 0) return std::nullopt;
+  const char *at = text.data(), *const end = at + length;
+  while (at != end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '+')) ++at;
+  double number = 0.0;
+  return std::from_chars(at, end, number).ec == std::errc() ? std::optional(number) : std::nullopt;
 }
 
 // A file that holds one number: hwmon, thermal zones, IIO.
 class FileChannel {
  public:
-  explicit FileChannel(ChannelSources::Wanted wanted) : wanted_(std::move(wanted)) {}
+  explicit FileChannel(ChannelSources::Wanted wanted) : in_(std::move(wanted)) {}
+  [[nodiscard]] const ChannelConfig& config() const { return in_.config(); }
   [[nodiscard]] std::int64_t due_ns() const { return due_ns_; }
   void read(std::int64_t now_ns) {
-    due_ns_ = now_ns + static_cast<std::int64_t>(wanted_.config.period_s * 1e9);
-    std::ifstream file(wanted_.config.path);
-    double number = 0.0;
+    due_ns_ = now_ns + static_cast<std::int64_t>(in_.config().period_s * 1e9);
     // What cannot be read grows old, and is flagged as stale: no other message is needed.
-    if (file >> number) put(wanted_, number, arrival_clock_ns());
+    if (const auto number = read_number(in_.config().path)) in_.put(*number, arrival_clock_ns());
   }
 
  private:
-  ChannelSources::Wanted wanted_;
+  Entrance in_;
   std::int64_t due_ns_ = 0;
 };
+
+// LCM takes the name as a regular expression for whole names; a channel is called what it is called.
+std::string as_written(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_') out += '\\';
+    out += c;
+  }
+  return out;
+}
 
 // One LCM channel and field.
 class LcmChannel {
  public:
   explicit LcmChannel(ChannelSources::Wanted wanted)
-      : wanted_(std::move(wanted)),
-        field_(wanted_.config.field.empty() ? wanted_.config.name : wanted_.config.field) {}
-  [[nodiscard]] const std::string& lcm_channel() const { return wanted_.config.lcm_channel; }
+      : in_(std::move(wanted)), field_(in_.config().field.empty() ? in_.config().name : in_.config().field) {}
+  [[nodiscard]] const std::string& lcm_channel() const { return in_.config().lcm_channel; }
 
-  void take(const lcm_recv_buf_t& message) const {
+  void take(const lcm_recv_buf_t& message) {
     double value = 0.0;
     std::int64_t utime = 0;
     const std::span bytes(static_cast<const std::uint8_t*>(message.data), message.data_size);
-    if (!field_.read(bytes, value, utime)) return;
+    if (!field_.read(bytes, value, utime)) {
+      if (!is_message(bytes)) in_.refuse();
+      return;
+    }
     // What was measured in the future was measured now: else it would never grow old.
     const std::int64_t measured_ns =
         utime > 0 && utime < INT64_MAX / 1000 ? utime * 1000 : message.recv_utime * 1000;
-    put(wanted_, value, arrival_clock_ns() - std::max<std::int64_t>(0, realtime_ns() - measured_ns));
+    in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, realtime_ns() - measured_ns));
   }
 
  private:
-  ChannelSources::Wanted wanted_;
+  Entrance in_;
   LcmField field_;
 };
 
 // All signals wanted from one CAN interface.
 struct CanGroup {
-  std::vector<std::pair<ChannelSources::Wanted, CanChannel>> channels;
+  std::vector<std::pair<Entrance, CanChannel>> channels;
   std::unique_ptr<Transport> transport;
 
   void listen() {
     while (!transport->stopped()) {
       const Delivery delivery = transport->read(kTurn);
       for (const ifog_can_frame& frame : delivery.frames)
-        for (const auto& [wanted, channel] : channels)
-          if (double value = 0.0; channel.decode(frame, value)) put(wanted, value, frame.arrival_ns);
+        for (auto& [in, channel] : channels)
+          if (double value = 0.0; channel.decode(frame, value)) in.put(value, frame.arrival_ns);
     }
   }
 };
@@ -102,7 +155,7 @@ struct ChannelSources::Impl {
   }
 
   static void received(const lcm_recv_buf_t* message, const char* channel, void* user) {
-    for (const LcmChannel& one : static_cast<Impl*>(user)->messages)
+    for (LcmChannel& one : static_cast<Impl*>(user)->messages)
       if (one.lcm_channel() == channel) one.take(*message);
   }
 
@@ -138,7 +191,8 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
         break;
       case ChannelConfig::Source::can: {
         CanChannel channel(one.config.dbc, one.config.signal);
-        impl_->buses[one.config.interface].channels.emplace_back(std::move(one), std::move(channel));
+        impl_->buses[one.config.interface].channels.emplace_back(Entrance(std::move(one)),
+                                                                 std::move(channel));
         break;
       }
     }
@@ -158,11 +212,30 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     for (const std::string& name : names)
-      lcm_subscribe(impl_->lcm, name.c_str(), &Impl::received, impl_.get());
+      lcm_subscribe(impl_->lcm, as_written(name).c_str(), &Impl::received, impl_.get());
   }
 }
 
 ChannelSources::~ChannelSources() { stop(); }
+
+std::vector<std::string> ChannelSources::absent() const {
+  std::vector<std::string> out;
+  for (const FileChannel& file : impl_->files) {
+    const ChannelConfig& channel = file.config();
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(channel.path, error);
+    if (!std::filesystem::is_regular_file(status))
+      out.push_back("sensor.channel \"" + printable(channel.name) + "\": " + printable(channel.path) +
+                    (std::filesystem::exists(status) ? ": is no regular file" : ": is not there") +
+                    ", expected a file that holds one number; the channel is stale");
+  }
+  for (const auto& [interface, bus] : impl_->buses)
+    if (if_nametoindex(interface.c_str()) == 0)
+      for (const auto& [in, channel] : bus.channels)
+        out.push_back("sensor.channel \"" + printable(in.config().name) + "\": there is no interface \"" +
+                      printable(interface) + "\" now; the channel is stale until it comes");
+  return out;
+}
 
 void ChannelSources::start() {
   if (!impl_->files.empty() || !impl_->messages.empty()) {

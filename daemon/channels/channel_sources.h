@@ -29,6 +29,8 @@ class ChannelSources {
                  const CanOpener& make_can = make_can_transport);
   ~ChannelSources();  // stops
 
+  // What is not there now, one line each: it may come yet, and until then its channels are stale.
+  [[nodiscard]] std::vector<std::string> absent() const;
   void start();
   void stop();
 

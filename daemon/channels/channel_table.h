@@ -20,6 +20,10 @@ class ChannelTable {
     entry.value.store(value, std::memory_order_relaxed);
     entry.time_ns.store(time_ns, std::memory_order_release);
   }
+  // A value came that cannot be: the one before stays, and grows old.
+  void refuse() noexcept { refused_.fetch_add(1, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
+
   // NaN and an infinite age until the first value. The value is at least as new as the age says: updates that
   // come between the two loads show in the value alone.
   void get(int channel, std::int64_t now_ns, double& value, float& age_s) const noexcept {
@@ -37,6 +41,7 @@ class ChannelTable {
     std::atomic<std::int64_t> time_ns{0};
   };
   std::unique_ptr<Entry[]> entries_;
+  std::atomic<std::uint64_t> refused_{0};
 };
 
 }  // namespace ifog

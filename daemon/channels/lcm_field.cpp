@@ -1,11 +1,9 @@
 #include "daemon/channels/lcm_field.h"
 
+#include <ifog/decode.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ifog/channel_t.hpp>
-#include <ifog/rate_t.hpp>
-#include <ifog/status_t.hpp>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -46,11 +44,6 @@ auto find(const Table& table, std::string_view name) {
   return found == table.end() ? nullptr : &*found;
 }
 
-template <typename Message>
-bool decode(std::span<const std::uint8_t> bytes, Message& message) {
-  return message.decode(bytes.data(), 0, static_cast<int>(bytes.size())) >= 0;
-}
-
 }  // namespace
 
 LcmField::LcmField(const std::string& text) : name_(text.substr(0, text.find('['))) {
@@ -70,10 +63,17 @@ LcmField::LcmField(const std::string& text) : name_(text.substr(0, text.find('['
   axis_ = within_[0] - '0';
 }
 
+bool is_message(std::span<const std::uint8_t> bytes) {
+  channel_t channel{};
+  rate_t rate{};
+  status_t status{};
+  return decode_message(bytes, channel) || decode_message(bytes, rate) || decode_message(bytes, status);
+}
+
 bool LcmField::read(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const {
   if (find(kOfRate, name_) != nullptr && axis_ >= 0) return read_rate(message, value, utime);
   channel_t channel{};
-  if (within_.empty() && decode(message, channel)) {
+  if (within_.empty() && decode_message(message, channel)) {
     if (channel.name != name_) return false;
     value = channel.value;
     utime = channel.utime;
@@ -84,7 +84,7 @@ bool LcmField::read(std::span<const std::uint8_t> message, double& value, std::i
 
 bool LcmField::read_rate(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const {
   rate_t rate{};
-  if (!decode(message, rate) || axis_ >= rate.axes) return false;
+  if (!decode_message(message, rate) || axis_ >= rate.axes) return false;
   value = (rate.*find(kOfRate, name_)->field)[static_cast<std::size_t>(axis_)];
   utime = rate.utime;
   return true;
@@ -92,8 +92,8 @@ bool LcmField::read_rate(std::span<const std::uint8_t> message, double& value, s
 
 bool LcmField::read_status(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const {
   status_t status{};
-  if (!decode(message, status)) return false;
-  utime = status.utime;
+  if (!decode_message(message, status)) return false;
+  utime = std::max<std::int64_t>(status.utime, 0);
   if (name_ == kChannelValue) {
     const auto found = std::find(status.channel_name.begin(), status.channel_name.end(), within_);
     if (found == status.channel_name.end()) return false;
@@ -101,7 +101,8 @@ bool LcmField::read_status(std::span<const std::uint8_t> message, double& value,
     value = status.channel_value[index];
     // What that sensor holds is as old as it says.
     const double age_s = status.channel_age_s[index];
-    if (!std::isfinite(value) || !std::isfinite(age_s)) return false;
+    constexpr double kOldest_s = 1e9;  // beyond it nothing is worth having; and it fits the µs
+    if (!std::isfinite(value) || !(age_s >= 0.0 && age_s < kOldest_s)) return false;
     utime -= static_cast<std::int64_t>(age_s * 1e6);
     return true;
   }

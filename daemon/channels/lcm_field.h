@@ -7,6 +7,9 @@
 
 namespace ifog {
 
+// The bytes are one whole message of the three types that carry fields.
+bool is_message(std::span<const std::uint8_t> bytes);
+
 class LcmField {
  public:
   // "NAME": the ifog.channel_t of that name, or a number of an ifog.status_t: input_rate_hz, …
@@ -16,8 +19,8 @@ class LcmField {
   // Throws std::runtime_error with one line: brackets on a field that has none of that kind.
   explicit LcmField(const std::string& text);
 
-  // False: another type, or the message does not have it. The type is known by LCM's fingerprint. utime: of
-  // the measurement, µs since the epoch, 0 when the message does not say.
+  // False: no message, another type, or the message does not have it. The type is known by LCM's fingerprint.
+  // utime: of the measurement, µs since the epoch, 0 when the message does not say.
   bool read(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
 
  private:

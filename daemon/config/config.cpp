@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "daemon/config/table_reader.h"
-#include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/chain/plausibility.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
 
@@ -113,11 +113,21 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
   return out;
 }
 
+Limits read_limits(TableReader& in, double most) {
+  Limits out;
+  take(in.number("minimum", {-most, most}), out.minimum);
+  take(in.number("maximum", {-most, most}), out.maximum);
+  take(in.number("max_step", {0.0, 2.0 * most}), out.max_step);
+  if (!(out.minimum < out.maximum)) in.complain("maximum", ": not above minimum; expected minimum < maximum");
+  return out;
+}
+
 ChannelConfig read_channel(const toml::table& table, const std::string& where, Context& context) {
   TableReader in(table, where, context.file, context.errors);
   ChannelConfig out;
   out.name = in.required_text("name", "a channel's name with its unit, \"temperature_degC\"");
   take(in.number("max_age_s", kNotNegative), out.max_age_s);
+  out.limits = read_limits(in, kMostChannel);
   const auto source = in.choice("source", {"frame", "can", "lcm", "file"});
   if (!source) {
     if (!in.has("source"))
@@ -127,8 +137,8 @@ ChannelConfig read_channel(const toml::table& table, const std::string& where, C
   if (*source == "frame") {
     out.source = ChannelConfig::Source::frame;
   } else {
-    take(in.number("scale", {-kInfinity, kInfinity}), out.scale);
-    take(in.number("offset", {-kInfinity, kInfinity}), out.offset);
+    take(in.number("scale", {-kMostChannel, kMostChannel}), out.scale);
+    take(in.number("offset", {-kMostChannel, kMostChannel}), out.offset);
   }
   if (*source == "can") {
     out.source = ChannelConfig::Source::can;
@@ -159,6 +169,8 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   out.driver = in.required_text("driver", "the name of a driver, see `ifog drivers`");
   out.model = context.absolute(in.text("model").value_or(""));
   take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
+  take(in.number("range_radps", {1e-9, kMostRate_radps}), out.range_radps);
+  out.limits = read_limits(in, kMostRate_radps);
   if (const toml::table* const transport = in.table("transport"))
     out.transport = read_transport(*transport, "sensor.transport", context);
   else if (!in.has("transport"))
@@ -213,6 +225,36 @@ std::string SensorConfig::lcm_channel() const {
   return out;
 }
 
+namespace {
+
+// Names of those that differ.
+std::string differing(std::initializer_list<std::pair<const char*, bool>> keys) {
+  std::string out;
+  for (const auto& [key, same] : keys)
+    if (!same) out += (out.empty() ? "" : ", ") + std::string(key);
+  return out;
+}
+
+}  // namespace
+
+std::string SensorConfig::restart_for(const SensorConfig& other) const {
+  return differing({{"driver", driver == other.driver},
+                    {"options", options == other.options},
+                    {"transport", transport == other.transport},
+                    {"nominal_rate_hz", nominal_rate_hz == other.nominal_rate_hz},
+                    {"range_radps", range_radps == other.range_radps},
+                    {"minimum, maximum or max_step", limits == other.limits},
+                    {"realtime", realtime == other.realtime},
+                    {"channel", channels == other.channels}});
+}
+
+std::string Config::restart_for(const Config& other) const {
+  return differing({{"plugin_folder", plugin_folders == other.plugin_folders},
+                    {"lcm_url", lcm_url == other.lcm_url},
+                    {"log_level", log_level == other.log_level},
+                    {"lock_memory", lock_memory == other.lock_memory}});
+}
+
 Config parse_config(const std::string& text, const std::string& path) {
   toml::table root;
   try {
@@ -231,11 +273,13 @@ Config parse_config(const std::string& text, const std::string& path) {
   for (const toml::table* const sensor : in.tables("sensor")) {
     out.sensors.push_back(read_sensor(*sensor, context));
     const SensorConfig& read = out.sensors.back();
-    // By LCM channel, which has capitals only.
-    if (!read.name.empty() && !channels.insert(read.lcm_channel()).second)
+    // By LCM channel, which has capitals only; a sensor takes two, and `a_status` has the second of `a`.
+    const bool free =
+        channels.insert(read.lcm_channel()).second && channels.insert(read.lcm_channel() + "_STATUS").second;
+    if (!read.name.empty() && !free)
       TableReader(*sensor, "sensor", path, context.errors)
           .complain("name", " = " + in_quotes(read.name) + ": another sensor publishes on " +
-                                read.lcm_channel() + " already");
+                                read.lcm_channel() + " or " + read.lcm_channel() + "_STATUS already");
   }
   if (!in.has("sensor")) context.errors.push_back(path + ": no [[sensor]]: expected at least one");
   in.refuse_the_rest();
@@ -246,7 +290,7 @@ Config parse_config(const std::string& text, const std::string& path) {
 Config read_config(const std::string& path) {
   std::string text;
   try {
-    text = read_text_file(path);
+    text = read_toml_text(path);
   } catch (const std::exception& error) {
     throw ConfigError(error.what());
   }

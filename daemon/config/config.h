@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/transport/serial_port.h"
+#include "filters/chain/reading.h"
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
@@ -28,6 +29,8 @@ struct TransportConfig {
   double bytes_per_second = 0.0;
   std::uint32_t block_bytes = 0;
   bool await_writer = true;  // of a FIFO
+
+  bool operator==(const TransportConfig&) const = default;
 };
 
 struct ChannelConfig {
@@ -41,7 +44,10 @@ struct ChannelConfig {
   std::string field;                 // lcm: which of it, see LcmField; "": the name
   std::string path;                  // file: holds one number, as hwmon's temp1_input
   double scale = 1.0, offset = 0.0;  // value = number * scale + offset; lcm, can and file
+  Limits limits;                     // of the value; what is beyond is no measurement
   double period_s = 1.0;             // file: how often it is read
+
+  bool operator==(const ChannelConfig&) const = default;
 };
 
 struct RealtimeConfig {
@@ -50,6 +56,8 @@ struct RealtimeConfig {
   bool spin = false;   // the filter thread never sleeps
   bool direct = true;  // the reader thread does an idle filter's step
   int ring_slots = 1024;
+
+  bool operator==(const RealtimeConfig&) const = default;
 };
 
 struct SensorConfig {
@@ -57,6 +65,8 @@ struct SensorConfig {
   std::string driver;
   std::string model;             // path, "" for none
   double nominal_rate_hz = 0.0;  // 0: what the driver says
+  double range_radps = 0.0;      // full scale of every axis; 0: what the driver says
+  Limits limits;                 // of every axis's rate, rad/s
   double start_up_s = 4.0;
   TransportConfig transport;
   std::map<std::string, std::string> options;  // of the driver
@@ -66,6 +76,9 @@ struct SensorConfig {
   std::uint32_t line = 0;  // in the file, for messages
 
   [[nodiscard]] std::string lcm_channel() const;  // "IFOG_NAME"
+  // Keys and tables in which `other` differs and that only a restart can change: a model, a filter and its
+  // start-up are exchanged between two samples, a device or a driver is not. "" for none.
+  [[nodiscard]] std::string restart_for(const SensorConfig& other) const;
 };
 
 struct Config {
@@ -75,6 +88,8 @@ struct Config {
   std::string log_level = "info";
   bool lock_memory = true;
   std::vector<SensorConfig> sensors;
+
+  [[nodiscard]] std::string restart_for(const Config& other) const;  // of the table [daemon], likewise
 };
 
 // Everything that is wrong, one line each, joined by '\n'.

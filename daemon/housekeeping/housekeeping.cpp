@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 100'000'000;
 constexpr int kTicksPerSecond = 10;
+constexpr std::int64_t kReloadEvery_ns = 1'000'000'000;
 constexpr std::uint64_t kWordedPerSecond = 5;  // event lines of one sensor; the rest is in the counters
 // A thread that has not come round for this long is stuck; the watchdog then restarts the service.
 constexpr int kStuck_s = 3;
@@ -44,10 +46,13 @@ class Signals {
     const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
     pollfd wanted{fd_, POLLIN, 0};
     if (ppoll(&wanted, 1, &timeout, nullptr) <= 0) return 0;
-    signalfd_siginfo info{};
-    return read(fd_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)
-               ? static_cast<int>(info.ssi_signo)
-               : 0;
+    // All that are there: SIGHUP comes first, and however often it comes, it must not hide an end.
+    std::array<signalfd_siginfo, 4> infos{};
+    const ssize_t bytes = read(fd_, infos.data(), sizeof infos);
+    int signal = 0;
+    for (std::size_t i = 0; bytes > 0 && i < static_cast<std::size_t>(bytes) / sizeof infos[0]; ++i)
+      if (signal == 0 || signal == SIGHUP) signal = static_cast<int>(infos[i].ssi_signo);
+    return signal;
   }
 
  private:
@@ -58,6 +63,13 @@ std::vector<std::string> axis_names(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i) out.emplace_back(description.axis[i]);
   return out;
+}
+
+// Null: there is none of that name.
+const SensorConfig* sensor_named(const Config& config, const std::string& name) {
+  const auto found = std::find_if(config.sensors.begin(), config.sensors.end(),
+                                  [&](const SensorConfig& sensor) { return sensor.name == name; });
+  return found == config.sensors.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -87,6 +99,7 @@ Housekeeping::Housekeeping(Config config) : config_(std::move(config)), log_(mak
   }
   if (!errors.empty()) throw ConfigError(errors);
   sources_ = std::make_unique<ChannelSources>(std::move(wanted), config_.lcm_url);
+  for (const std::string& absent : sources_->absent()) log_->warn("{}", absent);
 }
 
 Housekeeping::~Housekeeping() = default;
@@ -121,8 +134,10 @@ void Housekeeping::start_all() {
 
 void Housekeeping::drain_events(Sensor& sensor) {
   Event event;
-  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty())
+  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty()) {
     sensor.log->warn("{}", warning);
+    sensor.report.count_warning();
+  }
   while (sensor.parts.pipeline->take_event(event)) {
     const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
     if (fault && sensor.worded >= kWordedPerSecond) {
@@ -174,32 +189,66 @@ bool Housekeeping::all_alive() const {
   });
 }
 
-void Housekeeping::reload() {
-  notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
-  try {
-    const Config fresh = read_config(config_.file);
-    for (const auto& sensor : sensors_) {
-      const auto found =
-          std::find_if(fresh.sensors.begin(), fresh.sensors.end(),
-                       [&sensor](const SensorConfig& other) { return other.name == sensor->config.name; });
-      if (found == fresh.sensors.end()) {
-        sensor->log->warn("no longer in {}: goes on until a restart", config_.file);
-        continue;
-      }
-      // Only what can change between two samples; a device or a driver needs a restart.
-      sensor->config.model = found->model;
-      sensor->config.filter = found->filter;
-      sensor->config.start_up_s = found->start_up_s;
-      const Pipeline& pipeline = *sensor->parts.pipeline;
-      auto parts = std::make_unique<ChainParts>(sensor_chain_settings(
-          sensor->config, pipeline.reader().driver().description(), read_sensor_model(sensor->config)));
-      for (const std::string& effect : parts->left_out()) sensor->log->warn("not corrected: {}", effect);
-      sensor->log->info("reloaded: model {}, filter settings",
-                        sensor->config.model.empty() ? "none" : sensor->config.model);
-      sensor->parts.pipeline->filter().offer(std::move(parts));
+void Housekeeping::say_what_needs_a_restart(const Config& fresh) {
+  if (const std::string keys = config_.restart_for(fresh); !keys.empty())
+    log_->warn("changed in [daemon], needs a restart: {}", keys);
+  for (const SensorConfig& sensor : fresh.sensors)
+    if (sensor_named(config_, sensor.name) == nullptr)
+      log_->warn("sensor \"{}\" is new in {}, needs a restart", printable(sensor.name), config_.file);
+  for (const auto& sensor : sensors_) {
+    const SensorConfig* const other = sensor_named(fresh, sensor->config.name);
+    if (other == nullptr) {
+      sensor->log->warn("no longer in {}: goes on until a restart", config_.file);
+    } else if (const std::string keys = sensor->config.restart_for(*other); !keys.empty()) {
+      sensor->log->warn("changed, needs a restart: {}", keys);
     }
+  }
+}
+
+void Housekeeping::reload() {
+  struct Renewed {
+    Sensor* sensor;
+    SensorConfig config;
+    std::unique_ptr<ChainParts> parts;
+  };
+  notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
+  std::vector<Renewed> renewed;
+  std::vector<std::string> errors;
+  Config fresh;
+  try {
+    fresh = read_config(config_.file);
   } catch (const std::exception& error) {
-    log_->error("reload refused, going on as before: {}", error.what());
+    errors.emplace_back(error.what());
+  }
+  for (const auto& sensor : sensors_) {
+    const SensorConfig* const found = sensor_named(fresh, sensor->config.name);
+    if (found == nullptr) continue;
+    // Only what can change between two samples.
+    SensorConfig config = sensor->config;
+    config.model = found->model;
+    config.filter = found->filter;
+    config.start_up_s = found->start_up_s;
+    try {
+      auto parts = std::make_unique<ChainParts>(sensor_chain_settings(
+          config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config)));
+      renewed.push_back({sensor.get(), std::move(config), std::move(parts)});
+    } catch (const std::exception& error) {
+      errors.push_back("sensor \"" + printable(config.name) + "\": " + error.what());
+    }
+  }
+  for (const std::string& error : errors) log_->error("{}", error);
+  if (errors.empty()) {
+    say_what_needs_a_restart(fresh);
+    for (Renewed& each : renewed) {
+      for (const std::string& effect : each.parts->left_out())
+        each.sensor->log->warn("not corrected: {}", effect);
+      each.sensor->log->info("reloaded: model {}, filter settings",
+                             each.config.model.empty() ? "none" : each.config.model);
+      each.sensor->config = std::move(each.config);
+      each.sensor->parts.pipeline->filter().offer(std::move(each.parts));
+    }
+  } else {
+    log_->error("reload refused: nothing has changed for any sensor");
   }
   notify("READY=1");
 }
@@ -228,18 +277,27 @@ int Housekeeping::run() {
   start_all();
   notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
   bool watchdog = true;
-  bool ended = false;
+  bool ended = false, reload_asked = false;
   std::int64_t deadline_ns = monotonic_ns();
+  std::int64_t reloaded_ns = deadline_ns - kReloadEvery_ns;
   std::int64_t second_ns = deadline_ns;
   for (int tick = 1; !ended; ++tick) {
     deadline_ns += kTick_ns;
-    if (const int signal = signals.wait(deadline_ns); signal == SIGHUP) {
-      reload();
-      deadline_ns -= kTick_ns;
-      continue;
-    } else if (signal != 0) {
+    int signal = 0;
+    while ((signal = signals.wait(deadline_ns)) == SIGHUP) {
+      reload_asked = true;
+      if (monotonic_ns() >= deadline_ns) break;
+    }
+    if (signal == SIGTERM || signal == SIGINT) {
       log_->info("stopping on {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       break;
+    }
+    // Within the tick, which goes on to its status and its sign of life; the first at once, a flood of them
+    // as one a second.
+    if (reload_asked && monotonic_ns() - reloaded_ns >= kReloadEvery_ns) {
+      reload_asked = false;
+      reload();
+      reloaded_ns = monotonic_ns();
     }
     ended = true;
     for (const auto& sensor : sensors_) {

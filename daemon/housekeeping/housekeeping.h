@@ -49,7 +49,9 @@ class Housekeeping {
   void report_second(Sensor& sensor, double interval_s);
   void publish(Sensor& sensor);
   [[nodiscard]] bool all_alive() const;
+  // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
   void reload();
+  void say_what_needs_a_restart(const Config& fresh);
   void stop_all();
   void notify(const std::string& state);
 

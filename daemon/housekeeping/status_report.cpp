@@ -30,39 +30,22 @@ constexpr std::array kFaults{
     Named{"ring_overflows", &status_t::ring_overflows},
     Named{"samples_merged", &status_t::samples_merged},
     Named{"kernel_drops", &status_t::kernel_drops},
+    Named{"transport_warnings", &status_t::transport_warnings},
     Named{"can_error_frames", &status_t::can_error_frames},
     Named{"reopened", &status_t::reopened},
     Named{"lcm_failures", &status_t::lcm_failures},
     Named{"invalid_samples", &status_t::invalid_samples},
+    Named{"saturated_samples", &status_t::saturated_samples},
+    Named{"implausible_samples", &status_t::implausible_samples},
+    Named{"channel_implausible", &status_t::channel_implausible},
     Named{"channel_stale", &status_t::channel_stale},
     Named{"out_of_range", &status_t::out_of_range},
+    Named{"corrections_refused", &status_t::corrections_refused},
     Named{"divergences", &status_t::divergences},
     Named{"events_lost", &status_t::events_lost},
 };
 
 std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(count); }
-
-std::int32_t state_of(const Pipeline& pipeline, std::int64_t now_ns) {
-  const Transport& transport = pipeline.reader().transport();
-  switch (transport.state()) {
-    case TransportState::gone:
-      return status_t::STATE_REOPENING;
-    case TransportState::ended:
-      // A fault at the end is a file that is cut off or damaged.
-      if (transport.reason() != 0 || transport.fault().what != nullptr ||
-          pipeline.reader().counters().bytes_at_end.value() != 0)
-        return status_t::STATE_FAILED;
-      return status_t::STATE_ENDED;
-    case TransportState::open:
-      break;
-  }
-  // One word says whether there is a sample and when: two counters could be seen in either order.
-  const std::int64_t last = pipeline.reader().counters().last_arrival_ns.load(std::memory_order_relaxed);
-  if (last == 0) return status_t::STATE_STARTING;
-  const bool silent = !transport.holds_back() && static_cast<double>(now_ns - last) * 1e-9 > kSilence_s;
-  if (silent) return status_t::STATE_NO_DATA;
-  return status_t::STATE_RUNNING;
-}
 
 std::string fault_of(const Reader& reader) {
   const Transport& transport = reader.transport();
@@ -95,43 +78,76 @@ StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels
   before_ = now_;
 }
 
+std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
+  const Transport& transport = pipeline.reader().transport();
+  switch (transport.state()) {
+    case TransportState::gone:
+      return status_t::STATE_REOPENING;
+    case TransportState::ended:
+      // A fault at the end is a file that is cut off or damaged.
+      if (transport.reason() != 0 || transport.fault().what != nullptr ||
+          pipeline.reader().counters().bytes_at_end.value() != 0)
+        return status_t::STATE_FAILED;
+      return status_t::STATE_ENDED;
+    case TransportState::open:
+      break;
+  }
+  const std::int64_t now_ns = monotonic_ns();
+  if (now_.samples_in + now_.samples_repeated != before_.samples_in + before_.samples_repeated)
+    sample_ns_ = now_ns;
+  if (sample_ns_ == 0) return status_t::STATE_STARTING;
+  if (static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s) return status_t::STATE_NO_DATA;
+  return status_t::STATE_RUNNING;
+}
+
 const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
   before_ = now_;
   const ReaderCounters& reader = pipeline.reader().counters();
   const FilterCounters& filter = pipeline.filter().counters();
   const Transport& transport = pipeline.reader().transport();
   const TransportCounters line = transport.counters();
-  const std::int64_t now_ns = arrival_clock_ns();
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
-  now_.state = state_of(pipeline, now_ns);
-  now_.fault = fault_of(pipeline.reader());
-  now_.samples_in = as_signed(reader.samples.value());
-  now_.samples_published = as_signed(filter.published.value());
+  // The snapshot is from before, so that whatever it has taken is in these, too.
+  const ReaderBooks books = pipeline.reader().books();
+  now_.fault = imbalance(books, snapshot.books);
+  if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
+  now_.bytes_read = as_signed(books.bytes_read);
+  now_.bytes_framed = as_signed(books.bytes_framed);
+  now_.bytes_skipped = as_signed(books.bytes_skipped);
+  now_.bytes_pending = as_signed(books.bytes_pending);
+  now_.samples_decoded = as_signed(books.decoded);
+  now_.samples_in = as_signed(books.samples);
+  now_.samples_repeated = as_signed(books.repeated);
+  now_.samples_published = as_signed(snapshot.books.sent);
+  now_.samples_merged = as_signed(snapshot.books.merged);
+  now_.lcm_failures = as_signed(snapshot.books.failed);
+  now_.samples_waiting = as_signed(books.samples - snapshot.books.samples);
   now_.frames_good = as_signed(reader.frames_good.value());
   now_.frames_crc = as_signed(reader.frames_crc.value());
   now_.frames_format = as_signed(reader.frames_format.value() + line.malformed);
-  now_.bytes_skipped = as_signed(reader.bytes_skipped.value());
   now_.frames_repeated = as_signed(reader.frames_repeated.value());
-  now_.samples_repeated = as_signed(reader.repeated.value());
   now_.samples_incomplete = as_signed(reader.samples_incomplete.value());
   now_.sequence_gaps = as_signed(reader.gaps.value());
   now_.sequence_missing = as_signed(reader.missing.value());
   now_.ring_overflows = as_signed(pipeline.queue().overflows());
-  now_.samples_merged = as_signed(pipeline.queue().merged());
   now_.kernel_drops = as_signed(line.kernel_drops);
   now_.can_error_frames = as_signed(line.error_frames);
   now_.reopened = as_signed(line.reopened);
-  now_.lcm_failures = as_signed(filter.lcm_failures.value());
   now_.invalid_samples = as_signed(reader.invalid.value());
+  now_.saturated_samples = as_signed(reader.saturated.value());
+  now_.implausible_samples = as_signed(reader.implausible.value());
+  now_.channel_implausible = as_signed(reader.channel_implausible.value());
   now_.gated = as_signed(snapshot.health.gated);
   now_.channel_stale = as_signed(filter.channel_stale.value());
   now_.out_of_range = as_signed(filter.out_of_range.value());
+  now_.corrections_refused = as_signed(filter.corrections_refused.value());
   now_.events_lost = as_signed(pipeline.events_lost());
   now_.floor_hits = as_signed(snapshot.health.floor_hits);
   now_.manoeuvres = as_signed(snapshot.health.manoeuvres);
   now_.divergences = as_signed(snapshot.health.divergences);
   now_.filter_resets = as_signed(filter.filter_resets.value());
+  now_.state = state_of(pipeline);
   if (interval_s > 0.0) {
     now_.input_rate_hz = static_cast<double>(now_.samples_in - before_.samples_in) / interval_s;
     now_.output_rate_hz =

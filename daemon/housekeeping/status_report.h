@@ -19,10 +19,15 @@ class StatusReport {
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
 
+  // A warning of the transport has been logged.
+  void count_warning() { ++now_.transport_warnings; }
   [[nodiscard]] const ifog::status_t& message() const { return now_; }
 
  private:
+  [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
+
   ifog::status_t before_, now_;
+  std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
 };
 
 }  // namespace ifog

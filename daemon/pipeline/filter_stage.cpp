@@ -69,6 +69,7 @@ void FilterStage::process(const Increment& in) noexcept {
   const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
   if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
   counters_.device_samples.add(in.samples);
+  counters_.merged.add(in.samples - 1);
   if (sent) {
     counters_.published.add(1);
   } else {
@@ -78,6 +79,7 @@ void FilterStage::process(const Increment& in) noexcept {
   }
   if ((out_.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) counters_.channel_stale.add(1);
   if ((out_.compensator_flags & kOutOfRange) != 0) counters_.out_of_range.add(1);
+  if ((out_.flags & kNotCompensated) != 0) counters_.corrections_refused.add(1);
   if ((out_.estimate.flags & kRestarted) != 0) {
     counters_.filter_resets.add(1);
     events_.report({.kind = EventKind::divergence, .utime_ns = in.utime_ns, .sequence = in.sequence});
@@ -131,7 +133,11 @@ void FilterStage::collect_retired() noexcept { delete retired_.exchange(nullptr,
 void FilterStage::answer() noexcept {
   const ChainParts& parts = chain_.parts();
   current_.has_health = parts.health() != nullptr;
-  if (current_.has_health) current_.health = *parts.health();
+  current_.health = chain_.health();
+  current_.books = {.samples = counters_.device_samples.value(),
+                    .sent = counters_.published.value(),
+                    .failed = counters_.lcm_failures.value(),
+                    .merged = counters_.merged.value()};
   current_.allan_period_s = intervals_ > 0 ? mean_interval_s_ : 1.0 / facts_.nominal_rate_hz;
   current_.allan_octaves = StreamingAllan::kOctaves;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {

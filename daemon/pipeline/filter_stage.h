@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "daemon/health/books.h"
 #include "daemon/health/latency.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
@@ -28,6 +29,7 @@ struct FilterSnapshot {
   std::array<double, kMaxChannels> channel{};
   std::array<float, kMaxChannels> channel_age_s{};
   std::array<char, 64> model{};
+  FilterBooks books;
   // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.
   double allan_period_s = 0.0;
   int allan_octaves = 0;
@@ -36,6 +38,7 @@ struct FilterSnapshot {
 
 struct FilterCounters {
   Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
+  Counter corrections_refused, merged;
 };
 
 class FilterStage {

@@ -24,6 +24,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       events_(events) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
+  ++decoded_;
   read_sample(sample, facts_.frame_channels, reading_);
   const std::int64_t came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
@@ -35,7 +36,6 @@ void Reader::take(const ifog_sample& sample) noexcept {
   if (!incrementer_.next(reading_, increment)) return;
   report(increment, before);
   queue_.push();
-  counters_.last_arrival_ns.store(came_ns, std::memory_order_relaxed);
 }
 
 void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {
@@ -70,6 +70,8 @@ void Reader::publish_counters() noexcept {
   counters_.missing.set(counts.missing);
   counters_.invalid.set(counts.invalid);
   counters_.repeated.set(counts.repeated);
+  counters_.saturated.set(counts.saturated);
+  counters_.implausible.set(counts.implausible);
   counters_.device_restarts.set(counts.restarts);
   counters_.clock_steps.set(counts.clock_steps);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
@@ -80,6 +82,15 @@ void Reader::publish_counters() noexcept {
   counters_.bytes_skipped.set(driver.bytes_skipped);
   counters_.frames_repeated.set(driver.frames_repeated);
   counters_.samples_incomplete.set(driver.samples_incomplete);
+  counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
+                                    (outside_ != nullptr ? outside_->refused() : 0));
+  books_.write({.bytes_read = transport_->counters().bytes,
+                .bytes_framed = driver.bytes_framed,
+                .bytes_skipped = driver.bytes_skipped,
+                .bytes_pending = driver.bytes_pending,
+                .decoded = decoded_,
+                .samples = counts.samples,
+                .repeated = counts.repeated});
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/channels/channel_table.h"
+#include "daemon/health/books.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
@@ -23,9 +24,9 @@ namespace ifog {
 // Any thread may read them; relaxed, for each stands for itself.
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
+  Counter saturated, implausible, channel_implausible;
   Counter frames_good, frames_crc, frames_format, bytes_skipped, frames_repeated, samples_incomplete;
-  Counter bytes_at_end;                          // of a file that ends within a frame; also in bytes_skipped
-  std::atomic<std::int64_t> last_arrival_ns{0};  // of a sample, arrival clock; 0: none yet
+  Counter bytes_at_end;  // of a file that ends within a frame; also in bytes_skipped
   std::atomic<double> clock_offset_ppm{0.0};
 };
 
@@ -44,6 +45,8 @@ class Reader {
   [[nodiscard]] const Transport& transport() const noexcept { return *transport_; }
   [[nodiscard]] const DriverInstance& driver() const noexcept { return driver_; }
   [[nodiscard]] const ReaderCounters& counters() const noexcept { return counters_; }
+  // Any thread.
+  [[nodiscard]] ReaderBooks books() const noexcept { return books_.read(); }
 
  private:
   void take(const ifog_sample& sample) noexcept;
@@ -62,7 +65,9 @@ class Reader {
   WallShift wall_shift_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
+  std::uint64_t decoded_ = 0;
   ReaderCounters counters_;
+  SharedBooks books_;
 };
 
 }  // namespace ifog

@@ -4,10 +4,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "filters/chain/plausibility.h"
+
 namespace ifog {
 
 static_assert(kMaxAxes == IFOG_MAX_AXES && kMaxChannels >= IFOG_MAX_ENVIRONMENT,
               "the chain must hold whatever a plugin may deliver");
+static_assert(kMostRate_radps == IFOG_MAX_RATE && kMostChannel == IFOG_MAX_ENVIRONMENT_VALUE,
+              "the chain must hold plugins to what the interface says");
 
 SensorFacts sensor_facts(const ifog_description& description, double nominal_rate_hz, int outside_channels) {
   SensorFacts facts;
@@ -20,6 +24,7 @@ SensorFacts sensor_facts(const ifog_description& description, double nominal_rat
   if (!(facts.nominal_rate_hz > 0.0))
     throw std::runtime_error("the driver does not know the sample rate: nominal_rate_hz must be given");
   facts.angle_wrap_rad = description.angle_wrap_rad;
+  std::copy_n(description.full_scale, kMaxAxes, facts.full_scale_radps.begin());
   facts.frame_channels = static_cast<int>(description.environments);
   facts.channels = facts.frame_channels + outside_channels;
   if (facts.channels > kMaxChannels)

@@ -110,7 +110,9 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
                                sensor.driver + "\" carry " + (list.empty() ? "no channels" : list));
     }
     if (of_frame) {
-      out.channel_max_age_s[static_cast<std::size_t>(known - out.channels.begin())] = channel.max_age_s;
+      const auto index = static_cast<std::size_t>(known - out.channels.begin());
+      out.channel_max_age_s[index] = channel.max_age_s;
+      out.facts.channel[index] = channel.limits;
     } else if (known != out.channels.end()) {
       throw std::runtime_error(
           "sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
@@ -122,6 +124,8 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
     out.channels.push_back(channel.name);
     out.channel_max_age_s.push_back(channel.max_age_s);
   }
+  if (sensor.range_radps > 0.0) out.facts.full_scale_radps.fill(sensor.range_radps);
+  out.facts.rate = sensor.limits;
   out.filter = sensor.filter;
   out.start_up_s = sensor.start_up_s;
   out.model = std::move(model);

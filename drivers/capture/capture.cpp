@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -72,7 +73,22 @@ bool axis_of(const std::string& name, std::string_view prefix, std::string& axis
   return axis.find('_') == std::string::npos;  // rate_ramp_x_radps is somebody's channel, not an axis
 }
 
-double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell) {
+std::string shortest(double value) {
+  std::array<char, 40> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+// Beyond this there is no measurement: one such cell would be all that a fit sees.
+double most_of(const std::string& column) {
+  constexpr double kMostTime_s = 1e10;  // 300 years, the time since 1970 included
+  std::string axis;
+  if (column == "time_s") return kMostTime_s;
+  const bool rate = axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
+  return rate ? IFOG_MAX_RATE : IFOG_MAX_ENVIRONMENT_VALUE;
+}
+
+double number(const std::string& path, std::size_t line, const std::string& column, double most,
+              std::string_view cell) {
   cell = trimmed(cell);
   if (cell.empty()) return kMissing;
   std::string_view digits = cell;
@@ -85,6 +101,10 @@ double number(const std::string& path, std::size_t line, const std::string& colu
     fail(path, line, printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing");
   if (std::isinf(value))
     fail(path, line, printable(column) + " is infinite, expected a finite number, 'nan' or nothing");
+  if (std::abs(value) > most)
+    fail(path, line,
+         printable(column) + " is " + in_quotes(cell) + ", which no sensor measures, expected at most " +
+             shortest(most));
   return value;
 }
 
@@ -126,6 +146,9 @@ Table parse_table(std::string_view text, const std::string& path) {
     if (!seen.insert(name).second) fail(path, lines.number(), "column " + in_quotes(name) + " stands twice");
   }
 
+  std::vector<double> most;
+  for (const std::string& name : names) most.push_back(most_of(name));
+
   // Where each column's values go; nothing is added to table.columns once the addresses are taken.
   std::vector<std::vector<double>*> target{&table.time_s};
   for (std::size_t i = 1; i < names.size(); ++i) table.columns.push_back({names[i], {}});
@@ -154,7 +177,8 @@ Table parse_table(std::string_view text, const std::string& path) {
       if (column == names.size())
         fail(path, lines.number(),
              "more cells than the " + std::to_string(names.size()) + " columns of the header");
-      target[column]->push_back(number(path, lines.number(), names[column], rest.substr(0, comma)));
+      target[column]->push_back(
+          number(path, lines.number(), names[column], most[column], rest.substr(0, comma)));
       ++column;
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);

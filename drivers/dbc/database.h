@@ -45,6 +45,8 @@ struct Signal {
   ValueType type = ValueType::kUnsigned;
   double scale = 1.0;  // physical = raw · scale + offset
   double offset = 0.0;
+  double minimum = 0.0;  // physical; where it is not below maximum ("[0|0]"), the file states no range
+  double maximum = 0.0;
   std::string unit;
   bool selects =
       false;  // a multiplexor: its raw value says which of the message's multiplexed signals are there
@@ -54,6 +56,12 @@ struct Signal {
   std::vector<std::pair<std::uint64_t, std::uint64_t>>
       selected_by;  // its raw values, from-to, that select this one
 };
+
+inline bool has_range(const Signal& signal) { return signal.minimum < signal.maximum; }
+// False for NaN.
+inline bool in_range(const Signal& signal, double value) {
+  return has_range(signal) ? value >= signal.minimum && value <= signal.maximum : value == value;
+}
 
 struct Message {
   std::string name;       // "" where the line that begins it could not be read so far

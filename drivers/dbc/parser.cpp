@@ -206,9 +206,9 @@ class Parser {
     s.offset = in_.number("an offset");
     in_.sign(')');
     in_.sign('[');
-    (void)in_.number("a minimum");
+    s.minimum = in_.number("a minimum");
     in_.sign('|');
-    (void)in_.number("a maximum");
+    s.maximum = in_.number("a maximum");
     in_.sign(']');
     s.unit = in_.one_line_string("the unit in quotes");
   }

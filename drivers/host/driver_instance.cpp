@@ -61,6 +61,8 @@ const char* impossible(const ifog_description& d) {
   if (d.can_ids > IFOG_MAX_CAN_IDS) return "more CAN ids than the interface holds";
   if (!std::isfinite(d.nominal_rate_hz) || d.nominal_rate_hz < 0.0) return "a nominal rate that is no rate";
   if (!std::isfinite(d.angle_wrap_rad) || d.angle_wrap_rad < 0.0) return "an angle wrap that is no angle";
+  for (std::uint32_t i = 0; i < d.axes; ++i)
+    if (!std::isfinite(d.full_scale[i]) || d.full_scale[i] < 0.0) return "a full scale that is no rate";
   if (d.opening_length > sizeof d.opening) return "more opening bytes than the interface holds";
   return nullptr;
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "drivers/host/object_file.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -55,6 +56,7 @@ fs::path build_tree_folder(const fs::path& program) {
 
 std::shared_ptr<const Plugin> Plugin::load(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> void { throw std::runtime_error(path + ": " + why); };
+  if (const std::string flaw = object_flaw(path); !flaw.empty()) refuse(flaw);
   // A path without a slash would be searched for in the library path instead.
   void* handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) refuse(std::string("cannot load: ") + dlerror());

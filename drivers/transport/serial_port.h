@@ -19,6 +19,8 @@ struct SerialSettings {
   // The UART's clock / 16 where the driver has it wrong, as setserial's baud_base: a speed above it is
   // otherwise not reached. 0: leave it. Needs CAP_SYS_ADMIN.
   std::uint32_t baud_base = 0;
+
+  bool operator==(const SerialSettings&) const = default;
 };
 
 // Owns the line; closed with it.

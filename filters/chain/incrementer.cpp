@@ -47,7 +47,10 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
       clock_(period_s_, clock_memory(facts.nominal_rate_hz)) {
-  since_angle_s_.fill(-1.0);
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
+    rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
+  for (std::size_t c = 0; c < kMaxChannels; ++c)
+    frame_channel_[c] = PlausibleValue(facts.channel[c], kMostChannel);
   channel_.fill(kNaN);
   channel_age_s_.fill(std::numeric_limits<float>::infinity());
 }
@@ -153,46 +156,53 @@ Incrementer::Step Incrementer::step(const Reading& reading) const noexcept {
   return step;
 }
 
+Verdict Incrementer::turn(std::size_t axis, double value, double own_s, Turn& out) noexcept {
+  switch (facts_.kind) {
+    case SensorKind::angle:
+      return angle_[axis].take(value, facts_.angle_wrap_rad, rate_[axis], out);
+    case SensorKind::delta_angle:
+      out = {value, own_s};
+      return rate_[axis].take(value / period_s_);
+    case SensorKind::rate:
+      break;
+  }
+  out = {value * own_s, own_s};
+  return rate_[axis].take(value);
+}
+
 void Incrementer::measure(const Reading& reading, const Step& step, Increment& out) noexcept {
   const double own_s = step.dt_s / static_cast<double>(step.samples);  // a gap's time is not this sample's
   out.valid_axes = 0;
-  bool invalid = false;
+  bool invalid = false, saturated = false, implausible = false;
   for (int i = 0; i < facts_.axes; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    const double value = reading.value[axis];
-    const bool valid = ((reading.valid_axes >> i) & 1u) != 0 && std::isfinite(value);
-    invalid = invalid || !valid;
-    double delta = 0.0;
-    double covered = 0.0;
-    if (facts_.kind == SensorKind::angle) {
-      if (since_angle_s_[axis] >= 0.0) since_angle_s_[axis] += step.dt_s;
-      if (valid) {
-        if (since_angle_s_[axis] > 0.0) {
-          delta = value - angle_[axis];
-          if (facts_.angle_wrap_rad > 0.0) delta = std::remainder(delta, facts_.angle_wrap_rad);
-          covered = since_angle_s_[axis];
-        }
-        angle_[axis] = value;
-        since_angle_s_[axis] = 0.0;
-      }
-    } else if (valid) {
-      delta = facts_.kind == SensorKind::rate ? value * own_s : value;
-      covered = own_s;
+    angle_[axis].pass(step.dt_s);
+    Turn turned;
+    if (((reading.valid_axes >> i) & 1u) == 0) {
+      invalid = true;
+    } else if (const Verdict verdict = turn(axis, reading.value[axis], own_s, turned);
+               verdict != Verdict::plausible) {
+      turned = {};
+      invalid = true;
+      saturated = saturated || verdict == Verdict::saturated;
+      implausible = implausible || verdict == Verdict::implausible;
     }
-    out.delta_theta_rad[axis] = delta;
-    out.covered_s[axis] = covered;
+    out.delta_theta_rad[axis] = turned.angle_rad;
+    out.covered_s[axis] = turned.covered_s;
     // A rate is passed on as sent: dividing the product again would cost its last bit.
-    if (covered > 0.0) {
-      out.rate_radps[axis] = facts_.kind == SensorKind::rate ? value : delta / covered;
+    if (turned.covered_s > 0.0) {
+      out.rate_radps[axis] =
+          facts_.kind == SensorKind::rate ? reading.value[axis] : turned.angle_rad / turned.covered_s;
       out.valid_axes |= 1u << i;
     } else {
       out.rate_radps[axis] = kNaN;
     }
   }
-  if (invalid) {
-    out.flags |= kInvalid;
-    ++counts_.invalid;
-  }
+  if (invalid) out.flags |= kInvalid;
+  if (saturated) out.flags |= kAtFullScale;
+  counts_.invalid += invalid ? 1 : 0;
+  counts_.saturated += saturated ? 1 : 0;
+  counts_.implausible += implausible ? 1 : 0;
 }
 
 void Incrementer::hold_channels(const Reading& reading, Increment& out) noexcept {
@@ -201,10 +211,14 @@ void Incrementer::hold_channels(const Reading& reading, Increment& out) noexcept
     if (i >= facts_.frame_channels) {
       channel_[c] = reading.channel[c];
       channel_age_s_[c] = reading.channel_age_s[c];
-    } else if (((reading.fresh_channels >> i) & 1u) != 0 && std::isfinite(reading.channel[c])) {
+      continue;
+    }
+    const bool fresh = ((reading.fresh_channels >> i) & 1u) != 0;
+    if (fresh && frame_channel_[c].take(reading.channel[c])) {
       channel_[c] = reading.channel[c];
       channel_age_s_[c] = 0.0F;
     } else {
+      if (fresh) ++counts_.channel_implausible;
       channel_age_s_[c] += static_cast<float>(out.dt_s);
     }
   }
@@ -228,6 +242,8 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.flags = 0;
   if (started_ && now.gap) {
     out.flags |= kGapBefore;
+    for (PlausibleRate& rate : rate_) rate.forget();
+    for (PlausibleValue& channel : frame_channel_) channel.forget();
     ++counts_.gaps;
     counts_.missing += now.samples - 1;
     clock_.restart();
@@ -235,7 +251,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   if (now.restarted) {
     ++counts_.restarts;
     // An angle counts from power-up: after a restart it says nothing about the turn since the last one.
-    since_angle_s_.fill(-1.0);
+    for (PlausibleAngle& angle : angle_) angle.forget();
   }
   out.samples = 1;
   out.status = reading.status;

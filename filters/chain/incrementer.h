@@ -13,18 +13,22 @@
 #include <cstdint>
 
 #include "filters/chain/fitted_clock.h"
+#include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
 
 namespace ifog {
 
 struct IncrementerCounts {
-  std::uint64_t samples = 0;      // increments made
-  std::uint64_t gaps = 0;         // places where samples are missing
-  std::uint64_t missing = 0;      // samples missing
-  std::uint64_t repeated = 0;     // samples left out because they came twice
-  std::uint64_t restarts = 0;     // device counter or clock jumped back: it was switched off and on
-  std::uint64_t invalid = 0;      // samples with an axis that may not be used
-  std::uint64_t clock_steps = 0;  // times the wall clock was set: labels moved, nothing else
+  std::uint64_t samples = 0;              // increments made
+  std::uint64_t gaps = 0;                 // places where samples are missing
+  std::uint64_t missing = 0;              // samples missing
+  std::uint64_t repeated = 0;             // samples left out because they came twice
+  std::uint64_t restarts = 0;             // device counter or clock jumped back: it was switched off and on
+  std::uint64_t invalid = 0;              // samples with an axis that may not be used
+  std::uint64_t saturated = 0;            // of those: at or beyond full scale
+  std::uint64_t implausible = 0;          // of those: marked good, but a value that cannot be
+  std::uint64_t channel_implausible = 0;  // values of channels that cannot be; the one before is held
+  std::uint64_t clock_steps = 0;          // times the wall clock was set: labels moved, nothing else
 };
 
 class Incrementer {
@@ -55,6 +59,7 @@ class Incrementer {
   [[nodiscard]] Step step_by_arrival(const Reading& reading, double elapsed_s) const noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, Increment& out) noexcept;
+  [[nodiscard]] Verdict turn(std::size_t axis, double value, double own_s, Turn& out) noexcept;
 
   SensorFacts facts_;
   double period_s_;
@@ -65,8 +70,9 @@ class Incrementer {
   std::int64_t known_arrival_ns_ = 0;  // latest arrival time that is known; 0: none yet
   double counted_s_ = 0.0;             // steps since then
   std::uint64_t sequence_ = 0;
-  Axes angle_{};          // last valid, SensorKind::angle
-  Axes since_angle_s_{};  // time since it; < 0: there is none yet
+  std::array<PlausibleRate, kMaxAxes> rate_;
+  std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle
+  std::array<PlausibleValue, kMaxChannels> frame_channel_;
   std::array<double, kMaxChannels> channel_{};
   std::array<float, kMaxChannels> channel_age_s_{};
   IncrementerCounts counts_;

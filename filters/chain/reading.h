@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "filters/settings/axes.h"
 
@@ -17,6 +18,15 @@ enum class SensorKind {
   angle,        // rad, turned since power-up; may wrap
 };
 
+// What a value may be; beyond it there is no measurement. Infinite: no such limit.
+struct Limits {
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  double max_step = std::numeric_limits<double>::infinity();  // between two samples
+
+  bool operator==(const Limits&) const = default;
+};
+
 // Constant while the sensor runs.
 struct SensorFacts {
   SensorKind kind = SensorKind::rate;
@@ -26,6 +36,9 @@ struct SensorFacts {
   double angle_wrap_rad = 0.0;         // SensorKind::angle: wraps modulo this; 0: it does not
   int frame_channels = 0;              // channels 0 … frame_channels − 1 come in the sensor's own frames
   int channels = 0;                    // all of them, ≤ kMaxChannels
+  std::array<double, kMaxAxes> full_scale_radps{};  // rates at or beyond it are not measured; 0: not known
+  Limits rate;                                      // of every axis, rad/s
+  std::array<Limits, kMaxChannels> channel;         // of the channels of the sensor's own frames
 };
 
 // One sample as decoded.
@@ -46,10 +59,11 @@ struct Reading {
 };
 
 enum IncrementFlags : std::uint32_t {
-  kGapBefore = 1,  // samples are missing before this one
-  kMerged = 2,     // several samples in one, because the filter could not keep up
-  kInvalid = 4,    // the device marks an axis invalid, or its value is no number
-  kClockStep = 8,  // the wall clock has been set: utime has moved against the sample before, dt has not
+  kGapBefore = 1,     // samples are missing before this one
+  kMerged = 2,        // several samples in one, because the filter could not keep up
+  kInvalid = 4,       // the device marks an axis invalid, or its value is none that can be
+  kClockStep = 8,     // the wall clock has been set: utime has moved against the sample before, dt has not
+  kAtFullScale = 16,  // the value reaches the end of the sensor's range, or is beyond; also kInvalid
 };
 
 // The angle turned over one step, and what came with it.

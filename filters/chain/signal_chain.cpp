@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/chain/plausibility.h"
 #include "filters/estimator/start_up.h"
 #include "filters/settings/filter_table.h"
 
@@ -87,13 +89,31 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
   compensator_->step(
       {.dt_s = in.dt_s, .rate_radps = in.rate_radps, .channels = channel_, .age_s = relative_age_},
       correction_);
+  refuse_impossible(in, out);
   out.compensated_radps = correction_.compensated_radps;
   out.compensator_flags = correction_.flags;
   for (std::size_t i = 0; i < kMaxAxes; ++i)
     if (in.covered_s[i] > 0.0) out.delta_theta_rad[i] -= correction_.correction_radps[i] * in.covered_s[i];
 }
 
-void ChainParts::learn(const Increment& in, const ChainOutput& out) {
+// A correction as large as anything the sensor measures is a model gone wrong, whatever its numbers look like
+// one by one. It must not reach the angle, which keeps for ever what it is given.
+void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
+    const double most = facts_.full_scale_radps[i] > 0.0 ? facts_.full_scale_radps[i] : kMostRate_radps;
+    const bool measured = in.covered_s[i] > 0.0;
+    // Written so that NaN fails.
+    if (!measured ||
+        (std::abs(correction_.correction_radps[i]) < most && std::isfinite(correction_.variance_rad2ps2[i])))
+      continue;
+    out.flags |= kNotCompensated;
+    correction_.correction_radps[i] = 0.0;
+    correction_.compensated_radps[i] = in.rate_radps[i];
+    correction_.variance_rad2ps2[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try {
   if (in.valid_axes == 0) return;  // so that at least one axis has enough for the estimate below
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
     start_up_[axis * start_up_size_ + collected_] = out.compensated_radps[axis];
@@ -103,6 +123,10 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) {
   if (filter_.measurement_noise <= 0.0) filter_.measurement_noise = noise.measurement_noise;
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
   estimator_->owe(owed_);
+} catch (const std::exception&) {
+  // Data that no noise can be learned from: the next seconds may be better. Until then it is unknown, and
+  // said.
+  collected_ = 0;
 }
 
 void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
@@ -134,7 +158,17 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
       out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];
 }
 
+EstimatorHealth SignalChain::health() const noexcept {
+  EstimatorHealth out = parts_->estimator_ ? parts_->estimator_->health() : EstimatorHealth{};
+  for (std::uint64_t EstimatorHealth::*counter :
+       {&EstimatorHealth::gated, &EstimatorHealth::manoeuvres, &EstimatorHealth::floor_hits,
+        &EstimatorHealth::divergences, &EstimatorHealth::restarts})
+    out.*counter += before_.*counter;
+  return out;
+}
+
 std::unique_ptr<ChainParts> SignalChain::swap(std::unique_ptr<ChainParts> parts) noexcept {
+  before_ = health();
   if (parts->compensator_ && parts_->compensator_) parts->compensator_->take_over(*parts_->compensator_);
   parts->owed_ = parts_->estimator_ ? parts_->estimator_->owed() : parts_->owed_;
   if (parts->estimator_) parts->estimator_->owe(parts->owed_);

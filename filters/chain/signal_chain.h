@@ -32,8 +32,9 @@ struct ChainSettings {
 };
 
 enum ChainFlags : std::uint32_t {
-  kNoiseUnknown = 1,  // start-up: denoised is the compensated rate
-  kFilterReset = 2,   // first sample of a new estimator
+  kNoiseUnknown = 1,    // start-up: denoised is the compensated rate
+  kFilterReset = 2,     // first sample of a new estimator
+  kNotCompensated = 4,  // the model's correction was no plausible rate: the measured one stands
 };
 
 struct ChainOutput {
@@ -77,7 +78,8 @@ class ChainParts {
   friend class SignalChain;
   void use_effects(const ChainSettings& settings);
   void compensate(const Increment& in, ChainOutput& out) noexcept;
-  void learn(const Increment& in, const ChainOutput& out);
+  void refuse_impossible(const Increment& in, ChainOutput& out) noexcept;
+  void learn(const Increment& in, const ChainOutput& out) noexcept;
 
   SensorFacts facts_;
   FilterSettings filter_;
@@ -107,9 +109,13 @@ class SignalChain {
   std::unique_ptr<ChainParts> swap(std::unique_ptr<ChainParts> parts) noexcept;
 
   [[nodiscard]] const ChainParts& parts() const { return *parts_; }
+  // Of the estimator in use, with its counters going on from those of the estimators before it. During
+  // start-up only the counters say something.
+  [[nodiscard]] EstimatorHealth health() const noexcept;
 
  private:
   std::unique_ptr<ChainParts> parts_;
+  EstimatorHealth before_;  // the counters of estimators that are gone
   std::array<ExactSum, kMaxAxes> angle_{};
 };
 

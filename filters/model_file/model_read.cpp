@@ -1,16 +1,20 @@
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/model_file/covariance.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
+
+// Beyond it no number of a sensor's model lies, in whatever unit, and no product of two overflows: a rate in
+// rad/s per the seventh power of a channel, of counts, included. The square of it for variances.
+constexpr double kMost = 1e30;
+constexpr double kMostVariance = kMost * kMost;
 
 // One table of the file: every key is asked for once, and what was not asked for is an unknown key.
 class Table {
@@ -40,20 +44,38 @@ class Table {
     return table_.get(key);
   }
 
-  double number(const std::string& key, double otherwise) {
-    const toml::node* node = find(key);
-    if (!node) return otherwise;
-    const auto value = node->value<double>();
-    if (!value) fail(key, node, "expected a number");
+  // Finite, and of a size that a sensor's model can have.
+  double plausible(const std::string& key, const toml::node& node, double most = kMost) const {
+    const auto value = node.value<double>();
+    // Written so that NaN fails.
+    if (!value || !(std::abs(*value) <= most))
+      fail(key, &node, "expected a finite number within " + text(most));
     return *value;
   }
 
-  double finite(const std::string& key) {
+  double number(const std::string& key, double otherwise) {
+    const toml::node* node = find(key);
+    return node ? plausible(key, *node) : otherwise;
+  }
+
+  double required(const std::string& key) {
     const toml::node* node = find(key);
     if (!node) fail(key, nullptr, "expected a number, found nothing");
+    return plausible(key, *node);
+  }
+
+  double not_negative(const std::string& key, double otherwise) {
+    const double value = number(key, otherwise);
+    if (value < 0.0) fail(key, find(key), "expected at least 0");
+    return value;
+  }
+
+  // "nan" is what nobody knows: a figure that a record was too short for.
+  double number_or_unknown(const std::string& key, double otherwise) {
+    const toml::node* node = find(key);
+    if (!node) return otherwise;
     const auto value = node->value<double>();
-    if (!value || !std::isfinite(*value)) fail(key, node, "expected a finite number");
-    return *value;
+    return value && std::isnan(*value) ? *value : plausible(key, *node);
   }
 
   std::string words(const std::string& key) {
@@ -72,17 +94,13 @@ class Table {
     return *value;
   }
 
-  std::vector<double> numbers(const std::string& key) {
+  std::vector<double> numbers(const std::string& key, double most = kMost) {
     const toml::node* node = find(key);
     std::vector<double> values;
     if (!node) return values;
     const toml::array* array = node->as_array();
     if (!array) fail(key, node, "expected a list of numbers");
-    for (const toml::node& item : *array) {
-      const auto value = item.value<double>();
-      if (!value || !std::isfinite(*value)) fail(key, &item, "expected a finite number");
-      values.push_back(*value);
-    }
+    for (const toml::node& item : *array) values.push_back(plausible(key, item, most));
     return values;
   }
 
@@ -109,7 +127,7 @@ class Table {
   std::map<std::string, double> figures() {
     std::map<std::string, double> values;
     for (const auto& [key, node] : table_)
-      values[std::string(key.str())] = number(std::string(key.str()), 0.0);
+      values[std::string(key.str())] = number_or_unknown(std::string(key.str()), 0.0);
     return values;
   }
 
@@ -123,6 +141,12 @@ class Table {
   }
 
  private:
+  static std::string text(double value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+  }
+
   const toml::table& table_;
   std::string file_, where_;
   std::vector<std::string> known_;
@@ -132,10 +156,8 @@ void read_noise(Table table, Model& model) {
   const std::string axis = table.words("axis");
   NoiseTerms& noise = model.noise[axis];
   const auto term = [&](const char* key, std::optional<double>& value) {
-    const toml::node* node = table.find(key);
-    if (!node) return;
-    value = table.finite(key);
-    if (*value < 0.0) table.fail(key, node, "expected at least 0");
+    if (!table.find(key)) return;
+    value = table.not_negative(key, 0.0);
   };
   term("Q", noise.Q);
   term("N", noise.N);
@@ -171,7 +193,7 @@ Effect read_effect(Table table) {
   effect.with_reference = table.number("with_reference", 0.0);
   effect.table_x = table.numbers("table_x");
   effect.table_y = table.numbers("table_y");
-  effect.period = table.number("period", 0.0);
+  effect.period = table.not_negative("period", 0.0);
   effect.angle = table.yes("angle", false);
   if (effect.table_x.size() != effect.table_y.size()) {
     table.fail("table_y", table.find("table_y"), "expected as many values as table_x has knots");
@@ -185,8 +207,9 @@ Effect read_effect(Table table) {
     ModelParameter parameter;
     parameter.name = item.words("name");
     if (parameter.name.empty()) item.fail("name", nullptr, "expected the name of a parameter");
-    parameter.value = item.finite("value");
-    parameter.std_error = item.number("std_error", 0.0);
+    parameter.value = item.required("value");
+    parameter.std_error = item.number_or_unknown("std_error", 0.0);
+    if (parameter.std_error < 0.0) item.fail("std_error", item.find("std_error"), "expected at least 0");
     parameter.unit = item.words("unit");
     item.done();
     effect.parameters.push_back(std::move(parameter));
@@ -207,7 +230,7 @@ Model parse_model(std::string_view text, const std::string& name) {
   }
   Model model;
   model.sensor = table.words("sensor");
-  model.covariance = table.numbers("covariance");
+  model.covariance = table.numbers("covariance", kMostVariance);
   for (Table& noise : table.tables("noise")) read_noise(std::move(noise), model);
   for (Table& filter : table.tables("filter", true)) model.filter = read_filter(std::move(filter));
   std::size_t parameters = 0;
@@ -221,11 +244,13 @@ Model parse_model(std::string_view text, const std::string& name) {
                    " numbers, the square of the number of effect parameters, found " +
                    std::to_string(model.covariance.size()));
   }
+  if (const std::string flaw = covariance_flaw(model.covariance, parameters); !flaw.empty())
+    table.fail("covariance", nullptr, "expected a covariance matrix, symmetric and positive: " + flaw);
   for (Table& item : table.tables("range")) {
     ChannelRange range;
     range.channel = item.words("channel");
-    range.low = item.finite("low");
-    range.high = item.finite("high");
+    range.low = item.required("low");
+    range.high = item.required("high");
     if (range.high < range.low) item.fail("high", item.find("high"), "expected at least low");
     item.done();
     model.ranges.push_back(std::move(range));
@@ -242,12 +267,6 @@ Model parse_model(std::string_view text, const std::string& name) {
   return model;
 }
 
-Model read_model(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error(path + ": cannot read");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw std::runtime_error(path + ": cannot read");
-  return parse_model(text, path);
-}
+Model read_model(const std::string& path) { return parse_model(read_toml_text(path), path); }
 
 }  // namespace ifog

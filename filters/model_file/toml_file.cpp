@@ -1,10 +1,40 @@
 #include "filters/model_file/toml_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <stdexcept>
+#include <system_error>
+#include <vector>
 
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
+
+std::string read_toml_text(const std::string& path) {
+  constexpr std::size_t kLargest = 16U << 20U;
+  const auto reason = [] { return std::generic_category().message(errno); };
+  // Non-blocking, so that even the opening of a FIFO returns.
+  const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (fd < 0) throw std::runtime_error(path + ": cannot open: " + reason());
+  std::string text, wrong;
+  struct stat info {};
+  if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) wrong = "is no regular file";
+  std::vector<char> block(1U << 16U);
+  while (wrong.empty()) {
+    const ssize_t n = read(fd, block.data(), block.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) wrong = "cannot read: " + reason();
+    if (n <= 0) break;
+    text.append(block.data(), static_cast<std::size_t>(n));
+    if (text.size() > kLargest) wrong = "has more than 16 MiB, expected a TOML file";
+  }
+  close(fd);
+  if (!wrong.empty()) throw std::runtime_error(path + ": " + wrong);
+  return text;
+}
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
   try {

@@ -11,6 +11,11 @@
 
 namespace ifog {
 
+// The text of a file that a person writes. Throws std::runtime_error with one line: not there, not readable,
+// larger than any such file, or something that is no regular file: a FIFO would hold up who reads it, a
+// device may never end.
+std::string read_toml_text(const std::string& path);
+
 // Throws std::runtime_error: "NAME:LINE: what is wrong".
 toml::table parse_toml(std::string_view text, const std::string& name);
 

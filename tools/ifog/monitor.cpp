@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <ifog/decode.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -13,8 +14,6 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <ifog/rate_t.hpp>
-#include <ifog/status_t.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -76,6 +75,21 @@ std::string rate_text(double radps) {
 }
 
 // Environment channels by name; the age of one that is not fresh.
+// What came in and where it went, as status_t's identities have it.
+std::string books_text(const status_t& status) {
+  std::array<char, 320> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "  books: %lld bytes = %lld in frames + %lld skipped + %lld pending; %lld samples = %lld published + "
+      "%lld merged + %lld not sent + %lld waiting, %lld came twice",
+      static_cast<long long>(status.bytes_read), static_cast<long long>(status.bytes_framed),
+      static_cast<long long>(status.bytes_skipped), static_cast<long long>(status.bytes_pending),
+      static_cast<long long>(status.samples_in), static_cast<long long>(status.samples_published),
+      static_cast<long long>(status.samples_merged), static_cast<long long>(status.lcm_failures),
+      static_cast<long long>(status.samples_waiting), static_cast<long long>(status.samples_repeated));
+  return text.data();
+}
+
 std::string channels_text(const status_t& status) {
   constexpr double kFresh_s = 2.0;
   std::string out;
@@ -143,16 +157,6 @@ class Recorder {
   bool header_ = true;
 };
 
-// The generated decoder throws at a length that no vector can have; who sends it must not end the monitor.
-template <typename Message>
-bool decoded(Message& message, const lcm_recv_buf_t& buffer) {
-  try {
-    return message.decode(buffer.data, 0, static_cast<int>(buffer.data_size)) >= 0;
-  } catch (const std::exception&) {
-    return false;
-  }
-}
-
 class Monitor {
  public:
   explicit Monitor(const Options& options) : options_(options), recorder_(options.record) {
@@ -195,7 +199,7 @@ class Monitor {
   std::exception_ptr failure_;  // of the first message that could not be taken or recorded
   lcm_t* lcm_ = nullptr;
   std::map<std::string, Sensor> sensors_;
-  std::uint64_t not_understood_ = 0;
+  std::uint64_t refused_ = 0;  // that are no message of their channel's type
   std::size_t lines_drawn_ = 0;
 };
 
@@ -204,8 +208,8 @@ void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
   std::string name = channel.substr(kPrefix.size());
   if (name.ends_with(kStatus)) {
     status_t status{};
-    if (!decoded(status, buffer)) {
-      ++not_understood_;
+    if (!decode_message(buffer.data, buffer.data_size, status)) {
+      ++refused_;
       return;
     }
     name.resize(name.size() - kStatus.size());
@@ -214,8 +218,8 @@ void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
     return;
   }
   rate_t message{};
-  if (!decoded(message, buffer)) {
-    ++not_understood_;
+  if (!decode_message(buffer.data, buffer.data_size, message)) {
+    ++refused_;
     return;
   }
   take_rate(sensors_[name], message);
@@ -296,13 +300,15 @@ void Monitor::show(double interval_s) {
                     static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
                     clock_text(status.clock_offset_ppm).c_str());
       line(row.data());
+      line(books_text(status));
       if (const std::string channels = channels_text(status); !channels.empty()) line("  " + channels);
       if (!status.fault.empty()) line("  " + status.fault);
     }
     sensor.shown = sensor.messages;
     sensor.in_interval = 0;
   }
-  if (not_understood_ > 0) line(std::to_string(not_understood_) + " messages that are none of ours");
+  if (refused_ > 0)
+    line(std::to_string(refused_) + " messages refused: not of their channel's type, or damaged");
   redraw(lines_drawn_, lines);
   lines_drawn_ = lines.size();
 }

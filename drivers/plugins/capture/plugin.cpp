@@ -123,6 +123,8 @@ class Driver {
     out.frames_good = c.good;
     out.frames_format = c.format;
     out.bytes_skipped = c.skipped;
+    out.bytes_framed = c.framed;
+    out.bytes_pending = rows_.waiting();
   }
 
  private:

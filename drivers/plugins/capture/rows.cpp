@@ -48,16 +48,18 @@ void Rows::restart() noexcept {
 }
 
 bool Rows::end_line() noexcept {
+  const std::size_t bytes = waiting() + 1;  // with its end
   const std::string_view line = trimmed({line_.data(), std::exchange(length_, 0)});
   const std::size_t beyond = std::exchange(overlong_, 0);
-  if (beyond == 0 && (line.empty() || line.front() == '#')) return false;
+  const bool remark = beyond == 0 && (line.empty() || line.front() == '#');
   const bool row = columns_ > 0;
-  if (beyond == 0 && (row ? read_row(line) : read_header(line))) {
-    counters_.good += row ? 1 : 0;
-    return row;
+  if (remark || (beyond == 0 && (row ? read_row(line) : read_header(line)))) {
+    counters_.framed += bytes;
+    counters_.good += row && !remark ? 1 : 0;
+    return row && !remark;
   }
   ++counters_.format;
-  counters_.skipped += line.size() + beyond;
+  counters_.skipped += bytes;
   return false;
 }
 

@@ -18,6 +18,7 @@ constexpr std::size_t kLongestLine = 16384;  // bytes
 struct Counters {
   std::uint64_t good = 0;     // rows
   std::uint64_t format = 0;   // lines that are neither a header with the wanted columns nor a row under it
+  std::uint64_t framed = 0;   // bytes of all other lines
   std::uint64_t skipped = 0;  // bytes of these, of lines too long, and of a last line without its end
 };
 
@@ -40,6 +41,9 @@ class Rows {
   // What follows is another capture with its own header.
   void restart() noexcept;
   [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] std::size_t waiting() const {
+    return length_ + overlong_;
+  }  // bytes of a line without its end
 
  private:
   void put(char c) noexcept {

@@ -70,7 +70,7 @@ void Decoder::learn_order() {
 
 void Decoder::begin_sample() noexcept {
   present_ = 0;
-  finite_ = 0;
+  good_ = 0;
   counted_ = false;
   frames_ = 0;
 }
@@ -171,7 +171,11 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
     case Role::kAxis: {
       const double value = physical(*entry.signal, bits) * entry.si_per_unit;
       sample_.value[entry.index] = value;
-      if (std::isfinite(value)) finite_ |= bit(entry.index);
+      // A rate at its full scale passes: the host knows it for saturated.
+      const bool plausible =
+          in_range(*entry.signal, physical(*entry.signal, bits)) ||
+          (picks_.kind == IFOG_RATE && std::abs(value) >= full_scale(*entry.signal, entry.si_per_unit));
+      if (std::isfinite(value) && plausible) good_ |= bit(entry.index);
       present_ |= bit(entry.index);
       break;
     }
@@ -186,6 +190,10 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
     case Role::kEnvironment: {
       const double value = physical(*entry.signal, bits);
       if (!std::isfinite(value)) break;
+      if (!in_range(*entry.signal, value)) {
+        ++counters_.values_refused;
+        break;
+      }
       sample_.environment[entry.index] = value;
       sample_.environment_fresh |= bit(entry.index);
       break;
@@ -211,7 +219,7 @@ void Decoder::complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sin
   if (counted_) sample_.flags |= IFOG_SAMPLE_SEQUENCE;
   if (time_started_) sample_.flags |= IFOG_SAMPLE_DEVICE_TIME;
   const bool good = !picks_.status_good || (sample_.status & picks_.status_mask) == *picks_.status_good;
-  sample_.valid_axes = good ? finite_ : 0;
+  sample_.valid_axes = good ? good_ : 0;
   emit(sink, &sample_);
   counter_moved_ = counter_moved_ || (counted_ && last_counted_ && sample_.sequence != last_sequence_);
   last_counted_ = counted_;

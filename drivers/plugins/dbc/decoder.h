@@ -18,8 +18,9 @@ namespace ifog::dbc {
 //     frames queued together leave in the order of their ids (arbitration).
 // So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. A frame that
 // comes twice, same counter and same values, changes nothing and is counted too; a sample of one frame passes
-// on, and whoever counts samples sees it. Environment, status and time may be in frames of their own; they go
-// with the next sample that completes.
+// on, and whoever counts samples sees it. A value beyond the range that the file states ([min|max]) is none:
+// an axis is not valid, an environment channel keeps its last. Environment, status and time may be in frames
+// of their own; they go with the next sample that completes.
 class Decoder {
  public:
   explicit Decoder(const Picks& picks);
@@ -64,9 +65,9 @@ class Decoder {
   std::uint32_t all_axes_ = 0;        // bit i: axis i
   std::uint32_t beginning_axes_ = 0;  // any of which begins a sample
   std::uint32_t present_ = 0;         // axes of the sample being gathered
-  std::uint32_t finite_ = 0;
-  bool counted_ = false;      // its counter is known
-  std::uint32_t frames_ = 0;  // that brought axes of it
+  std::uint32_t good_ = 0;            // of them, those with a value that can be
+  bool counted_ = false;              // its counter is known
+  std::uint32_t frames_ = 0;          // that brought axes of it
   // The last whole one, if it was counted. A counter that has never moved does not tell one sample from
   // another.
   bool last_counted_ = false, counter_moved_ = false;

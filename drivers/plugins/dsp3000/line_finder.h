@@ -16,6 +16,7 @@ class LineFinder {
     std::uint64_t good = 0;
     std::uint64_t malformed = 0;      // lines that have not the form
     std::uint64_t bytes_skipped = 0;  // bytes that are part of no good line
+    std::uint64_t bytes_framed = 0;   // bytes of good lines
   };
 
   // Calls found(Reading) for each good line, in order. No allocation.
@@ -51,6 +52,7 @@ class LineFinder {
     if (whole && length >= 2 && line_[length - 2] == '\r') {
       if (const std::optional<Reading> reading = parse_line({line_.data(), length - 2})) {
         ++counters_.good;
+        counters_.bytes_framed += length;
         return reading;
       }
     }

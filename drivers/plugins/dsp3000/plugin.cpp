@@ -53,6 +53,8 @@ class Driver {
     out.axes = 1;
     out.nominal_rate_hz = rate_hz_;
     out.angle_wrap_rad = output_.kind == IFOG_ANGLE ? 2.0 * std::numbers::pi : 0.0;
+    // KVH, DSP-3000 data sheet: maximum input rate +-375 deg/s.
+    out.full_scale[0] = 375.0 * std::numbers::pi / 180.0;
     out.baud = 38400;
     if (!set_output_) return;
     // Three times, because the device may miss a character while it sends.
@@ -82,6 +84,8 @@ class Driver {
     out.frames_good = c.good;
     out.frames_format = c.malformed;
     out.bytes_skipped = c.bytes_skipped;
+    out.bytes_framed = c.bytes_framed;
+    out.bytes_pending = finder_.waiting();
   }
 
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {

@@ -31,6 +31,7 @@ bool FrameFinder::next(Frame& frame) noexcept {
     }
     frame = unpack(*format, rest.first(length));
     begin_ += length;
+    counters_.bytes_framed += length;
     ++counters_.intact;
     return true;
   }

@@ -21,6 +21,7 @@ class FrameFinder {
     std::uint64_t intact = 0;
     std::uint64_t crc_failed = 0;     // a header, but the checksum of what follows does not fit
     std::uint64_t bytes_skipped = 0;  // bytes that are part of no intact frame
+    std::uint64_t bytes_framed = 0;   // bytes of intact frames
   };
 
   // Calls found(const Frame&) for each intact frame, in order. No allocation.

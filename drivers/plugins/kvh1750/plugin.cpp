@@ -44,6 +44,7 @@ struct SetUp {
   double degrees_per_count = 1.0;
   std::int64_t stamp_modulus_us = 0;
   double rate_hz = 1000.0;
+  double full_scale_radps = 0.0;
 
   [[nodiscard]] double celsius(double sent) const {
     const double degrees = sent * degrees_per_count;
@@ -71,6 +72,9 @@ constexpr std::array kOptions{
     ifog_option{"time_stamp", "free | pps", "free",
                 "format B's stamp runs on through 32 bits, or restarts at each pulse per second"},
     ifog_option{"rate_hz", "a number > 0, at most 100000", "1000", "data rate set in the device"},
+    // KVH, data sheets of the 1725, 1750 and 1775 IMU and of the DSP-1760: maximum input rate +-490 deg/s.
+    ifog_option{"full_scale", "a number > 0, at most 10000", "490",
+                "maximum input rate in deg/s: what reaches it is saturated"},
     ifog_option{nullptr, nullptr, nullptr, nullptr}};
 
 SetUp read_set_up(const plugin::Options& options) {
@@ -96,6 +100,8 @@ SetUp read_set_up(const plugin::Options& options) {
   s.stamp_modulus_us =
       options.choice<std::int64_t>("time_stamp", {{"free", std::int64_t{1} << 32U}, {"pps", 1'000'000}});
   s.rate_hz = options.number("rate_hz", 1e-3, 1e5, "a number > 0, at most 100000");
+  s.full_scale_radps =
+      options.number("full_scale", 1e-3, 1e4, "a number > 0, at most 10000") * std::numbers::pi / 180.0;
   return s;
 }
 
@@ -157,6 +163,7 @@ class Driver {
     out.environments = magnetic ? kEnvironments : kMagneticField;
     for (std::size_t i = 0; i < out.environments; ++i)
       plugin::set_name(out.environment[i], kEnvironmentNames[i]);
+    for (double& each : out.full_scale) each = set_up_.full_scale_radps;
     out.baud = 921600;
   }
 
@@ -184,6 +191,8 @@ class Driver {
     out.frames_crc = found.crc_failed;
     out.frames_format = other_format_;
     out.bytes_skipped = found.bytes_skipped;
+    out.bytes_framed = found.bytes_framed;
+    out.bytes_pending = finder_.waiting();
   }
 
   // Throws std::invalid_argument: a value the format has no room for.

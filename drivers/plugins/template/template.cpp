@@ -62,6 +62,7 @@ class Driver {
     out.axes = 1;          // more: plugin::set_name(out.axis[0], "x"), …
     out.sequence_modulus = 256;
     out.nominal_rate_hz = rate_hz_;
+    out.full_scale[0] = 35.0;  // rad/s, from the data sheet; 0 if it says nothing
     out.baud = 115200;
     out.environments = 1;
     ifog::plugin::set_name(out.environment[0], "temperature_degC");  // the name a capture's column would have
@@ -98,7 +99,12 @@ class Driver {
     filled_ = 0;
   }
 
-  void counters(ifog_driver_counters& out) const { out = counters_; }
+  // Every byte is somewhere: in a frame, skipped, or waiting for the rest of its frame.
+  void counters(ifog_driver_counters& out) const {
+    out = counters_;
+    out.bytes_framed = counters_.frames_good * kFrame;
+    out.bytes_pending = filled_;
+  }
 
   // STEP 5, optional: the inverse. With it `ifog convert` and `ifog replay` can play a capture as your device
   // would. Throws when the sample does not fit into the format.

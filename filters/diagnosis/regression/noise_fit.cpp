@@ -27,7 +27,7 @@ NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, 
   double best = evaluate(grid, columns, shape);
   const auto attempt = [&](const NoiseShape& trial) {
     const double value = evaluate(grid, columns, trial);
-    if (value <= best + 1e-9) return false;
+    if (!(value > best + 1e-9)) return false;  // NaN is no way up
     best = value;
     shape = trial;
     return true;

@@ -53,6 +53,7 @@ static void decode(void* instance, const uint8_t* bytes, size_t length, int64_t 
     sample.value[0] = (double)(int8_t)bytes[i] * 3.14159265358979323846 / 180.0;
     sample.valid_axes = 1;
     ++gyro->counters.frames_good;
+    ++gyro->counters.bytes_framed;
     emit(sink, &sample);
   }
 }

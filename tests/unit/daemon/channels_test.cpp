@@ -3,16 +3,15 @@
 
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <ifog/decode.h>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <ifog/channel_t.hpp>
-#include <ifog/rate_t.hpp>
-#include <ifog/status_t.hpp>
 #include <thread>
 
 #include "daemon/channels/lcm_field.h"
@@ -89,6 +88,51 @@ TEST(LcmField, ReadsTheThreeTypesByWhatTheyAre) {
   EXPECT_EQ(read("measurement_noise[0]", s), Pair(3e-9, 5'000'000));
   // Two seconds old where it was published: as old here.
   EXPECT_EQ(read("channel_value[temperature_degC]", s), Pair(41.5, 3'000'000));
+}
+
+// Counts and lengths of a message, each set to what ends a decoder that believes it: 32 bits everywhere, so
+// that every count and every length is hit. Each attack ended the daemon, and with it every sensor.
+template <typename Message>
+void attack(const Message& message, const std::vector<std::string>& fields) {
+  const std::vector<std::uint8_t> good = encoded(message);
+  for (const std::uint32_t lie : {0xFFFFFFFFU, 0x7FFFFFFFU, 0x80000000U, 0U, 0x00FFFFFFU, 0x02000000U}) {
+    for (std::size_t at = 8; at + 4 <= good.size(); ++at) {
+      std::vector<std::uint8_t> bad = good;
+      for (std::size_t i = 0; i < 4; ++i) bad[at + i] = static_cast<std::uint8_t>(lie >> (24 - 8 * i));
+      Message out{};
+      if (decode_message(bad, out)) {
+        // Only numbers were hit, never a count.
+        EXPECT_EQ(static_cast<std::size_t>(out.getEncodedSize()), bad.size()) << at << " " << lie;
+      }
+      for (const std::string& field : fields) (void)read(field, bad);
+    }
+  }
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    Message out{};
+    EXPECT_FALSE(decode_message(good.data(), size, out)) << size;
+  }
+  std::vector<std::uint8_t> longer = good;
+  longer.push_back(0);
+  Message out{};
+  EXPECT_FALSE(decode_message(longer, out));
+  EXPECT_TRUE(decode_message(good, out));
+}
+
+TEST(DecodeMessage, NoLieInAMessageEndsTheProgram) {
+  attack(channel("hull_degC", 21.5), {"hull_degC"});
+  attack(rate(), {"raw[0]", "denoised[1]"});
+  attack(status(), {"channel_value[supply_V]", "nis_mean[0]", "latency_p99_us", "hull_degC"});
+  status_t with_allan = status();
+  with_allan.octaves = 3;
+  with_allan.allan_rate_radps = {{1.0, 2.0, 3.0}};
+  with_allan.fault = "x";
+  attack(with_allan, {"channel_value[supply_V]", "nis_mean[0]", "latency_p99_us", "hull_degC"});
+}
+
+TEST(DecodeMessage, AnUnknownDefinitionIsNoLayout) {
+  EXPECT_THROW(MessageLayout("struct a {\n  other_t x;\n}"), std::invalid_argument);
+  EXPECT_THROW(MessageLayout("struct a {\n  double x[n];\n}"), std::invalid_argument);
+  EXPECT_NO_THROW(MessageLayout("struct a {\n  int8_t n; // count\n  double x[n];\n}"));
 }
 
 TEST(LcmField, WhatAMessageDoesNotHaveIsNotRead) {
@@ -203,6 +247,53 @@ ifog_can_frame environment(std::uint32_t id, float temperature_degC, float suppl
   std::memcpy(out.data, &temperature_degC, 4);
   std::memcpy(out.data + 4, &supply_V, 4);
   return out;
+}
+
+TEST(ChannelSources, AFifoInTheFilesPlaceHoldsNothingUp) {
+  const std::string folder = std::filesystem::temp_directory_path().string();
+  const std::string fifo = folder + "/ifog-fifo-" + std::to_string(getpid()), file = fifo + "-file";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  std::ofstream(file) << "7\n";
+  ChannelConfig waits = config(ChannelConfig::Source::file), works = waits;
+  waits.path = fifo;
+  works.path = file;
+  waits.period_s = works.period_s = 0.01;
+  const auto table = std::make_shared<ChannelTable>(2);
+  ChannelSources sources({{waits, table, 0}, {works, table, 1}}, kUrl);
+  sources.start();
+  double value = NAN;
+  float age_s = 0.0F;
+  for (int n = 0; n < 500 && std::isnan(value); ++n) {
+    std::this_thread::sleep_for(10ms);
+    table->get(1, arrival_clock_ns(), value, age_s);
+  }
+  EXPECT_EQ(value, 7.0);
+  sources.stop();  // hung, as the reader did
+  std::filesystem::remove(fifo);
+  std::filesystem::remove(file);
+}
+
+TEST(ChannelSources, AValueThatCannotBeIsLeftOutAndCounted) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("ifog-limits-" + std::to_string(getpid()));
+  std::ofstream(path) << "20\n";
+  ChannelConfig one = config(ChannelConfig::Source::file);
+  one.path = path;
+  one.period_s = 0.01;
+  one.limits.maximum = 85.0;
+  const auto table = std::make_shared<ChannelTable>(1);
+  ChannelSources sources({{one, table, 0}}, kUrl);
+  sources.start();
+  EXPECT_EQ(await(*table, 20.0).value, 20.0);
+  for (const char* bad : {"1e200", "86", "inf"}) {
+    const std::uint64_t before = table->refused();
+    std::ofstream(path) << bad << "\n";
+    for (int n = 0; n < 500 && table->refused() == before; ++n) std::this_thread::sleep_for(10ms);
+    EXPECT_GT(table->refused(), before) << bad;
+    EXPECT_EQ(look(*table).value, 20.0) << bad;
+  }
+  sources.stop();
+  std::filesystem::remove(path);
 }
 
 TEST(ChannelSources, ASignalOfAnotherCanFrame) {

@@ -132,7 +132,17 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
        "f.toml:8: sensor.channel.source: missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\""},
       {"[[sensor]]\nname = \"NOSE\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
-       "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE already"},
+       "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE or IFOG_NOSE_STATUS already"},
+      {"[[sensor]]\nname = \"nose_status\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
+       "\"can0\"\n",
+       "f.toml:9: sensor.name = 'nose_status': another sensor publishes on IFOG_NOSE_STATUS or "
+       "IFOG_NOSE_STATUS_STATUS already"},
+      {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nminimum = 5.0\nmaximum = 5.0\n",
+       "f.toml:12: sensor.channel.maximum: not above minimum; expected minimum < maximum"},
+      {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nmax_step = -1.0\n",
+       "f.toml:11: sensor.channel.max_step = -1: expected a number 0 ... 2e+20"},
+      {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"lcm\"\nlcm_channel = \"A\"\nscale = inf\n",
+       "f.toml:12: sensor.channel.scale = inf: expected a number -1e+20 ... 1e+20"},
       {"[daemon]\nlog_level = \"loud\"\n",
        "f.toml:9: daemon.log_level = 'loud': expected \"debug\" | \"info\" | \"warning\" | \"error\""},
   };
@@ -145,9 +155,8 @@ TEST(Config, GathersAllErrors) {
             "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
             "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
             "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
-            "f.toml:3: sensor.modle: unknown key; known here: channel, driver, filter, model, name, "
-            "nominal_rate_hz, "
-            "options, realtime, transport");
+            "f.toml:3: sensor.modle: unknown key; known here: channel, driver, filter, max_step, maximum, "
+            "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, transport");
 }
 
 TEST(Config, NothingToDoIsAnError) {

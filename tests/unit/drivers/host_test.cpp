@@ -44,7 +44,7 @@ TEST(DriverHost, NamesKeyValueAndExpectation) {
   EXPECT_EQ(
       refusal("kvh1750", {{"formt", "a"}}),
       "driver kvh1750: unknown option 'formt' (value 'a'), expected one of: format, angle_unit, output, "
-      "acceleration, temperature, time_stamp, rate_hz");
+      "acceleration, temperature, time_stamp, rate_hz, full_scale");
   EXPECT_EQ(refusal("kvh1750", {{"format", "d"}}),
             "driver kvh1750: format is 'd', expected one of auto, a, b, c");
   EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "-3"}}),
@@ -91,6 +91,53 @@ TEST(DriverHost, AFileThatIsNoObjectIsRefusedAndTheListGoesOn) {
   EXPECT_TRUE(std::any_of(list.begin(), list.end(), [](const ifog::FoundPlugin& found) {
     return found.plugin && std::string(found.plugin->table().name) == "kvh1750";
   }));
+}
+
+// The linker maps what the headers promise; a cut-off object then ended the program with SIGBUS.
+TEST(DriverHost, ACutOffObjectIsRefusedAtEveryLength) {
+  const fs::path folder = fs::temp_directory_path() / ("ifog-cut-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const fs::path cut = folder / "kvh1750.so";
+  fs::copy_file(std::string(IFOG_BINARY_DIR) + "/plugins/kvh1750.so", cut);
+  EXPECT_NO_THROW(ifog::find_plugin("kvh1750", {folder.string()}));
+  // By half pages down to nothing: the sections at the end of the file are not loaded, all else is.
+  int refused = 0;
+  for (std::uintmax_t size = fs::file_size(cut); size > 2048; size -= 2048) {
+    fs::resize_file(cut, size - 2048);
+    try {
+      (void)ifog::find_plugin("kvh1750", {folder.string()});
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("kvh1750.so: cannot load: "), std::string::npos)
+          << error.what();
+      ++refused;
+    }
+  }
+  fs::remove_all(folder);
+  EXPECT_GE(refused, 4);
+}
+
+TEST(DriverHost, WhatAnybodyMayWriteIsNotLoaded) {
+  const fs::path folder = fs::temp_directory_path() / ("ifog-open-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const fs::path copy = folder / "kvh1750.so";
+  fs::copy_file(std::string(IFOG_BINARY_DIR) + "/plugins/kvh1750.so", copy);
+  const auto refusal_of = [&] {
+    try {
+      (void)ifog::find_plugin("kvh1750", {folder.string()});
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("loaded");
+  };
+  EXPECT_EQ(refusal_of(), "loaded");
+  fs::permissions(copy, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_EQ(refusal_of(),
+            copy.string() + ": anybody may write it, expected a file that only its owner may change");
+  fs::permissions(copy, fs::perms::others_write, fs::perm_options::remove);
+  fs::permissions(folder, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_EQ(refusal_of(),
+            copy.string() + ": anybody may write its folder, expected one that only its owner may change");
+  fs::remove_all(folder);
 }
 
 TEST(DriverHost, FoldersOfTheEnvironmentComeBeforeTheBuildTree) {

@@ -1,11 +1,16 @@
 #include "filters/model_file/model.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <initializer_list>
 #include <stdexcept>
+#include <utility>
 
+#include "filters/model_file/covariance.h"
 #include "filters/model_file/sha256.h"
 
 namespace ifog {
@@ -107,6 +112,82 @@ TEST(Sha256, MatchesThePublishedValues) {
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   EXPECT_EQ(sha256_hex(std::string(1000000, 'a')),
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+std::string with(const std::string& line, const std::string& instead) {
+  std::string text = model_text(full_model());
+  const std::size_t at = text.find(line);
+  EXPECT_NE(at, std::string::npos) << line;
+  return text.replace(at, line.size(), instead);
+}
+
+TEST(ModelFile, NumbersThatNoSensorHasAreRefusedByLine) {
+  ASSERT_EQ(complaint(model_text(full_model())), "accepted");
+  for (const auto& [line, instead] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"reference = 25", "reference = nan"},
+           {"reference = 25", "reference = inf"},
+           {"value = 1.23456789012345e-08", "value = 1e308"},
+           {"value = 1.23456789012345e-08", "value = nan"},
+           {"std_error = 2e-10", "std_error = -1.0"},
+           {"std_error = 2e-10", "std_error = inf"},
+           {"period = 32768", "period = -1.0"},
+           {"period = 32768", "period = inf"},
+           {"low = -10.5", "low = -inf"},
+           {"low = -10.5", "low = 50.0"},
+           {"high = 41", "high = nan"},
+           {"N = 2.9e-07", "N = nan"},
+           {"process_noise = 1e-17", "process_noise = inf"},
+           {"table_y = [0, 3e-09", "table_y = [0, 1e300"}}) {
+    const std::string text = with(line, instead);
+    const std::string said = complaint(text);
+    // The line that was changed; of a range turned round, the line that shows it.
+    const std::string changed = instead == std::string("low = 50.0") ? "high = 41" : instead;
+    const auto number =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(changed)), '\n') + 1;
+    EXPECT_EQ(said.find("m.toml:" + std::to_string(number) + ": "), 0U) << instead << ": " << said;
+    EXPECT_NE(said.find("expected"), std::string::npos) << said;
+  }
+}
+
+TEST(ModelFile, ACovarianceMustBeOne) {
+  for (const auto& [values, flaw] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"[1.0, 0.5, 0.4, 2.0]", "differs"},
+           {"[-1.0, 0.0, 0.0, 2.0]", "negative variance in row 1"},
+           {"[1.0, 1.5, 1.5, 2.0]", "more than the variances allow"},
+           {"[0.0, 1.0, 1.0, 2.0]", "more than the variances allow"},
+           {"[1.0, nan, nan, 2.0]", "finite"},
+           {"[1.0, 0.5, 0.5, inf]", "finite"}}) {
+    const std::string said =
+        complaint(with("covariance = [1, 0.5, 0.5, 2]", std::string("covariance = ") + values));
+    EXPECT_NE(said.find(flaw), std::string::npos) << values << ": " << said;
+  }
+}
+
+TEST(ModelFile, CorrelationsThatContradictEachOtherAreNoCovariance) {
+  // Each pair may be so correlated, the three together not: the determinant is 1 - 3 * 0.81 - 2 * 0.729 < 0.
+  std::string flaw = covariance_flaw({1.0, 0.9, 0.9, 0.9, 1.0, -0.9, 0.9, -0.9, 1.0}, 3);
+  EXPECT_EQ(flaw, "a combination of parameters has a negative variance");
+  EXPECT_EQ(covariance_flaw({1e-18, 0.9e-9, 0.0, 0.9e-9, 1.0, 0.0, 0.0, 0.0, 0.0}, 3), "");
+  EXPECT_EQ(covariance_flaw({1.0, 1.0, 1.0, 1.0}, 2), "");  // one parameter twice, exactly
+}
+
+TEST(ModelFile, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
+  const std::string fifo = ::testing::TempDir() + "model_fifo";
+  std::remove(fifo.c_str());
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  for (const std::string& path : {fifo, std::string("/dev/zero"), ::testing::TempDir()}) {
+    try {
+      read_model(path);
+      ADD_FAILURE() << path;
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()), path + ": is no regular file");
+    }
+  }
+  std::remove(fifo.c_str());
+  const std::string large = ::testing::TempDir() + "model_large";
+  std::ofstream(large) << std::string((16U << 20U) + 1, '#');
+  EXPECT_THROW(read_model(large), std::runtime_error);
+  std::remove(large.c_str());
 }
 
 }  // namespace

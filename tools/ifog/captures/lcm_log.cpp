@@ -1,5 +1,6 @@
 #include "tools/ifog/captures/lcm_log.h"
 
+#include <ifog/decode.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -7,7 +8,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <functional>
-#include <ifog/rate_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <set>
 #include <stdexcept>
@@ -98,12 +98,14 @@ void for_each_rate(InputFile& file, const std::string& channel,
       throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
     };
     rate_t message;
-    if (message.decode(event->data, 0, event->datalen) < 0) refuse("is no ifog.rate_t of this version");
+    if (!decode_message(event->data, static_cast<std::size_t>(event->datalen), message))
+      refuse("is no ifog.rate_t of this version");
     const std::int64_t now_ns = message.sensor_time_ns >= 0 ? message.sensor_time_ns : message.utime * 1000;
     if (last_s < 0.0) {
       start_ns = now_ns;
       axes = message.raw.size();
     }
+    if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
     if (message.raw.size() != axes) refuse("has another number of axes");
     const double time_s = static_cast<double>(now_ns - start_ns) / 1e9;
     if (time_s <= last_s) refuse("is not later than the one before");

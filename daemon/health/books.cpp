@@ -1,0 +1,50 @@
+#include "daemon/health/books.h"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace ifog {
+namespace {
+
+constexpr std::array kEntries{&ReaderBooks::bytes_read,    &ReaderBooks::bytes_framed,
+                              &ReaderBooks::bytes_skipped, &ReaderBooks::bytes_pending,
+                              &ReaderBooks::decoded,       &ReaderBooks::samples,
+                              &ReaderBooks::repeated};
+
+}  // namespace
+
+void SharedBooks::write(const ReaderBooks& books) noexcept {
+  static_assert(sizeof(ReaderBooks) == kEntries.size() * sizeof(std::uint64_t), "every entry is shared");
+  const std::uint32_t version = version_.load(std::memory_order_relaxed);
+  version_.store(version + 1, std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_release);
+  for (std::size_t i = 0; i < kEntries.size(); ++i)
+    entries_[i].store(books.*kEntries[i], std::memory_order_relaxed);
+  version_.store(version + 2, std::memory_order_release);
+}
+
+ReaderBooks SharedBooks::read() const noexcept {
+  for (;;) {
+    ReaderBooks books;
+    const std::uint32_t before = version_.load(std::memory_order_acquire);
+    for (std::size_t i = 0; i < kEntries.size(); ++i)
+      books.*kEntries[i] = entries_[i].load(std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_acquire);
+    if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) return books;
+  }
+}
+
+std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter) {
+  if (reader.bytes_read != reader.bytes_framed + reader.bytes_skipped + reader.bytes_pending)
+    return fmt::format("the books do not balance: {} bytes read, {} in frames + {} skipped + {} pending",
+                       reader.bytes_read, reader.bytes_framed, reader.bytes_skipped, reader.bytes_pending);
+  if (reader.decoded != reader.samples + reader.repeated)
+    return fmt::format("the books do not balance: {} samples decoded, {} taken + {} repeated", reader.decoded,
+                       reader.samples, reader.repeated);
+  if (filter.samples != filter.sent + filter.failed + filter.merged || filter.samples > reader.samples)
+    return fmt::format(
+        "the books do not balance: {} samples, {} of them filtered: {} sent + {} failed + {} merged",
+        reader.samples, filter.samples, filter.sent, filter.failed, filter.merged);
+  return "";
+}
+
+}  // namespace ifog

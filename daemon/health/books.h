@@ -1,0 +1,46 @@
+// The books of one pipeline: all that came in, and where each of it went. Nothing is lost in silence, so at
+// every moment
+//   bytes read      = bytes of frames + bytes skipped + bytes of a frame that is not complete yet
+//   samples decoded = samples + samples that came twice
+//   samples         = samples sent, alone or merged into another one's message, + in messages that LCM did
+//   not
+//                     take + on their way to the filter
+// and each way out has its counter in the status message.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace ifog {
+
+// Of one moment in the reader thread, between two deliveries.
+struct ReaderBooks {
+  std::uint64_t bytes_read = 0, bytes_framed = 0, bytes_skipped = 0, bytes_pending = 0;
+  std::uint64_t decoded = 0, samples = 0, repeated = 0;
+};
+
+// Of one moment in the filter, between two increments.
+struct FilterBooks {
+  std::uint64_t samples = 0;                       // of the device, in all increments taken from the queue
+  std::uint64_t sent = 0, failed = 0, merged = 0;  // messages; merged: samples beyond a message's first
+};
+
+// "", or the identity that does not hold, with its numbers. `filter` is from before `reader`.
+std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter);
+
+// Written by the reader thread, read as a whole by another: a sequence lock (H.-J. Boehm, "Can Seqlocks Get
+// Along With Programming Language Memory Models?", MSPC 2012). The writer never waits.
+class SharedBooks {
+ public:
+  void write(const ReaderBooks& books) noexcept;
+  [[nodiscard]] ReaderBooks read() const noexcept;
+
+ private:
+  std::atomic<std::uint32_t> version_{0};  // odd: being written
+  std::array<std::atomic<std::uint64_t>, 7> entries_{};
+};
+
+}  // namespace ifog

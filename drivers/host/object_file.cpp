@@ -1,0 +1,79 @@
+#include "drivers/host/object_file.h"
+
+#include <elf.h>
+#include <fcntl.h>
+#include <link.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace ifog {
+namespace {
+
+class OpenFile {
+ public:
+  // Non-blocking: a FIFO of that name is refused, not waited for.
+  explicit OpenFile(const std::string& path)
+      : fd_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
+  ~OpenFile() {
+    if (fd_ >= 0) close(fd_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  [[nodiscard]] int fd() const { return fd_; }
+
+  template <typename Header>
+  bool read_at(std::uint64_t offset, Header& out) const {
+    return pread(fd_, &out, sizeof out, static_cast<off_t>(offset)) == static_cast<ssize_t>(sizeof out);
+  }
+
+ private:
+  int fd_;
+};
+
+std::string who_may_write(const std::string& path, const struct stat& info) {
+  if ((info.st_mode & S_IWOTH) != 0)
+    return "anybody may write it, expected a file that only its owner may change";
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  struct stat holder {};
+  // In a folder with the sticky bit nobody can put another file in its place.
+  if (stat(folder.c_str(), &holder) == 0 && (holder.st_mode & S_IWOTH) != 0 &&
+      (holder.st_mode & S_ISVTX) == 0)
+    return "anybody may write its folder, expected one that only its owner may change";
+  return "";
+}
+
+bool whole(const OpenFile& file, std::uint64_t size) {
+  ElfW(Ehdr) header{};
+  constexpr unsigned char kClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
+  if (!file.read_at(0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
+      header.e_ident[EI_CLASS] != kClass || header.e_phentsize != sizeof(ElfW(Phdr)))
+    return true;
+  for (unsigned i = 0; i < header.e_phnum; ++i) {
+    ElfW(Phdr) segment{};
+    if (!file.read_at(header.e_phoff + std::uint64_t{i} * sizeof segment, segment)) return false;
+    if (segment.p_type != PT_LOAD) continue;
+    if (segment.p_offset > size || segment.p_filesz > size - segment.p_offset) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string object_flaw(const std::string& path) {
+  const OpenFile file(path);
+  struct stat info {};
+  if (file.fd() < 0 || fstat(file.fd(), &info) != 0)
+    return "cannot load: " + std::generic_category().message(errno);
+  if (!S_ISREG(info.st_mode)) return "is no regular file";
+  if (std::string flaw = who_may_write(path, info); !flaw.empty()) return flaw;
+  if (!whole(file, static_cast<std::uint64_t>(info.st_size)))
+    return "cannot load: shorter than its headers say (is the file cut off?)";
+  return "";
+}
+
+}  // namespace ifog

@@ -1,0 +1,128 @@
+// Whether a value from outside can be a measurement at all: the door that keeps one impossible number, well
+// formed as its frame may be, out of the angle, the filter and the corrections.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "filters/chain/reading.h"
+
+namespace ifog {
+
+// What no sensor measures: rad/s, rad and the unit of the channel. A spinning projectile turns at 2e3 rad/s;
+// beyond 1e9 rad a float32 resolves 64 rad; a 64-bit counter stays below 2e19.
+inline constexpr double kMostRate_radps = 1e4;
+inline constexpr double kMostAngle_rad = 1e9;
+inline constexpr double kMostChannel = 1e20;
+
+enum class Verdict : std::uint8_t { plausible, saturated, implausible };
+
+struct Turn {
+  double angle_rad = 0.0;
+  double covered_s = 0.0;  // 0: nothing is known of the turn
+};
+
+// A scalar within limits that does not jump. The first value beyond max_step is refused; a second one that
+// agrees with it shows that the quantity did move, and is the new beginning.
+class PlausibleValue {
+ public:
+  PlausibleValue() = default;
+  PlausibleValue(const Limits& limits, double most) noexcept : limits_(limits), most_(most) {}
+
+  [[nodiscard]] bool take(double value) noexcept {
+    // Written so that NaN fails.
+    if (!(std::abs(value) <= most_) || !(value >= limits_.minimum && value <= limits_.maximum)) return false;
+    const bool near_last = !known_ || std::abs(value - last_) <= limits_.max_step;
+    const bool near_suspect = suspected_ && std::abs(value - suspect_) <= limits_.max_step;
+    suspected_ = !near_last && !near_suspect;
+    if (suspected_) {
+      suspect_ = value;
+      return false;
+    }
+    last_ = value;
+    known_ = true;
+    return true;
+  }
+  // Samples are missing: what the quantity did in between nobody knows.
+  void forget() noexcept { known_ = suspected_ = false; }
+
+ private:
+  Limits limits_;
+  double most_ = kMostChannel;
+  double last_ = 0.0, suspect_ = 0.0;
+  bool known_ = false, suspected_ = false;
+};
+
+// A rate, or a delta angle over its sample's time.
+class PlausibleRate {
+ public:
+  PlausibleRate() = default;
+  PlausibleRate(const Limits& limits, double full_scale_radps) noexcept
+      : value_(limits, kMostRate_radps), full_scale_radps_(full_scale_radps) {}
+
+  [[nodiscard]] Verdict take(double rate_radps) noexcept {
+    if (full_scale_radps_ > 0.0 && std::abs(rate_radps) >= full_scale_radps_) return Verdict::saturated;
+    return value_.take(rate_radps) ? Verdict::plausible : Verdict::implausible;
+  }
+  void forget() noexcept { value_.forget(); }
+
+ private:
+  PlausibleValue value_;
+  double full_scale_radps_ = 0.0;
+};
+
+// An angle since power-up, turned into what was turned since the last good one. An angle that cannot have
+// been reached from there is passed over, so that a single bad one costs nothing. When the next one continues
+// it, the device has a new origin: the turn between the two origins is unknown, and is in nobody's sum.
+class PlausibleAngle {
+ public:
+  // Before take(): the time goes by with every sample, good or not.
+  void pass(double dt_s) noexcept {
+    since_s_ += dt_s;
+    suspect_since_s_ += dt_s;
+  }
+  // `rate` judges the mean rate since; wrap_rad as in SensorFacts.
+  [[nodiscard]] Verdict take(double angle_rad, double wrap_rad, PlausibleRate& rate, Turn& out) noexcept {
+    out = {};
+    if (!(std::abs(angle_rad) <= kMostAngle_rad)) return Verdict::implausible;
+    if (!known_) {
+      settle(angle_rad);
+      return Verdict::plausible;
+    }
+    Verdict verdict = judge(angle_rad - angle_rad_, since_s_, wrap_rad, rate, out);
+    if (verdict != Verdict::plausible && suspected_ &&
+        judge(angle_rad - suspect_rad_, suspect_since_s_, wrap_rad, rate, out) == Verdict::plausible)
+      verdict = Verdict::plausible;
+    if (verdict == Verdict::plausible) {
+      settle(angle_rad);
+      return verdict;
+    }
+    out = {};
+    suspected_ = true;
+    suspect_rad_ = angle_rad;
+    suspect_since_s_ = 0.0;
+    return verdict;
+  }
+  // The device started anew: its angle counts from another origin.
+  void forget() noexcept { known_ = suspected_ = false; }
+
+ private:
+  static Verdict judge(double turned, double time_s, double wrap_rad, PlausibleRate& rate,
+                       Turn& out) noexcept {
+    if (wrap_rad > 0.0) turned = std::remainder(turned, wrap_rad);
+    out = {turned, time_s};
+    return time_s > 0.0 ? rate.take(turned / time_s) : Verdict::implausible;
+  }
+  void settle(double angle_rad) noexcept {
+    angle_rad_ = angle_rad;
+    since_s_ = 0.0;
+    known_ = true;
+    suspected_ = false;
+  }
+
+  double angle_rad_ = 0.0, since_s_ = 0.0;
+  double suspect_rad_ = 0.0, suspect_since_s_ = 0.0;
+  bool known_ = false, suspected_ = false;
+};
+
+}  // namespace ifog
