@@ -81,7 +81,7 @@ double best_of_many(const ifog::bench::MadeRecord& made, std::uint64_t seed) {
     if (made.state == "random-walk + harmonic") step[3] = 1e-3;
     search.set_initial_step(step);
     search.set_ftol_abs(1e-4);
-    search.set_maxeval(100 * static_cast<int>(n));
+    search.set_maxeval(60 * static_cast<int>(n));
     double cost = 0.0;
     try {
       search.optimize(theta, cost);

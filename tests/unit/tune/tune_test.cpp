@@ -120,12 +120,14 @@ TEST(Tune, PicksTheOrderOfAFastColour) {
     Noise noise(100 + seed);
     std::vector<double> z;
     double level = 0.0, colour = noise() / std::sqrt(0.75);
-    for (int k = 0; k < 10000; ++k) {
+    for (int k = 0; k < 6000; ++k) {
       level += 1e-3 * noise();
       colour = 0.5 * colour + noise();
       z.push_back(1e-6 * (level + colour + 0.5 * noise()));
     }
-    const Tuning t = tuned(z, 0.01);
+    const Tuning t = tuned(z, 0.01,
+                           {"random-walk", "random-walk + gauss-markov", "random-walk + ar(1)",
+                            "random-walk + ar(2)", "random-walk + arma(3,2)"});
     if (t.models[0].settings.state == "random-walk + ar(1)") ++right;
     EXPECT_NE(t.models[0].settings.state, "random-walk + arma(3,2)") << seed;
     const auto one = std::find_if(t.models.begin(), t.models.end(),
