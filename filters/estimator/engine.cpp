@@ -53,7 +53,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   rest_->predict(m.dt_s);
   begin_axes(in.rate_radps, m.valid);
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->rate(a);
+    if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->measurement(a);
   }
   out.innovation_radps = m.innovation;
 
@@ -182,7 +182,7 @@ void Engine::follow_rest(const Measurement& m) noexcept {
     return;
   }
   const double share = monitor_.armed() ? 1.0 / kRestMemory : 1.0;
-  rest_gain_ += share * (rest_->gain() - rest_gain_);
+  rest_gain_ += share * (rest_->measurement_gain() - rest_gain_);
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
     monitor_.learn_still(a, m.in.rate_radps[a]);
@@ -267,7 +267,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const InnovationMonitor::Ver
   Axes noises{};
   for (std::size_t a = 0; a < axes_; ++a) noises[a] = noise(a);
   trackers_.predict(m.dt_s / period_s_);
-  const double level_factor = 1.0 + rest_->variance() / rest_->rule().measurement_noise();
+  const double level_factor = 1.0 + rest_->measurement_variance() / rest_->rule().measurement_noise();
   if (trackers_.improbable(m.in.rate_radps, noises, m.valid) && far_from_rest(m)) {
     if (!held_) {
       hold(m, out);
@@ -298,7 +298,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const InnovationMonitor::Ver
 
 bool Engine::far_from_rest(const Measurement& m) const noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
-    const double bound = kFar * kFar * (monitor_.variance(a) + rest_->variance());
+    const double bound = kFar * kFar * (monitor_.variance(a) + rest_->measurement_variance());
     if (has(m.valid, a) && m.innovation[a] * m.innovation[a] > bound) return true;
   }
   return false;

@@ -84,7 +84,7 @@ class Engine {
   int quiet_ = 0, calm_ = 0, until_lag_ = 0;
   int manoeuvre_samples_ = 0;
   std::int64_t steps_ = 0;
-  double rest_gain_ = 0.0;          // at rest, averaged
+  double rest_gain_ = 0.0;          // of the measurement at rest, averaged
   double settling_variance_ = 0.0;  // of the rate after the last measurement while P settles
   double lag_s_ = 0.0;
   Axes held_angle_{}, last_output_{};

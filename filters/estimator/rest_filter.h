@@ -27,7 +27,8 @@ class RestFilter {
                       bool learn) noexcept = 0;
   // No measurement at this step.
   virtual void skip() noexcept = 0;
-  // Moves the level of the axes in `which`, leaving what the model holds beside it (a line, a slope) alone.
+  // Moves the level of the axes in `which` until the measurement would be this, leaving what the model holds
+  // beside it (a line, a slope) alone.
   virtual void shift_to(const Axes& rate, std::uint32_t which) noexcept = 0;
   // Raises P so that the variance of the rate is at least this.
   virtual void raise_to(double variance) noexcept = 0;
@@ -36,10 +37,15 @@ class RestFilter {
   // False when the covariance is none any more or the state no number.
   [[nodiscard]] virtual bool sound() const noexcept = 0;
 
-  // As the last of the calls above left them.
+  // As the last of the calls above left them. Rate, its variance and its gain are of StateModel::rate(), what
+  // is published; the measurement's are of everything that is measured, the noise's colour and lines
+  // included.
   [[nodiscard]] double rate(std::size_t axis) const noexcept { return rate_[axis]; }
   [[nodiscard]] double variance() const noexcept { return variance_; }
   [[nodiscard]] double gain() const noexcept { return gain_; }
+  [[nodiscard]] double measurement(std::size_t axis) const noexcept { return measurement_[axis]; }
+  [[nodiscard]] double measurement_variance() const noexcept { return measurement_variance_; }
+  [[nodiscard]] double measurement_gain() const noexcept { return measurement_gain_; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
   [[nodiscard]] const Rule& rule() const noexcept { return *rule_; }
@@ -48,8 +54,9 @@ class RestFilter {
   explicit RestFilter(std::unique_ptr<Rule> rule) : rule_(std::move(rule)) {}
 
   std::unique_ptr<Rule> rule_;
-  Axes rate_{};
+  Axes rate_{}, measurement_{};
   double variance_ = 0.0, gain_ = 0.0, covariance_ = 0.0;
+  double measurement_variance_ = 0.0, measurement_gain_ = 0.0;
 };
 
 // Throws std::invalid_argument when the model has too many states.

@@ -22,6 +22,7 @@ class SizedRestFilter final : public RestFilter {
         process_noise_(process_noise),
         measurement_noise_(measurement_noise),
         level_(model_->level()),
+        readout_(model_->rate()),
         start_(process_noise * model_->stationary()) {
     // Large enough to be forgotten after one measurement, small enough to leave the covariance ten digits.
     constexpr double kDiffuse = 1e6;
@@ -56,13 +57,13 @@ class SizedRestFilter final : public RestFilter {
               bool learn) noexcept override {
     // The innovation published is that of the weighted mean of predictions; each core's own covariance and
     // its distance from that mean make its variance, under the weights from before this measurement.
-    const Axes predicted = rate_;
+    const Axes predicted = measurement_;
     double mixture = 0.0;
     valid_ = valid;
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
       Core& core = cores_[j];
       const double weight = rule_->weight(j);
-      mixture += weight * distance(core, predicted);
+      mixture += weight * distance(core, core.h, predicted);
       Axes innovations{};
       std::array<int, kMaxAxes> axes{};
       std::size_t count = 0;
@@ -86,8 +87,8 @@ class SizedRestFilter final : public RestFilter {
 
   void skip() noexcept override {
     for (Core& core : cores_) core.gain.setZero();
-    gain_ = 0.0;
-    covariance_ = variance_ + rule_->measurement_noise();
+    gain_ = measurement_gain_ = 0.0;
+    covariance_ = measurement_variance_ + rule_->measurement_noise();
   }
 
   void shift_to(const Axes& rate, std::uint32_t which) noexcept override {
@@ -102,7 +103,7 @@ class SizedRestFilter final : public RestFilter {
 
   void raise_to(double variance) noexcept override {
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const double missing = variance - cores_[j].variance();
+      const double missing = variance - readout_.dot(cores_[j].p * readout_);
       if (missing > 0.0) cores_[j].p += missing * level_ * level_.transpose();
     }
     refresh();
@@ -137,7 +138,7 @@ class SizedRestFilter final : public RestFilter {
   static constexpr double kWeightMemory = 4096.0;
 
   Settled settled(const Core& core) const noexcept {
-    return ifog::settled<n>(transition_, core.h, core.gain, core.p);
+    return ifog::settled<n>(transition_, core.h, readout_, core.gain, core.p);
   }
 
   void average_weights() noexcept {
@@ -147,33 +148,55 @@ class SizedRestFilter final : public RestFilter {
   }
 
   void refresh() noexcept {
-    if (hypotheses_.size() == 1) {
-      for (int axis = 0; axis < Core::kAxes; ++axis)
-        rate_[static_cast<std::size_t>(axis)] = cores_[0].rate(axis);
-      variance_ = cores_[0].variance();
-      gain_ = cores_[0].h.dot(cores_[0].gain);
-      return;
+    read(readout_, rate_, variance_, gain_);
+    if constexpr (n == 1) {
+      // A single state is the rate, and all that is measured.
+      measurement_ = rate_;
+      measurement_variance_ = variance_;
+      measurement_gain_ = gain_;
+    } else {
+      read(cores_[0].h, measurement_, measurement_variance_, measurement_gain_);
     }
-    rate_ = {};
-    variance_ = gain_ = 0.0;
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const double weight = rule_->weight(j);
-      for (int axis = 0; axis < Core::kAxes; ++axis) {
-        rate_[static_cast<std::size_t>(axis)] += weight * cores_[j].rate(axis);
-      }
-      gain_ += weight * cores_[j].h.dot(cores_[j].gain);
-    }
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
-      variance_ += rule_->weight(j) * (cores_[j].variance() + distance(cores_[j], rate_));
   }
 
-  // Mean square over the measured axes of a core's rate against this one; zero by itself for a single core.
-  double distance(const Core& core, const Axes& rate) const noexcept {
+  // What the cores make of `of`'x: value, variance, gain.
+  void read(const typename Core::Vector& of, Axes& value, double& variance, double& gain) const noexcept {
+    if (hypotheses_.size() == 1) {
+      for (int axis = 0; axis < Core::kAxes; ++axis)
+        value[static_cast<std::size_t>(axis)] = along(of, cores_[0], axis);
+      variance = spread(of, cores_[0]);
+      gain = of.dot(cores_[0].gain);
+      return;
+    }
+    value = {};
+    variance = gain = 0.0;
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      const double weight = rule_->weight(j);
+      for (int axis = 0; axis < Core::kAxes; ++axis)
+        value[static_cast<std::size_t>(axis)] += weight * along(of, cores_[j], axis);
+      gain += weight * of.dot(cores_[j].gain);
+    }
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
+      variance += rule_->weight(j) * (spread(of, cores_[j]) + distance(cores_[j], of, value));
+  }
+
+  // A single state is the rate itself: no product, each of which the next step would wait for.
+  static double along(const typename Core::Vector& of, const Core& core, int axis) noexcept {
+    if constexpr (n == 1) return core.x(0, axis);
+    return of.dot(core.x.col(axis));
+  }
+  static double spread(const typename Core::Vector& of, const Core& core) noexcept {
+    if constexpr (n == 1) return core.p(0, 0);
+    return of.dot(core.p * of);
+  }
+
+  // Mean square over the measured axes of a core's `of`'x against this; zero by itself for a single core.
+  double distance(const Core& core, const typename Core::Vector& of, const Axes& mean) const noexcept {
     if (hypotheses_.size() == 1 || valid_ == 0) return 0.0;
     double sum = 0.0;
     for (int axis = 0; axis < Core::kAxes; ++axis) {
       if ((valid_ >> static_cast<unsigned>(axis) & 1U) == 0) continue;
-      const double apart = core.rate(axis) - rate[static_cast<std::size_t>(axis)];
+      const double apart = along(of, core, axis) - mean[static_cast<std::size_t>(axis)];
       sum += apart * apart;
     }
     return sum / std::popcount(valid_);
@@ -183,7 +206,7 @@ class SizedRestFilter final : public RestFilter {
   std::span<const double> hypotheses_;
   double process_noise_, measurement_noise_;
   std::array<Core, Rule::kMaxHypotheses> cores_;
-  typename Core::Vector level_;
+  typename Core::Vector level_, readout_;
   typename Core::Matrix start_, transition_, driving_;
   double discretised_dt_s_ = -1.0;
   std::uint32_t valid_ = 0;  // axes of the last measurement

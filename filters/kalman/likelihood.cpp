@@ -1,101 +1,211 @@
 #include "filters/kalman/likelihood.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "filters/kalman/core.h"
+#include "filters/kalman/doubling.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kDiffuse = 1e9;
-constexpr double kSettled = 1e-13;
+// Samples after the start over which the gain is followed one by one, and the divisor of their number after
+// that.
+constexpr std::size_t kFollowed = 256;
+// Samples after a missing one over which it is followed again: what is fast in the model has then recovered.
+constexpr std::size_t kRecovery = 16;
+// A gain that changes by less than this share from one hold to the next has settled.
+constexpr double kSettled = 1e-9;
+
+template <int n, int lanes>
+class Pass {
+ public:
+  using Vector = Eigen::Matrix<double, n, 1>;
+  using Matrix = Eigen::Matrix<double, n, n>;
+
+  Pass(const StateModel& model, double process_noise, double measurement_noise, double dt_s)
+      : noise_(measurement_noise), diffuse_(static_cast<std::size_t>((model.diffuse().array() > 0).count())) {
+    core_.h = model.measurement();
+    model.discretise(dt_s, transition_, driving_);
+    driving_ *= process_noise;
+    level_ = model.level();
+    core_.p = process_noise * model.stationary();
+    const double loudness = noise_ + core_.variance() + core_.h.dot(driving_ * core_.h);
+    core_.p.diagonal() += kDiffuse * loudness * model.diffuse();
+  }
+
+  LikelihoodTerms over(const LikelihoodRecord::Group& group) {
+    CovarianceDoubling<n> doubling(transition_, driving_, core_.h, noise_);
+    const double* row = group.rows.data();
+    LikelihoodTerms terms;
+    std::size_t measured = 0;
+    for (const LikelihoodRecord::Run& run : group.runs) {
+      if (run.missing) {
+        for (std::size_t k = 0; k < run.length && measured > 0; ++k) predict();
+        row += run.length * lanes;
+        continue;
+      }
+      if (measured == 0 && diffuse_ > 0) start(row);
+      bool settled = false;
+      for (std::size_t done = 0; done < run.length;) {
+        const std::size_t left = run.length - done;
+        const std::size_t hold = settled ? left : held(measured, done, left);
+        if (hold == 1) {
+          correct();
+        } else if (!settled) {
+          const std::size_t half = static_cast<std::size_t>(std::bit_width(hold) - 2);
+          const Vector before = core_.gain;
+          core_.p = doubling.ahead(core_.p, half);
+          gain();
+          settled = (core_.gain - before).norm() <= kSettled * core_.gain.norm();
+          core_.p = doubling.ahead(core_.p, half);
+        }
+        const double squares = take(row, hold, group.axes);
+        if (hold == 1) core_.predict_covariance(transition_, driving_);
+        if (measured >= diffuse_) {
+          terms.count += static_cast<long>(hold * group.axes);
+          terms.sum_log_variance += static_cast<double>(hold * group.axes) * std::log(variance_);
+          terms.sum_normalised += squares / variance_;
+        }
+        done += hold;
+        measured += hold;
+        row += hold * lanes;
+      }
+    }
+    return terms;
+  }
+
+ private:
+  using Row = Eigen::Array<double, lanes, 1>;
+
+  // Samples over which the gain may be held, a power of two.
+  static std::size_t held(std::size_t measured, std::size_t since_missing, std::size_t left) {
+    if (measured < 2 * kFollowed || since_missing < kRecovery) return 1;
+    return std::bit_floor(std::min(measured / kFollowed, left));
+  }
+
+  void start(const double* row) {
+    for (int a = 0; a < lanes; ++a) x_.row(a) = level_.transpose() * row[a];
+  }
+
+  void predict() {
+    x_ = (x_.matrix() * transition_.transpose()).array().eval();
+    core_.predict_covariance(transition_, driving_);
+  }
+
+  // Gain and innovation variance of this prediction covariance.
+  void gain() {
+    const Vector ph = core_.p * core_.h;
+    variance_ = core_.h.dot(ph) + noise_;
+    core_.gain = ph / variance_;
+  }
+  void correct() {
+    variance_ = core_.variance() + noise_;
+    core_.correct(variance_);
+  }
+
+  // `count` samples at this gain, from prediction to prediction. Returns the sum of the squared innovations.
+  double take(const double* row, std::size_t count, std::size_t axes) {
+    const Vector predictor = transition_ * core_.gain;
+    std::array<Row, n> x, next;
+    for (int i = 0; i < n; ++i) x[at(i)] = x_.col(i);
+    Row squares = Row::Zero();
+    for (std::size_t k = 0; k < count; ++k, row += lanes) {
+      Row innovation = Eigen::Map<const Row>(row);
+      for (int i = 0; i < n; ++i) innovation -= core_.h(i) * x[at(i)];
+      squares += innovation.square();
+      for (int i = 0; i < n; ++i) {
+        next[at(i)] = predictor(i) * innovation;
+        for (int j = 0; j < n; ++j) next[at(i)] += transition_(i, j) * x[at(j)];
+      }
+      x = next;
+    }
+    for (int i = 0; i < n; ++i) x_.col(i) = x[at(i)];
+    double sum = 0.0;
+    for (std::size_t a = 0; a < axes; ++a) sum += squares(static_cast<Eigen::Index>(a));
+    return sum;
+  }
+  static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  KalmanCore<n> core_;
+  Matrix transition_, driving_;
+  Vector level_;
+  double noise_, variance_ = 0.0;
+  std::size_t diffuse_;
+  Eigen::Array<double, lanes, n> x_ = Eigen::Array<double, lanes, n>::Zero();
+};
 
 template <int n>
 LikelihoodTerms sized(const StateModel& model, double process_noise, double measurement_noise,
-                      std::span<const double> rate, double dt_s, std::vector<double>* innovations) {
-  KalmanCore<n> core;
-  core.h = model.measurement();
-  typename KalmanCore<n>::Matrix transition, driving;
-  model.discretise(dt_s, transition, driving);
-  driving *= process_noise;
-  const Eigen::VectorXd diffuse = model.diffuse();
-  core.p = process_noise * model.stationary();
-  const double noise = measurement_noise + core.variance() + core.h.dot(driving * core.h);
-  core.p.diagonal() += kDiffuse * noise * diffuse;
-  long starting = (diffuse.array() > 0).count();
-  bool at_first = starting > 0;
-  bool begun = false;
-
-  LikelihoodTerms terms;
-  if (innovations != nullptr) innovations->assign(rate.size(), std::numeric_limits<double>::quiet_NaN());
-  bool frozen = false;
-  double s = 0.0, root = 0.0, log_s = 0.0;
-  for (std::size_t k = 0; k < rate.size(); ++k) {
-    const bool missing = !std::isfinite(rate[k]);
-    if (frozen && !missing) {
-      core.x.col(0) = transition * core.x.col(0);
-    } else if (begun) {
-      core.predict(transition, driving);
-    }
-    begun = true;
-    if (missing) {
-      frozen = false;
-      continue;
-    }
-    if (at_first) {
-      core.x.col(0) = model.level() * rate[k];
-      at_first = false;
-    }
-    const double innovation = rate[k] - core.rate(0);
-    if (!frozen) {
-      const double now = core.variance() + measurement_noise;
-      const typename KalmanCore<n>::Vector gain = core.gain;
-      core.correct(now);
-      frozen = starting == 0 && std::abs(now - s) <= kSettled * now &&
-               (core.gain - gain).norm() <= kSettled * core.gain.norm();
-      s = now;
-      root = std::sqrt(s);
-      log_s = std::log(s);
-    }
-    core.update(0, innovation);
-    if (starting > 0) {
-      --starting;
-      continue;
-    }
-    ++terms.count;
-    terms.sum_log_variance += log_s;
-    terms.sum_normalised += innovation * innovation / s;
-    if (innovations != nullptr) (*innovations)[k] = innovation / root;
+                      const LikelihoodRecord& record, double dt_s) {
+  LikelihoodTerms sum;
+  for (const LikelihoodRecord::Group& group : record.groups()) {
+    const LikelihoodTerms one = group.lanes == 1
+                                    ? Pass<n, 1>(model, process_noise, measurement_noise, dt_s).over(group)
+                                    : Pass<n, 4>(model, process_noise, measurement_noise, dt_s).over(group);
+    sum.count += one.count;
+    sum.sum_log_variance += one.sum_log_variance;
+    sum.sum_normalised += one.sum_normalised;
   }
-  return terms;
+  return sum;
+}
+
+bool same_missing(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+           return std::isfinite(x) == std::isfinite(y);
+         });
+}
+
+LikelihoodRecord::Group grouped(std::span<const std::span<const double>> axes) {
+  LikelihoodRecord::Group group;
+  group.axes = axes.size();
+  group.lanes = axes.size() == 1 ? 1 : 4;
+  group.rows.assign(axes[0].size() * group.lanes, 0.0);
+  for (std::size_t k = 0; k < axes[0].size(); ++k) {
+    const bool missing = !std::isfinite(axes[0][k]);
+    if (group.runs.empty() || group.runs.back().missing != missing) group.runs.push_back({0, missing});
+    ++group.runs.back().length;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      if (!missing) group.rows[k * group.lanes + a] = axes[a][k];
+    }
+  }
+  return group;
 }
 
 }  // namespace
+
+LikelihoodRecord::LikelihoodRecord(std::span<const std::span<const double>> axes) {
+  constexpr std::size_t kMostAxes = 4;
+  std::vector<std::span<const double>> left(axes.begin(), axes.end());
+  while (!left.empty()) {
+    std::vector<std::span<const double>> together, others;
+    for (const auto& axis : left)
+      (same_missing(left[0], axis) && together.size() < kMostAxes ? together : others).push_back(axis);
+    groups_.push_back(grouped(together));
+    left = std::move(others);
+  }
+}
 
 double LikelihoodTerms::log_likelihood() const {
   return -0.5 *
          (static_cast<double>(count) * std::log(2 * std::numbers::pi) + sum_log_variance + sum_normalised);
 }
 
-double LikelihoodTerms::concentrated_log_likelihood() const {
-  const auto m = static_cast<double>(count);
-  return -0.5 *
-         (m * std::log(2 * std::numbers::pi) + sum_log_variance + m * std::log(sum_normalised / m) + m);
+LikelihoodTerms likelihood(const StateModel& model, double process_noise, double measurement_noise,
+                           const LikelihoodRecord& record, double dt_s) {
+  constexpr std::array kSized{sized<1>, sized<2>, sized<3>, sized<4>, sized<5>, sized<6>, sized<7>, sized<8>};
+  return kSized.at(static_cast<std::size_t>(model.states() - 1))(model, process_noise, measurement_noise,
+                                                                 record, dt_s);
 }
 
 LikelihoodTerms likelihood(const StateModel& model, double process_noise, double measurement_noise,
-                           std::span<const double> rate, double dt_s, std::vector<double>* innovations) {
-  constexpr std::array kSized{sized<1>, sized<2>, sized<3>, sized<4>, sized<5>, sized<6>, sized<7>, sized<8>};
-  return kSized.at(static_cast<std::size_t>(model.states() - 1))(model, process_noise, measurement_noise,
-                                                                 rate, dt_s, innovations);
-}
-
-double log_likelihood(const StateModel& model, double process_noise, double measurement_noise,
-                      std::span<const double> rate, double dt_s) {
-  return likelihood(model, process_noise, measurement_noise, rate, dt_s).log_likelihood();
+                           std::span<const double> rate, double dt_s) {
+  const std::span<const double> axes[] = {rate};
+  return likelihood(model, process_noise, measurement_noise, LikelihoodRecord(axes), dt_s);
 }
 
 }  // namespace ifog

@@ -35,12 +35,17 @@ class StateModel {
   // Transition over dt seconds and covariance of the driving noise gathered in them, for unit q. Writes every
   // element.
   virtual void discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept = 0;
-  // h: rate = h'x.
+  // h: what the sensor measures, without its white noise, is h'x.
   [[nodiscard]] virtual Eigen::VectorXd measurement() const = 0;
+  // The part of h that is the sensor's rate, level and manoeuvre, and is published. In a sum the terms that
+  // carry the level; what stands beside them (a colour, a line, tuned at rest) is noise: the filter has to
+  // know it, nobody wants to see it.
+  [[nodiscard]] virtual Eigen::VectorXd rate() const { return measurement(); }
   // The direction in which the state moves when the rate changes by one; h'level = 1. Used to follow a
   // manoeuvre.
   [[nodiscard]] virtual Eigen::VectorXd level() const = 0;
-  // Whether a lasting change of rate belongs in this term rather than in a sum's other ones.
+  // Whether a lasting change of rate belongs in this term rather than in a sum's other ones. Where no term
+  // of a sum says so, its first one carries it.
   [[nodiscard]] virtual bool carries_level() const noexcept { return false; }
   // Stationary covariance for unit q, with zero rows for states that have none (those are listed in
   // diffuse()).

@@ -30,6 +30,18 @@ Eigen::VectorXd Sum::measurement() const {
   return all;
 }
 
+Eigen::VectorXd Sum::rate() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(states_);
+  const bool said = carries_level();
+  int first = 0;
+  for (const Term& term : terms_) {
+    const int n = term.model->states();
+    if (said ? term.model->carries_level() : first == 0) all.segment(first, n) = term.model->rate();
+    first += n;
+  }
+  return all;
+}
+
 Eigen::VectorXd Sum::level() const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(states_);
   int first = 0;

@@ -19,6 +19,7 @@ class Sum final : public StateModel {
   [[nodiscard]] int states() const noexcept override { return states_; }
   void discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept override;
   [[nodiscard]] Eigen::VectorXd measurement() const override;
+  [[nodiscard]] Eigen::VectorXd rate() const override;
   [[nodiscard]] Eigen::VectorXd level() const override;
   [[nodiscard]] bool carries_level() const noexcept override;
   [[nodiscard]] Eigen::MatrixXd stationary() const override;

@@ -3,50 +3,58 @@
 //
 // Every candidate has a random walk for the level. A gyro's bias is not zero, and a stationary model alone
 // would pull the denoised rate towards zero; where the level does not wander its driving noise goes to the
-// lower bound.
+// lower bound. What is added to it is noise: the filter knows it and does not publish it
+// (StateModel::rate()).
 #pragma once
 
 #include <memory>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "filters/settings/filter_settings.h"
+#include "filters/tune/noise_term.h"
 
 namespace ifog {
 
-// What a filter is told, with the name and unit of each figure.
-struct CandidateFigure {
-  std::string name, unit;
-  double value = 0.0;
-};
-
 class Candidate {
  public:
-  virtual ~Candidate() = default;
-  [[nodiscard]] virtual std::string state() const = 0;  // FilterSettings::state
-  [[nodiscard]] virtual int size() const = 0;           // free parameters
-  // Where to start and how far to go; theta is dimensionless, data scaled to unit variance of successive
-  // differences.
-  virtual void start(std::span<double> theta) const = 0;
-  virtual void bounds(std::span<double> low, std::span<double> high) const = 0;
-  // Settings for data in rad/s whose scale (one unit of the normalised data) is `scale`.
-  [[nodiscard]] virtual FilterSettings settings(std::span<const double> theta, double scale) const = 0;
-  // The same as figures to be reported, each a smooth function of theta.
-  [[nodiscard]] virtual std::vector<CandidateFigure> figures(std::span<const double> theta,
-                                                             double scale) const = 0;
-};
+  // "random-walk", then any of gauss-markov, ar(p), arma(p,q) with q < p, and harmonic, added with " + ". An
+  // ARMA(p,q) with q >= p plus white measurement noise is an ARMA(p,q) again, so its R could not be told from
+  // the data. Throws std::invalid_argument for another name and for more states than a filter has.
+  Candidate(std::string state, double period_s);
 
-// "random-walk", "random-walk + gauss-markov", "random-walk + ar(p)", "random-walk + arma(p,q)" with q < p.
-// An ARMA(p,q) with q >= p plus white measurement noise is an ARMA(p,q) again, so its R could not be told
-// from the data. Throws std::invalid_argument for another name.
-std::unique_ptr<Candidate> make_candidate(const std::string& state, double period_s);
+  [[nodiscard]] const std::string& state() const { return state_; }           // FilterSettings::state
+  [[nodiscard]] int size() const { return size_; }                            // free parameters
+  [[nodiscard]] std::size_t lines() const { return line_variances_.size(); }  // harmonic terms
+
+  // theta: ln q a sample, ln R, then each term's; dimensionless, for data scaled to unit variance of
+  // successive differences.
+  void bounds(std::span<double> low, std::span<double> high) const;
+  // How far a first step may go in each parameter, where the spectrum does not tell.
+  [[nodiscard]] std::vector<double> reach(std::size_t samples) const;
+  // Where in theta the variances of the lines' steps stand.
+  [[nodiscard]] const std::vector<std::size_t>& line_variances() const { return line_variances_; }
+  // A start that the spectrum allows, drawn at random.
+  [[nodiscard]] std::vector<double> draw(const Spectrum& spectrum, std::mt19937_64& random) const;
+  // Expected density at each of the spectrum's bins, lines left out as they are there.
+  void density(std::span<const double> theta, const Spectrum& spectrum, std::span<double> out) const;
+  // Settings for data in rad/s whose scale (one unit of the normalised data) is `scale`.
+  [[nodiscard]] FilterSettings settings(std::span<const double> theta, double scale) const;
+  // The same as figures to be reported, each a smooth function of theta.
+  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale) const;
+
+ private:
+  static constexpr std::size_t kLevel = 2;  // the level's parameters, first in theta
+  std::string state_;
+  double period_s_;
+  std::vector<std::unique_ptr<NoiseTerm>> terms_;
+  int size_ = 0;
+  std::vector<std::size_t> line_variances_;
+};
 
 // What `ifog tune` tries when nobody says otherwise.
 std::vector<std::string> default_candidates();
-
-// Coefficients of a stationary AR(p) from partial autocorrelations in (−1, 1): Durbin and Levinson's
-// recursion, as Barndorff-Nielsen and Schou use it (J. Multivariate Analysis 3, 1973).
-std::vector<double> ar_from_partial(std::span<const double> partial);
 
 }  // namespace ifog

@@ -2,20 +2,33 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
-#include <nlopt.hpp>
+#include <map>
+#include <mutex>
+#include <numeric>
 #include <stdexcept>
+#include <thread>
 
-#include "filters/kalman/likelihood.h"
-#include "filters/state_models/state_model.h"
 #include "filters/tune/candidate.h"
+#include "filters/tune/maximum.h"
+#include "filters/tune/spectrum.h"
+#include "filters/tune/whittle.h"
 
 namespace ifog {
 namespace {
 
-// A long record is fitted on its first part until the optimum is near, then on all of it.
-constexpr std::size_t kFirstPart = 20000;
+// Starts drawn for a model, by parameter beyond the level's two.
+constexpr std::size_t kDraws = 30;
+// Optima of the spectrum that are looked at in the likelihood of the record, and those of them followed: the
+// two disagree by a few units, and one that is further behind than this will not win.
+constexpr std::size_t kLooked = 8;
+constexpr std::size_t kFollowed = 3;
+constexpr double kFar = 30.0;
+// A figure that much above another model's makes a model worse. Figures of one record through two filters
+// share its noise.
+constexpr double kWorse = 1.05;
 
 struct Data {
   std::vector<std::vector<double>> axes;  // scaled
@@ -53,108 +66,59 @@ Data scaled(std::span<const std::span<const double>> axes, double period_s) {
   return data;
 }
 
-class Objective {
- public:
-  Objective(const Candidate& candidate, const Data& data) : candidate_(candidate), data_(data) {}
-  void use_first(std::size_t samples) { first_ = samples; }
-
-  // −ln L of the scaled data.
-  [[nodiscard]] double operator()(std::span<const double> theta) const {
-    const FilterSettings s = candidate_.settings(theta, 1.0);
-    const auto model = make_state_model(s.state, s.state_parameters, data_.period_s);
-    double sum = 0.0;
-    for (const auto& axis : data_.axes) {
-      const std::span<const double> part(axis.data(), std::min(first_, axis.size()));
-      sum -= likelihood(*model, s.process_noise, s.measurement_noise, part, data_.period_s).log_likelihood();
-    }
-    // The optimiser needs a number where the filter has none.
-    return std::isfinite(sum) ? sum : 1e300;
-  }
-
-  static double call(unsigned n, const double* theta, double*, void* self) {
-    return (*static_cast<const Objective*>(self))(std::span<const double>(theta, n));
-  }
-
- private:
-  const Candidate& candidate_;
-  const Data& data_;
-  std::size_t first_ = std::numeric_limits<std::size_t>::max();
-};
-
-void minimise(Objective& objective, const Candidate& candidate, std::vector<double>& theta, double reach) {
-  const auto n = static_cast<unsigned>(candidate.size());
-  std::vector<double> low(n), high(n);
-  candidate.bounds(low, high);
-  for (unsigned i = 0; i < n; ++i) theta[i] = std::clamp(theta[i], low[i], high[i]);
-  nlopt::opt search(nlopt::LN_BOBYQA, n);
-  search.set_lower_bounds(low);
-  search.set_upper_bounds(high);
-  search.set_min_objective(&Objective::call, &objective);
-  search.set_initial_step(reach);
-  search.set_xtol_abs(1e-4);  // parameters are logarithms or atanh of what they mean
-  search.set_ftol_abs(1e-4);  // of −ln L: far below the half unit that a parameter is worth
-  search.set_maxeval(60 * static_cast<int>(n));
-  double best = 0.0;
-  try {
-    search.optimize(theta, best);
-  } catch (const nlopt::roundoff_limited&) {
-    // theta holds the best point found.
-  }
+LikelihoodRecord record_of(const Data& data, std::size_t samples) {
+  std::vector<std::span<const double>> parts;
+  for (const auto& axis : data.axes) parts.push_back(std::span(axis).first(samples));
+  return LikelihoodRecord(parts);
 }
 
-// Inverse of the curvature of −ln L; rows of parameters at a bound, or along which the data do not tell, are
-// left out.
-Eigen::MatrixXd covariance(const Objective& objective, const Candidate& candidate, std::vector<double> theta,
-                           std::vector<bool>& known) {
-  const int n = candidate.size();
-  std::vector<double> low(static_cast<std::size_t>(n)), high(low);
-  candidate.bounds(low, high);
-  const double at = objective(theta);
-  // A step that changes −ln L by about one half is of the size of the standard error, where the curvature is
-  // wanted.
-  std::vector<double> step(static_cast<std::size_t>(n), 1e-3);
-  known.assign(static_cast<std::size_t>(n), true);
-  for (std::size_t i = 0; i < step.size(); ++i) {
-    for (int tries = 0; tries < 14; ++tries) {
-      std::vector<double> moved = theta;
-      moved[i] += step[i];
-      if (objective(moved) - at > 0.1) break;
-      step[i] *= 2.0;
+struct Fit {
+  std::vector<double> theta;
+  double cost = 1e300;
+  Eigen::MatrixXd information;  // expected, at theta
+};
+
+// From one optimum of the spectrum the lines' wandering is tried at several values, of which the spectrum
+// without them knows nothing: from a line that keeps its phase to one that is another after a hundredth of
+// the record.
+std::vector<std::vector<double>> starts_from(const WhittleOptimum& optimum, const Candidate& candidate,
+                                             const Spectrum& spectrum) {
+  if (candidate.lines() == 0) return {optimum.theta};
+  std::vector<std::vector<double>> all;
+  for (const double share : {1e-6, 1e-3, 1.0, 100.0}) {
+    std::vector<double> theta = optimum.theta;
+    for (std::size_t i = 0; i < candidate.lines(); ++i) {
+      const double amplitude = std::max(spectrum.lines[i].amplitude, 1e-6);
+      theta[candidate.line_variances()[i]] =
+          std::log(share * amplitude * amplitude / static_cast<double>(spectrum.samples));
     }
-    if (theta[i] - step[i] <= low[i] || theta[i] + step[i] >= high[i]) known[i] = false;
+    all.push_back(std::move(theta));
   }
-  std::vector<std::size_t> index;
-  for (std::size_t i = 0; i < step.size(); ++i)
-    if (known[i]) index.push_back(i);
-  const auto m = static_cast<Eigen::Index>(index.size());
-  const auto value = [&](std::size_t i, double di, std::size_t j, double dj) {
-    std::vector<double> moved = theta;
-    moved[i] += di * step[i];
-    moved[j] += dj * step[j];
-    return objective(moved);
-  };
-  Eigen::MatrixXd hessian(m, m);
-  for (Eigen::Index a = 0; a < m; ++a)
-    for (Eigen::Index b = 0; b <= a; ++b) {
-      const std::size_t i = index[static_cast<std::size_t>(a)], j = index[static_cast<std::size_t>(b)];
-      const double h =
-          a == b ? (value(i, 1, j, 0) - 2.0 * at + value(i, -1, j, 0)) / (step[i] * step[i])
-                 : (value(i, 1, j, 1) - value(i, 1, j, -1) - value(i, -1, j, 1) + value(i, -1, j, -1)) /
-                       (4.0 * step[i] * step[j]);
-      hessian(a, b) = hessian(b, a) = h;
+  return all;
+}
+
+Fit fit(const Candidate& candidate, const Spectrum& spectrum, const RecordObjective& objective) {
+  const std::size_t draws = kDraws * static_cast<std::size_t>(candidate.size() - 1);
+  const std::vector<WhittleOptimum> optima = whittle_optima(candidate, spectrum, draws);
+  std::vector<Fit> starts;
+  for (std::size_t i = 0; i < std::min(optima.size(), kLooked); ++i) {
+    if (optima[i].cost > optima[0].cost + kFar) break;
+    for (auto& theta : starts_from(optima[i], candidate, spectrum)) {
+      const double cost = objective(theta);
+      starts.push_back({std::move(theta), cost, {}});
     }
-  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(n, n);
-  const Eigen::LDLT<Eigen::MatrixXd> solver(hessian);
-  if (m == 0 || !solver.isPositive()) {
-    known.assign(known.size(), false);
-    return full;
   }
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
-  for (Eigen::Index a = 0; a < m; ++a)
-    for (Eigen::Index b = 0; b < m; ++b)
-      full(static_cast<Eigen::Index>(index[static_cast<std::size_t>(a)]),
-           static_cast<Eigen::Index>(index[static_cast<std::size_t>(b)])) = inverse(a, b);
-  return full;
+  std::sort(starts.begin(), starts.end(), [](const Fit& a, const Fit& b) { return a.cost < b.cost; });
+  if (starts.size() > kFollowed) starts.resize(kFollowed);
+  Fit best;
+  const std::vector<double> reach = candidate.reach(spectrum.samples);
+  for (Fit& start : starts) {
+    start.cost =
+        find_maximum(objective, whittle_information(candidate, spectrum, start.theta), reach, start.theta);
+    if (start.cost < best.cost) best = std::move(start);
+  }
+  best.information = whittle_information(candidate, spectrum, best.theta);
+  return best;
 }
 
 // Errors of the reported figures: their gradient with respect to theta through its covariance.
@@ -185,38 +149,132 @@ std::vector<TunedFigure> figures_with_errors(const Candidate& candidate, const s
   return out;
 }
 
+struct Fitted {
+  TunedModel model;
+  std::vector<double> theta;
+  Eigen::MatrixXd information;
+};
+
+Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& spectrum,
+                 const LikelihoodRecord& record) {
+  const RecordObjective objective(candidate, record, data.period_s);
+  Fit found = fit(candidate, spectrum, objective);
+  TunedModel model;
+  model.settings = candidate.settings(found.theta, data.scale);
+  model.parameters = candidate.size();
+  const auto count = static_cast<double>(data.samples);
+  // Back to the density of the data in rad/s, so that likelihoods can be set beside those of other programs.
+  model.log_likelihood = -found.cost - count * std::log(data.scale);
+  model.bic = model.parameters * std::log(count) - 2.0 * model.log_likelihood;
+  std::vector<bool> known;
+  const Eigen::MatrixXd errors =
+      covariance_at(objective, found.information, candidate.reach(spectrum.samples), found.theta, known);
+  model.figures = figures_with_errors(candidate, found.theta, data.scale, errors, known);
+  return {std::move(model), std::move(found.theta), std::move(found.information)};
+}
+
+// Work shared among threads, one item at a time, in order.
+template <class Work>
+void share_out(std::size_t items, unsigned threads, const Work& work) {
+  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex guard;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < items; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(guard);
+        failure = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> others;
+  for (unsigned i = 1; i < std::min<std::size_t>(threads, items); ++i) others.emplace_back(run);
+  run();
+  for (std::thread& other : others) other.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+// Fits the model to the first half, from where the whole record has its optimum, and judges it on the second.
+Outcome held_out(const Candidate& candidate, const Data& data, const Fitted& fitted,
+                 std::span<const std::span<const double>> axes, const LikelihoodRecord& first_half) {
+  const RecordObjective objective(candidate, first_half, data.period_s);
+  std::vector<double> theta = fitted.theta;
+  const std::size_t half = data.axes[0].size() / 2;
+  find_maximum(objective, 0.5 * fitted.information, candidate.reach(half), theta);
+  return outcome_of(candidate.settings(theta, data.scale), axes, data.period_s, half);
+}
+
+// By BIC, to half a unit: the optima are found to that. A Gauss-Markov process and an AR(1) of positive
+// coefficient are one and the same at the sample times and tie; below ten samples the correlation time is no
+// more than a name for the coefficient.
+std::pair<double, bool> rank(const TunedModel& model, double period_s) {
+  constexpr double kShort = 10.0;
+  const bool only_a_name = model.settings.state == "random-walk + gauss-markov" &&
+                           model.settings.state_parameters[0] < kShort * period_s;
+  return {std::round(2.0 * model.bic), only_a_name};
+}
+
+// The likeliest of the models that leave nothing above the random walk's in the published rate and, taken
+// together, hardly more than the best of them. models: by BIC; all tried.
+std::size_t choose(const std::vector<TunedModel>& models) {
+  const auto walk = std::find_if(models.begin(), models.end(),
+                                 [](const TunedModel& m) { return m.settings.state == "random-walk"; });
+  if (walk == models.end()) return 0;
+  std::vector<double> left;
+  for (const TunedModel& model : models) {
+    const Outcome::Ratios ratios = model.held_out->against(*walk->held_out);
+    left.push_back(ratios.largest <= kWorse ? ratios.mean : std::numeric_limits<double>::infinity());
+  }
+  const double least = *std::min_element(left.begin(), left.end());
+  return static_cast<std::size_t>(
+      std::find_if(left.begin(), left.end(), [&](double l) { return l <= kWorse * least; }) - left.begin());
+}
+
 }  // namespace
 
 Tuning tune(std::span<const std::span<const double>> axes, double period_s, const TuneOptions& options) {
   const Data data = scaled(axes, period_s);
   const std::vector<std::string> states = options.states.empty() ? default_candidates() : options.states;
+  std::vector<Candidate> candidates;
+  std::map<std::size_t, Spectrum> spectra;  // by lines taken out
+  for (const std::string& state : states) {
+    candidates.emplace_back(state, period_s);
+    const std::size_t lines = candidates.back().lines();
+    if (!spectra.contains(lines)) spectra.emplace(lines, spectrum_of(data.axes, lines));
+  }
+  const std::size_t length = data.axes[0].size();
+  const LikelihoodRecord record = record_of(data, length);
+  // The largest first, so that no thread is left with one at the end.
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return candidates[a].size() > candidates[b].size(); });
+  std::vector<Fitted> fitted(candidates.size());
+  std::mutex guard;
+  std::size_t done = 0;
+  share_out(order.size(), options.threads, [&](std::size_t item) {
+    const std::size_t i = order[item];
+    fitted[i] = fit_model(candidates[i], data, spectra.at(candidates[i].lines()), record);
+    const std::lock_guard lock(guard);
+    if (options.progress) options.progress(++done, candidates.size());
+  });
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return rank(fitted[a].model, period_s) < rank(fitted[b].model, period_s);
+  });
+  if (options.hold_out) {
+    const LikelihoodRecord first_half = record_of(data, length / 2);
+    share_out(order.size(), options.threads, [&](std::size_t i) {
+      fitted[i].model.held_out = held_out(candidates[i], data, fitted[i], axes, first_half);
+    });
+  }
   Tuning result;
   result.samples = data.samples;
-  for (const std::string& state : states) {
-    const auto candidate = make_candidate(state, period_s);
-    Objective objective(*candidate, data);
-    std::vector<double> theta(static_cast<std::size_t>(candidate->size()));
-    candidate->start(theta);
-    objective.use_first(kFirstPart);
-    minimise(objective, *candidate, theta, 1.0);
-    objective.use_first(std::numeric_limits<std::size_t>::max());
-    minimise(objective, *candidate, theta, 0.3);
-
-    TunedModel model;
-    model.settings = candidate->settings(theta, data.scale);
-    model.parameters = candidate->size();
-    // Back to the density of the data in rad/s, so that likelihoods can be set beside those of other
-    // programs.
-    model.log_likelihood = -objective(theta) - static_cast<double>(data.samples) * std::log(data.scale);
-    model.bic = model.parameters * std::log(static_cast<double>(data.samples)) - 2.0 * model.log_likelihood;
-    std::vector<bool> known;
-    const Eigen::MatrixXd errors = covariance(objective, *candidate, theta, known);
-    model.figures = figures_with_errors(*candidate, theta, data.scale, errors, known);
-    result.models.push_back(std::move(model));
-    if (options.progress) options.progress(result.models.size(), states.size());
-  }
-  std::stable_sort(result.models.begin(), result.models.end(),
-                   [](const TunedModel& a, const TunedModel& b) { return a.bic < b.bic; });
+  for (const std::size_t i : order) result.models.push_back(std::move(fitted[i].model));
+  if (options.hold_out) result.chosen = choose(result.models);
   return result;
 }
 

@@ -1,6 +1,15 @@
-// Q, R and the state model of a sensor at rest by maximum likelihood. The likelihood is exact (Kalman
-// innovations), the order is chosen by Schwarz' criterion (Annals of Statistics 6, 1978), the errors come
-// from the curvature at the optimum.
+// Q, R and the state model of a sensor at rest by maximum likelihood. The likelihood is that of the record
+// (Kalman innovations), the order is chosen by Schwarz' criterion (Annals of Statistics 6, 1978), the errors
+// come from the curvature at the optimum.
+//
+// The likelihood of such models has many local optima. The starts come from the spectrum: many are drawn and
+// followed in Whittle's approximation, which costs next to nothing, and the best few of its optima are then
+// followed in the likelihood itself.
+//
+// The likelihood says which model describes the record. What a model does to the rate that is published is
+// another question, and is tried: fitted to the first half of the record, the estimator run with it, judged
+// on the second half. A model that leaves more there than the random walk alone is passed over, and so is one
+// that leaves more than a less likely one.
 #pragma once
 
 #include <functional>
@@ -10,6 +19,7 @@
 #include <vector>
 
 #include "filters/settings/filter_settings.h"
+#include "filters/tune/outcome.h"
 
 namespace ifog {
 
@@ -24,17 +34,21 @@ struct TunedModel {
   std::vector<TunedFigure> figures;
   int parameters = 0;
   double log_likelihood = 0.0;
-  double bic = 0.0;  // parameters × ln n − 2 ln L; smaller is better
+  double bic = 0.0;                 // parameters × ln n − 2 ln L; smaller is better
+  std::optional<Outcome> held_out;  // of the models that were tried
 };
 
 struct TuneOptions {
   std::vector<std::string> states;  // empty: default_candidates()
+  bool hold_out = true;             // try the models on the second half of the record
+  unsigned threads = 0;             // 0: as many as the machine has; the result does not depend on it
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
 struct Tuning {
-  std::vector<TunedModel> models;  // best first
+  std::vector<TunedModel> models;  // best by BIC first
   std::size_t samples = 0;         // used, all axes together
+  std::size_t chosen = 0;          // of `models`: the likeliest that holds out
 };
 
 // axes: rad/s, NaN where missing, evenly spaced at period_s; they share one model because they will share one

@@ -13,6 +13,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/allan/stretches.h"
 #include "filters/model_file/model.h"
+#include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
@@ -64,6 +65,12 @@ std::string today() {
   return text;
 }
 
+std::string tau_text(double tau_s) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%g", tau_s);
+  return text;
+}
+
 // What people read: deg/sqrt(h), deg/h, deg/h/sqrt(h) beside SI.
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
@@ -77,7 +84,23 @@ std::string in_field_units(const TunedFigure& figure) {
   return text;
 }
 
-json model_json(const TunedModel& model) {
+json rate_json(const RateFigures& figures) {
+  json adev = json::object();
+  for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t)
+    if (figures.adev_radps[t]) adev[tau_text(kOutcomeTaus[t])] = *figures.adev_radps[t];
+  return {{"rms_radps", figures.rms_radps}, {"adev_radps", adev}};
+}
+
+json outcome_json(const Outcome& outcome, const std::vector<std::string>& axes) {
+  json all = json::array();
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    all.push_back({{"axis", axes[a]},
+                   {"before", rate_json(outcome.before[a])},
+                   {"after", rate_json(outcome.after[a])}});
+  return all;
+}
+
+json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
   json figures = json::object();
   for (const TunedFigure& f : model.figures)
     figures[f.name] = {{"value", f.value},
@@ -88,7 +111,8 @@ json model_json(const TunedModel& model) {
           {"parameters", model.parameters},
           {"log_likelihood", model.log_likelihood},
           {"bic", model.bic},
-          {"figures", figures}};
+          {"figures", figures},
+          {"held_out", model.held_out ? outcome_json(*model.held_out, axes) : json(nullptr)}};
 }
 
 void print(const Tuning& tuning) {
@@ -96,8 +120,9 @@ void print(const Tuning& tuning) {
   for (const TunedModel& model : tuning.models)
     say("%-28s %4d %16.1f %10.1f\n", model.settings.state.c_str(), model.parameters, model.log_likelihood,
         model.bic - tuning.models.front().bic);
-  say("\n%s\n", tuning.models.front().settings.state.c_str());
-  for (const TunedFigure& f : tuning.models.front().figures) {
+  const TunedModel& chosen = tuning.models[tuning.chosen];
+  say("\n%s\n", chosen.settings.state.c_str());
+  for (const TunedFigure& f : chosen.figures) {
     if (f.std_error)
       say("  %-30s %12.5g ± %-9.2g %-18s%s\n", f.name.c_str(), f.value, *f.std_error, f.unit.c_str(),
           in_field_units(f).c_str());
@@ -107,11 +132,48 @@ void print(const Tuning& tuning) {
   }
 }
 
+// One line a figure: measured, published with the chosen model, and with the random walk alone.
+void print_figure(const char* name, double before, double after, const double* walk) {
+  say("  %-22s %12.4g %12.4g", name, before / kDegreePerHour, after / kDegreePerHour);
+  if (walk != nullptr) say(" %12.4g", *walk / kDegreePerHour);
+  say("\n");
+}
+
+void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) {
+  const TunedModel& chosen = tuning.models[tuning.chosen];
+  if (!chosen.held_out) return;
+  const auto found = std::find_if(tuning.models.begin(), tuning.models.end(), [&](const TunedModel& m) {
+    return m.held_out && m.settings.state == "random-walk";
+  });
+  const Outcome* walk = found == tuning.models.end() || &*found == &chosen ? nullptr : &*found->held_out;
+  say("\nfitted to the first half, the second half as denoise makes it, deg/h\n  %-22s %12s %12s%s\n", "",
+      "measured", "denoised", walk ? "  random-walk" : "");
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const RateFigures& before = chosen.held_out->before[a];
+    const RateFigures& after = chosen.held_out->after[a];
+    if (!axes[a].empty()) say("  axis %s\n", axes[a].c_str());
+    print_figure("RMS", before.rms_radps, after.rms_radps, walk ? &walk->after[a].rms_radps : nullptr);
+    for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t) {
+      if (!before.adev_radps[t] || !after.adev_radps[t]) continue;
+      print_figure(("Allan deviation " + tau_text(kOutcomeTaus[t]) + " s").c_str(), *before.adev_radps[t],
+                   *after.adev_radps[t],
+                   walk && walk->after[a].adev_radps[t] ? &*walk->after[a].adev_radps[t] : nullptr);
+    }
+  }
+  for (std::size_t i = 0; i < tuning.chosen; ++i) {
+    const TunedModel& passed = tuning.models[i];
+    say("%s is likelier but leaves up to %.3g times what %s leaves: passed over\n",
+        passed.settings.state.c_str(), passed.held_out->against(*chosen.held_out).largest,
+        chosen.settings.state.c_str());
+  }
+}
+
 Model model_of(const Tuning& tuning, const Capture& capture, const std::string& path) {
   Model model;
-  model.filter = tuning.models.front().settings;
+  const TunedModel& chosen = tuning.models[tuning.chosen];
+  model.filter = chosen.settings;
   for (const std::string& axis : capture.axes)
-    for (const TunedFigure& f : tuning.models.front().figures) {
+    for (const TunedFigure& f : chosen.figures) {
       // A figure whose error is unknown lies at its bound: the data do not show it.
       if (!f.std_error) continue;
       if (f.name == "angle_random_walk") model.noise[axis].N = f.value;
@@ -135,7 +197,8 @@ void run(const Options& options) {
   const std::vector<std::span<const double>> axes(columns.begin(), columns.end());
   TuneOptions tune_options;
   tune_options.states = options.states;
-  Progress progress("fitting state models", options.states.empty() ? 7 : options.states.size());
+  Progress progress("fitting state models",
+                    options.states.empty() ? default_candidates().size() : options.states.size());
   tune_options.progress = [&](std::size_t done, std::size_t) { progress.at(done); };
   Tuning tuning;
   try {
@@ -145,17 +208,20 @@ void run(const Options& options) {
   }
   say("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
       capture.axes.size() > 1 ? ", all axes under one model" : "");
-  if (left > 0) say("the last %zu rows are left out; --samples %zu takes all\n", left, capture.size() + left);
+  if (left > 0)
+    say("the last %zu rows are left out; --samples %zu takes all\n", left, columns[0].size() + left);
   print(tuning);
+  print_held_out(tuning, capture.axes);
   if (!options.json_file.empty()) {
     json models = json::array();
-    for (const TunedModel& model : tuning.models) models.push_back(model_json(model));
+    for (const TunedModel& model : tuning.models) models.push_back(model_json(model, capture.axes));
     write_json(options.json_file, json{{"schema", "ifog.tune/1"},
                                        {"capture", options.capture},
                                        {"samples", tuning.samples},
                                        {"left_out", left},
                                        {"sample_rate_hz", 1.0 / period},
-                                       {"best", tuning.models.front().settings.state},
+                                       {"best", tuning.models[tuning.chosen].settings.state},
+                                       {"best_by_bic", tuning.models.front().settings.state},
                                        {"models", models}});
   }
   if (!options.model.empty()) {

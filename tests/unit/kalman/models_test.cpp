@@ -143,4 +143,17 @@ TEST(Sum, IsBlockDiagonal) {
   EXPECT_EQ(sum->measurement(), measurement);
 }
 
+// The rate is what carries the level; without a term made for that, the first.
+TEST(Sum, PublishesTheTermsThatCarryTheLevel) {
+  const auto rate = [](const char* name, std::vector<double> parameters) {
+    return ifog::make_state_model(name, parameters, kPeriod)->rate();
+  };
+  EXPECT_EQ(rate("gauss-markov + random-walk + harmonic", {0.5, 1.0, 3.3, 0.25}),
+            (Eigen::Vector4d(0.0, 1.0, 0.0, 0.0)));
+  EXPECT_EQ(rate("random-walk + ar(2) + integrated-random-walk", {0.5, 0.1, 1.0, 0.1}),
+            (Eigen::Matrix<double, 5, 1>(1.0, 0.0, 0.0, 1.0, 0.0)));
+  EXPECT_EQ(rate("gauss-markov + harmonic", {0.5, 3.3, 0.25}), (Eigen::Vector3d(1.0, 0.0, 0.0)));
+  EXPECT_EQ(rate("ar(1)", {0.5}), (Eigen::Matrix<double, 1, 1>(1.0)));
+}
+
 }  // namespace

@@ -7,7 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "filters/tune/candidate.h"
+#include "filters/kalman/likelihood.h"
+#include "filters/tune/noise_term.h"
+#include "filters/tune/spectrum.h"
 
 namespace {
 
@@ -107,6 +109,82 @@ TEST(Tune, PicksTheModelThatMadeTheData) {
 
   const Tuning plain = tuned(random_walk(11, 8000, 1e-15, 1e-12, 0.0), 0.01);
   EXPECT_EQ(plain.models[0].settings.state, "random-walk");
+}
+
+// A colour that dies within two samples beside a slow level: the likelihood has an optimum in which the
+// autoregression plays the level, and it is far below.
+TEST(Tune, PicksTheOrderOfAFastColour) {
+  int right = 0;
+  constexpr int kRuns = 3;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    Noise noise(100 + seed);
+    std::vector<double> z;
+    double level = 0.0, colour = noise() / std::sqrt(0.75);
+    for (int k = 0; k < 6000; ++k) {
+      level += 1e-3 * noise();
+      colour = 0.5 * colour + noise();
+      z.push_back(1e-6 * (level + colour + 0.5 * noise()));
+    }
+    const Tuning t = tuned(z, 0.01,
+                           {"random-walk", "random-walk + gauss-markov", "random-walk + ar(1)",
+                            "random-walk + ar(2)", "random-walk + arma(3,2)"});
+    if (t.models[0].settings.state == "random-walk + ar(1)") ++right;
+    EXPECT_NE(t.models[0].settings.state, "random-walk + arma(3,2)") << seed;
+    const auto one = std::find_if(t.models.begin(), t.models.end(),
+                                  [](const auto& m) { return m.settings.state == "random-walk + ar(1)"; });
+    EXPECT_NEAR(figure(*one, "phi_1").value, 0.5, 0.1) << seed;
+  }
+  EXPECT_GE(right, 2);
+}
+
+// Held out: a model whose published rate is louder than the random walk's is not the one that is chosen,
+// whatever its likelihood; and figures of white noise are known: 1/sqrt(m).
+TEST(Tune, SaysWhatTheModelWillDo) {
+  Noise noise(21);
+  std::vector<double> z;
+  for (int k = 0; k < 20000; ++k) z.push_back(2e-6 * noise());
+  const Tuning t = tuned(z, 0.01);
+  const auto& chosen = t.models[t.chosen];
+  ASSERT_TRUE(chosen.held_out.has_value());
+  const ifog::RateFigures& before = chosen.held_out->before[0];
+  EXPECT_NEAR(before.rms_radps, 2e-6, 5e-8);
+  ASSERT_TRUE(before.adev_radps[0] && before.adev_radps[1]);
+  EXPECT_NEAR(*before.adev_radps[0], 2e-6 / std::sqrt(10.0), 1e-7);
+  EXPECT_NEAR(*before.adev_radps[1], 2e-7, 3e-8);
+  EXPECT_FALSE(before.adev_radps[3].has_value());  // 100 s of which 100 s are held out
+  EXPECT_LT(chosen.held_out->after[0].rms_radps, 0.1 * before.rms_radps);
+  for (const auto& model : t.models) {
+    ASSERT_TRUE(model.held_out.has_value());
+    if (model.settings.state == "random-walk") {
+      EXPECT_LE(chosen.held_out->against(*model.held_out).largest, 1.05);
+    }
+  }
+}
+
+// The closed form: contrasts of a random walk under white noise are independent in the cosine transform.
+TEST(Tune, WhittlesLikelihoodOfARandomWalkIsExact) {
+  const std::vector<double> walk = random_walk(4, 1500, 1e-3, 1.0, 0.3);
+  const std::vector<std::vector<double>> axes{walk};
+  const ifog::Spectrum spectrum = ifog::spectrum_of(axes, 0);
+  ASSERT_EQ(spectrum.samples, 1500U);
+  double cost = 0.0;
+  const double n = 1500.0;
+  // The transform written out, coefficient by coefficient.
+  for (int k = 1; k < 1500; ++k) {
+    double value = 0.0;
+    for (int i = 0; i < 1500; ++i)
+      value += walk[static_cast<std::size_t>(i)] * std::cos(M_PI * k * (i + 0.5) / n);
+    const double square = 2.0 / n * value * value;
+    const double expected = 1.0 + 1e-3 / (2.0 - 2.0 * std::cos(M_PI * k / n));
+    cost += 0.5 * (std::log(2.0 * M_PI * expected) + square / expected);
+    if (k < 64) {
+      EXPECT_NEAR(spectrum.density[static_cast<std::size_t>(k - 1)], square, 1e-9 * (1.0 + square));
+    }
+  }
+  const auto model = ifog::make_state_model("random-walk", {}, 0.01);
+  const double exact = ifog::likelihood(*model, 1e-3 / 0.01, 1.0, walk, 0.01).log_likelihood();
+  // The diffuse likelihood is that of the contrasts but for a constant, ln sqrt(n).
+  EXPECT_NEAR(-cost, exact + 0.5 * std::log(n), 1e-3);
 }
 
 TEST(Tune, FindsTheCorrelationTimeOfAGaussMarkovProcess) {

@@ -1,0 +1,156 @@
+#include "filters/tune/maximum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlopt.hpp>
+#include <stdexcept>
+
+#include "filters/state_models/state_model.h"
+
+namespace ifog {
+namespace {
+
+// Theta by coordinates in which one unit in any direction should cost about half a log-likelihood unit: the
+// axes of the expected information, each as long as its standard error. A search of equal steps is then
+// well-scaled from its first one on.
+class Whitened {
+ public:
+  Whitened(const RecordObjective& objective, const Eigen::MatrixXd& information,
+           const std::vector<double>& reach, std::vector<double> origin)
+      : objective_(objective), origin_(std::move(origin)), low_(origin_.size()), high_(origin_.size()) {
+    objective_.candidate().bounds(low_, high_);
+    Eigen::MatrixXd full = information;
+    for (Eigen::Index i = 0; i < full.rows(); ++i) {
+      const double r = reach[static_cast<std::size_t>(i)];
+      // No step beyond the reach, however little the spectrum tells.
+      full(i, i) += 1.0 / (r * r);
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(full);
+    directions_ =
+        solver.eigenvectors() * solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
+  }
+
+  [[nodiscard]] std::vector<double> theta(std::span<const double> unit) const {
+    const Eigen::Map<const Eigen::VectorXd> u(unit.data(), static_cast<Eigen::Index>(unit.size()));
+    const Eigen::VectorXd moved = directions_ * u;
+    std::vector<double> out = origin_;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = std::clamp(out[i] + moved(static_cast<Eigen::Index>(i)), low_[i], high_[i]);
+    return out;
+  }
+  static double call(unsigned n, const double* unit, double*, void* self) {
+    const auto& whitened = *static_cast<const Whitened*>(self);
+    return whitened.objective_(whitened.theta(std::span(unit, n)));
+  }
+
+ private:
+  const RecordObjective& objective_;
+  std::vector<double> origin_, low_, high_;
+  Eigen::MatrixXd directions_;
+};
+
+}  // namespace
+
+double RecordObjective::operator()(std::span<const double> theta) const {
+  constexpr double kNone = 1e300;
+  const FilterSettings s = candidate_.settings(theta, 1.0);
+  std::unique_ptr<StateModel> model;
+  try {
+    model = make_state_model(s.state, s.state_parameters, period_s_);
+  } catch (const std::invalid_argument&) {
+    // Within a rounding error of an autoregression that is not stationary.
+    return kNone;
+  }
+  const double cost =
+      -likelihood(*model, s.process_noise, s.measurement_noise, record_, period_s_).log_likelihood();
+  return std::isfinite(cost) ? cost : kNone;
+}
+
+double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& information,
+                    const std::vector<double>& reach, std::vector<double>& theta) {
+  const auto n = static_cast<unsigned>(theta.size());
+  double best = objective(theta);
+  // Again from where it ended, as long as that gains: the scaling was that of the first start.
+  constexpr double kGain = 0.05;
+  for (int round = 0; round < 4; ++round) {
+    Whitened whitened(objective, information, reach, theta);
+    nlopt::opt search(nlopt::LN_BOBYQA, n);
+    search.set_min_objective(&Whitened::call, &whitened);
+    search.set_initial_step(1.0);
+    search.set_xtol_abs(0.01);  // of a standard error
+    search.set_ftol_abs(1e-3);  // of −ln L, where half a unit is what a parameter is worth
+    search.set_maxeval(50 * static_cast<int>(n));
+    std::vector<double> unit(n, 0.0);
+    double cost = best;
+    try {
+      search.optimize(unit, cost);
+    } catch (const nlopt::roundoff_limited&) {
+      // unit holds the best point found.
+    }
+    std::vector<double> moved = whitened.theta(unit);
+    cost = objective(moved);
+    if (!(cost < best)) break;
+    const double gained = best - cost;
+    best = cost;
+    theta = std::move(moved);
+    if (gained < kGain) break;
+  }
+  return best;
+}
+
+Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::MatrixXd& information,
+                              const std::vector<double>& reach, const std::vector<double>& theta,
+                              std::vector<bool>& known) {
+  const std::size_t n = theta.size();
+  std::vector<double> low(n), high(n), step(n);
+  objective.candidate().bounds(low, high);
+  const double at = objective(theta);
+  known.assign(n, true);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    step[i] = 0.25 / std::sqrt(information(row, row) + 1.0 / (reach[i] * reach[i]));
+    // A step that changes −ln L by about one half is of the size of the standard error, where the curvature
+    // is wanted.
+    for (int tries = 0; tries < 14; ++tries) {
+      std::vector<double> moved = theta;
+      moved[i] += step[i];
+      if (moved[i] >= high[i] || objective(moved) - at > 0.1) break;
+      step[i] *= 2.0;
+    }
+    if (theta[i] - step[i] <= low[i] || theta[i] + step[i] >= high[i]) known[i] = false;
+  }
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < n; ++i)
+    if (known[i]) index.push_back(i);
+  const auto value = [&](std::size_t i, double di, std::size_t j, double dj) {
+    std::vector<double> moved = theta;
+    moved[i] += di * step[i];
+    moved[j] += dj * step[j];
+    return objective(moved);
+  };
+  const auto m = static_cast<Eigen::Index>(index.size());
+  Eigen::MatrixXd hessian(m, m);
+  for (Eigen::Index a = 0; a < m; ++a)
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      const std::size_t i = index[static_cast<std::size_t>(a)], j = index[static_cast<std::size_t>(b)];
+      hessian(a, b) = hessian(b, a) =
+          a == b ? (value(i, 1, j, 0) - 2.0 * at + value(i, -1, j, 0)) / (step[i] * step[i])
+                 : (value(i, 1, j, 1) - value(i, 1, j, -1) - value(i, -1, j, 1) + value(i, -1, j, -1)) /
+                       (4.0 * step[i] * step[j]);
+    }
+  const auto size = static_cast<Eigen::Index>(n);
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(size, size);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(hessian);
+  if (m == 0 || !solver.isPositive()) {
+    known.assign(n, false);
+    return full;
+  }
+  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
+  for (Eigen::Index a = 0; a < m; ++a)
+    for (Eigen::Index b = 0; b < m; ++b)
+      full(static_cast<Eigen::Index>(index[static_cast<std::size_t>(a)]),
+           static_cast<Eigen::Index>(index[static_cast<std::size_t>(b)])) = inverse(a, b);
+  return full;
+}
+
+}  // namespace ifog

@@ -1,0 +1,264 @@
+#include "filters/tune/noise_term.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <iterator>
+#include <numbers>
+
+namespace ifog {
+namespace {
+
+using Random = std::mt19937_64;
+
+double between(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+// theta: ln variance, ln correlation time in samples.
+class GaussMarkovTerm final : public NoiseTerm {
+ public:
+  [[nodiscard]] int size() const override { return 2; }
+  void bounds(std::span<double> low, std::span<double> high) const override {
+    low[0] = -20.0;
+    high[0] = 8.0;
+    low[1] = -1.0;
+    high[1] = 14.0;
+  }
+  void draw_shape(const Spectrum& spectrum, Random& random, std::span<double> theta) const override {
+    theta[1] = between(random, -0.5, std::log(static_cast<double>(spectrum.samples)));
+  }
+  void add_density(std::span<const double> theta, const Spectrum& spectrum,
+                   std::span<double> out) const override {
+    // 1 - a is all there is of a long correlation time.
+    const double a = std::exp(-std::exp(-theta[1])), less = -std::expm1(-std::exp(-theta[1]));
+    const double top = std::exp(theta[0]) * less * (1.0 + a);
+    for (std::size_t b = 0; b < out.size(); ++b)
+      out[b] += top / (less * less + 2.0 * a * (1.0 - spectrum.cosine[0][b]));
+  }
+  [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
+                                               double period_s) const override {
+    const double tau = std::exp(theta[1]) * period_s;
+    return {tau, 2.0 * std::exp(theta[0]) / tau};
+  }
+  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale,
+                                                     double period_s) const override {
+    return {{"gauss_markov_sigma", "rad/s", std::exp(0.5 * theta[0]) * scale},
+            {"gauss_markov_correlation_time", "s", std::exp(theta[1]) * period_s}};
+  }
+};
+
+// Factors 1 - root B multiplied out: coefficients of B, B^2, … .
+std::vector<double> expanded(std::span<const std::complex<double>> roots) {
+  std::vector<std::complex<double>> poly{1.0};
+  for (const auto& root : roots) {
+    poly.push_back(0.0);
+    for (std::size_t i = poly.size() - 1; i > 0; --i) poly[i] -= root * poly[i - 1];
+  }
+  std::vector<double> out;
+  for (std::size_t i = 1; i < poly.size(); ++i) out.push_back(poly[i].real());
+  return out;
+}
+
+// Where the spectrum stands out of its surroundings, or anywhere.
+double drawn_frequency(const Spectrum& spectrum, Random& random) {
+  if (between(random, 0.0, 1.0) < 0.5) return between(random, 0.0, std::numbers::pi);
+  std::vector<double> height;
+  for (std::size_t b = 0; b < spectrum.bins(); ++b) {
+    const std::size_t reach = 1 + b / 3;
+    const double low = spectrum.coarse[b - std::min(b, reach)];
+    const double high = spectrum.coarse[std::min(b + reach, spectrum.bins() - 1)];
+    const double above = spectrum.coarse[b] / std::sqrt(low * high);
+    height.push_back(above > 1.5 ? std::min(above, 10.0) : 0.0);
+  }
+  if (std::all_of(height.begin(), height.end(), [](double h) { return h <= 0.0; }))
+    return between(random, 0.0, std::numbers::pi);
+  return spectrum.omega[std::discrete_distribution<std::size_t>(height.begin(), height.end())(random)];
+}
+
+// Real ones and pairs, inside the unit circle by a distance drawn on a logarithmic scale.
+std::vector<std::complex<double>> drawn_roots(int count, const Spectrum& spectrum, double nearest,
+                                              Random& random) {
+  std::vector<std::complex<double>> roots;
+  while (static_cast<int>(roots.size()) < count) {
+    const double radius = 1.0 - std::exp(between(random, std::log(nearest), std::log(0.95)));
+    if (static_cast<int>(roots.size()) + 2 <= count && between(random, 0.0, 1.0) < 0.5) {
+      const auto root = std::polar(radius, drawn_frequency(spectrum, random));
+      roots.push_back(root);
+      roots.push_back(std::conj(root));
+    } else {
+      roots.emplace_back(between(random, 0.0, 1.0) < 0.75 ? radius : -radius);
+    }
+  }
+  return roots;
+}
+
+// theta: ln variance of the innovation e, atanh of p partial autocorrelations, of q of the MA part.
+class ArmaTerm final : public NoiseTerm {
+ public:
+  ArmaTerm(int p, int q) : p_(p), q_(q) {}
+  [[nodiscard]] int size() const override { return 1 + p_ + q_; }
+  void bounds(std::span<double> low, std::span<double> high) const override {
+    low[0] = -24.0;
+    high[0] = 8.0;
+    std::fill_n(low.begin() + 1, p_ + q_, -kMost);
+    std::fill_n(high.begin() + 1, p_ + q_, kMost);
+  }
+  void draw_shape(const Spectrum& spectrum, Random& random, std::span<double> theta) const override {
+    const auto place = [&](std::size_t first, std::vector<double> coefficients) {
+      std::transform(coefficients.begin(), coefficients.end(), coefficients.begin(), std::negate<>());
+      const std::vector<double> partial = partial_from_ar(coefficients);
+      for (std::size_t i = 0; i < partial.size(); ++i)
+        theta[first + i] = std::clamp(std::atanh(std::clamp(partial[i], -0.99999, 0.99999)), -kMost, kMost);
+    };
+    const double nearest = std::max(1e-5, 4.0 / static_cast<double>(spectrum.samples));
+    place(1, expanded(drawn_roots(p_, spectrum, nearest, random)));
+    place(1 + count(p_), expanded(drawn_roots(q_, spectrum, 0.01, random)));
+  }
+  void add_density(std::span<const double> theta, const Spectrum& spectrum,
+                   std::span<double> out) const override {
+    const std::vector<double> c = coefficients(theta);
+    const double variance = std::exp(theta[0]);
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      double ar = 1.0, ar_i = 0.0, ma = 1.0, ma_i = 0.0;
+      for (std::size_t i = 0; i < count(p_); ++i) {
+        ar -= c[i] * spectrum.cosine[i][b];
+        ar_i -= c[i] * spectrum.sine[i][b];
+      }
+      for (std::size_t i = 0; i < count(q_); ++i) {
+        ma += c[count(p_) + i] * spectrum.cosine[i][b];
+        ma_i += c[count(p_) + i] * spectrum.sine[i][b];
+      }
+      out[b] += variance * (ma * ma + ma_i * ma_i) / (ar * ar + ar_i * ar_i);
+    }
+  }
+  [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
+                                               double period_s) const override {
+    std::vector<double> all = coefficients(theta);
+    all.push_back(std::exp(theta[0]) / period_s);
+    return all;
+  }
+  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale,
+                                                     double /*period_s*/) const override {
+    std::vector<CandidateFigure> out{{"innovation_sigma", "rad/s", std::exp(0.5 * theta[0]) * scale}};
+    const auto c = coefficients(theta);
+    for (int i = 0; i < p_ + q_; ++i)
+      out.push_back(
+          {i < p_ ? "phi_" + std::to_string(i + 1) : "theta_" + std::to_string(i - p_ + 1), "", c[count(i)]});
+    return out;
+  }
+
+ private:
+  static constexpr double kMost = 6.0;  // atanh of a partial correlation 1e-5 from one
+  static std::size_t count(int n) { return static_cast<std::size_t>(n); }
+  [[nodiscard]] std::vector<double> coefficients(std::span<const double> theta) const {
+    const auto part = [&](std::size_t first, int size) {
+      std::vector<double> partial(count(size));
+      const auto from = theta.subspan(first, partial.size());
+      std::transform(from.begin(), from.end(), partial.begin(),
+                     [](double value) { return std::tanh(value); });
+      return ar_from_partial(partial);
+    };
+    std::vector<double> c = part(1, p_);
+    // 1 + θ(B) is invertible when −θ are the coefficients of a stationary AR.
+    const std::vector<double> moving = part(1 + count(p_), q_);
+    std::transform(moving.begin(), moving.end(), std::back_inserter(c), std::negate<>());
+    return c;
+  }
+  int p_, q_;
+};
+
+// theta: ln variance of the steps of its two states, frequency in cycles a sample.
+class HarmonicTerm final : public NoiseTerm {
+ public:
+  explicit HarmonicTerm(std::size_t line) : line_(line) {}
+  [[nodiscard]] int size() const override { return 2; }
+  void bounds(std::span<double> low, std::span<double> high) const override {
+    low[0] = -34.0;
+    high[0] = 4.0;
+    low[1] = 1e-6;
+    high[1] = 0.5;
+  }
+  // A tenth of what the record resolves.
+  void reach(std::size_t samples, std::span<double> out) const override {
+    out[0] = 1.0;
+    out[1] = 0.1 / static_cast<double>(samples);
+  }
+  void draw_shape(const Spectrum& spectrum, Random& /*random*/, std::span<double> theta) const override {
+    theta[1] = spectrum.lines[line_].cycles;
+  }
+  void add_density(std::span<const double> /*theta*/, const Spectrum& /*spectrum*/,
+                   std::span<double> /*out*/) const override {
+    // The line has been taken out.
+  }
+  [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
+                                               double period_s) const override {
+    return {theta[1] / period_s, std::exp(theta[0]) / period_s};
+  }
+  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale,
+                                                     double period_s) const override {
+    const std::string number = line_ == 0 ? "" : "_" + std::to_string(line_ + 1);
+    return {{"line" + number + "_frequency", "Hz", theta[1] / period_s},
+            {"line" + number + "_random_walk", "rad/s^2/sqrt(Hz)",
+             std::exp(0.5 * theta[0]) * scale / std::sqrt(period_s)}};
+  }
+
+ private:
+  std::size_t line_;
+};
+
+// "ar(2)" → 2, 0; "arma(3,1)" → 3, 1.
+bool orders(const std::string& term, int& p, int& q) {
+  constexpr int kMost = static_cast<int>(Spectrum::kOrders);
+  const auto read = [](const char* from, const char* end, int& value) {
+    return std::from_chars(from, end, value).ptr;
+  };
+  const char* end = term.data() + term.size();
+  p = q = 0;
+  if (term.starts_with("ar(")) {
+    const char* at = read(term.data() + 3, end, p);
+    return p >= 1 && p <= kMost && std::string(at, end) == ")";
+  }
+  if (term.starts_with("arma(")) {
+    const char* at = read(term.data() + 5, end, p);
+    if (at == end || *at != ',') return false;
+    at = read(at + 1, end, q);
+    return p >= 1 && p <= kMost && q >= 1 && q < p && std::string(at, end) == ")";
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<double> ar_from_partial(std::span<const double> partial) {
+  std::vector<double> phi, last;
+  for (std::size_t k = 0; k < partial.size(); ++k) {
+    last = phi;
+    phi.push_back(partial[k]);
+    for (std::size_t i = 0; i < k; ++i) phi[i] = last[i] - partial[k] * last[k - 1 - i];
+  }
+  return phi;
+}
+
+std::vector<double> partial_from_ar(std::vector<double> phi) {
+  std::vector<double> partial(phi.size());
+  for (std::size_t k = phi.size(); k-- > 0;) {
+    partial[k] = phi[k];
+    const std::vector<double> last = phi;
+    for (std::size_t i = 0; i < k; ++i)
+      phi[i] = (last[i] + partial[k] * last[k - 1 - i]) / (1.0 - partial[k] * partial[k]);
+  }
+  return partial;
+}
+
+std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name, std::size_t line) {
+  if (name == "gauss-markov") return std::make_unique<GaussMarkovTerm>();
+  if (name == "harmonic") return std::make_unique<HarmonicTerm>(line);
+  int p = 0, q = 0;
+  if (orders(name, p, q)) return std::make_unique<ArmaTerm>(p, q);
+  return nullptr;
+}
+
+}  // namespace ifog

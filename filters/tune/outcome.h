@@ -1,0 +1,38 @@
+// What the estimator makes of a record with given settings: the published rate against the measured one.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "filters/settings/filter_settings.h"
+
+namespace ifog {
+
+inline constexpr std::array<double, 4> kOutcomeTaus{0.1, 1.0, 10.0, 100.0};  // s
+
+struct RateFigures {
+  double rms_radps = 0.0;  // about the mean
+  // Overlapping Allan deviation at kOutcomeTaus; nothing: shorter than a sample or longer than a third of the
+  // record.
+  std::array<std::optional<double>, kOutcomeTaus.size()> adev_radps{};
+};
+
+struct Outcome {
+  std::vector<RateFigures> before, after;  // by axis: measured, published
+
+  // Ratios of the figures after to the same of another outcome, over axes and figures.
+  struct Ratios {
+    double largest = 0.0, mean = 1.0;  // the mean of a ratio is the geometric one
+  };
+  [[nodiscard]] Ratios against(const Outcome& other) const;
+};
+
+// The estimator runs over all samples, the figures are of those from `first` on. axes: rad/s, of equal
+// length, NaN where missing, one to three. Throws std::invalid_argument for settings that the estimator
+// refuses.
+Outcome outcome_of(const FilterSettings& settings, std::span<const std::span<const double>> axes,
+                   double period_s, std::size_t first);
+
+}  // namespace ifog

@@ -1,0 +1,118 @@
+#include "filters/tune/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "filters/tune/lines.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+// Bins of one ordinate up to here, then of a fiftieth of their number, never wider than a 1024th of the band.
+constexpr std::size_t kSingle = 64;
+constexpr std::size_t kRelative = 50;
+constexpr std::size_t kAcross = 1024;
+
+// The longest length up to n that the transform is fast for: factors 2, 3, 5.
+std::size_t smooth_length(std::size_t n) {
+  for (;; --n) {
+    std::size_t left = n;
+    for (const std::size_t factor : {2U, 3U, 5U})
+      while (left % factor == 0) left /= factor;
+    if (left == 1) return n;
+  }
+}
+
+std::vector<double> bridged(std::span<const double> values) {
+  std::vector<double> out(values.begin(), values.end());
+  std::size_t last = out.size();
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (!std::isfinite(out[k])) continue;
+    const std::size_t from = last == out.size() ? 0 : last;
+    const double begin = last == out.size() ? out[k] : out[last];
+    for (std::size_t i = from; i < k; ++i)
+      out[i] = begin + (out[k] - begin) * static_cast<double>(i - from) / static_cast<double>(k - from);
+    last = k;
+  }
+  if (last == out.size()) std::fill(out.begin(), out.end(), 0.0);
+  for (std::size_t k = last; k < out.size(); ++k) out[k] = out[last];
+  return out;
+}
+
+// Squares of the orthonormal cosine transform, by a Fourier transform of the same length: Makhoul, IEEE
+// Trans. ASSP 28 (1980).
+std::vector<double> cosine_squares(std::span<const double> values) {
+  const std::size_t n = values.size();
+  std::vector<double> folded(n);
+  for (std::size_t i = 0; 2 * i < n; ++i) folded[i] = values[2 * i];
+  for (std::size_t i = 0; 2 * i + 1 < n; ++i) folded[n - 1 - i] = values[2 * i + 1];
+  std::vector<std::complex<double>> bins;
+  Eigen::FFT<double> fft;
+  fft.fwd(bins, folded);
+  std::vector<double> squares(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double turn = -kPi * static_cast<double>(k) / (2.0 * static_cast<double>(n));
+    const double value = (bins[k] * std::polar(1.0, turn)).real();
+    squares[k] = value * value * (k == 0 ? 1.0 : 2.0) / static_cast<double>(n);
+  }
+  return squares;
+}
+
+void smooth(Spectrum& s) {
+  constexpr double kEnough = 16.0;
+  s.coarse.resize(s.bins());
+  for (std::size_t b = 0; b < s.bins(); ++b) {
+    double sum = s.density[b] * s.ordinates[b], count = s.ordinates[b];
+    for (std::size_t reach = 1; count < kEnough && reach < s.bins(); ++reach) {
+      for (const std::size_t other : {b + reach, b >= reach ? b - reach : s.bins()}) {
+        if (other >= s.bins()) continue;
+        sum += s.density[other] * s.ordinates[other];
+        count += s.ordinates[other];
+      }
+    }
+    s.coarse[b] = sum / count;
+  }
+}
+
+}  // namespace
+
+Spectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines) {
+  Spectrum s;
+  s.samples = smooth_length(axes[0].size());
+  std::vector<std::vector<double>> filled;
+  for (const auto& axis : axes) filled.push_back(bridged(std::span(axis).first(s.samples)));
+  for (std::size_t i = 0; i < lines; ++i) s.lines.push_back(take_out_strongest_line(filled));
+  std::vector<double> mean(s.samples, 0.0);
+  for (const auto& axis : filled) {
+    const std::vector<double> squares = cosine_squares(axis);
+    for (std::size_t k = 0; k < s.samples; ++k) mean[k] += squares[k] / static_cast<double>(axes.size());
+  }
+  for (std::size_t k = 1; k < s.samples;) {
+    const std::size_t relative = std::max<std::size_t>(1, k / kRelative);
+    const std::size_t width =
+        k < kSingle ? 1 : std::min(relative, std::max<std::size_t>(1, s.samples / kAcross));
+    const std::size_t end = std::min(k + width, s.samples);
+    double sum = 0.0;
+    for (std::size_t i = k; i < end; ++i) sum += mean[i];
+    const auto count = static_cast<double>(end - k);
+    s.omega.push_back(kPi * 0.5 * static_cast<double>(k + end - 1) / static_cast<double>(s.samples));
+    // A record of few digits can have a square of zero, of which there is no logarithm.
+    s.density.push_back(std::max(sum / count, 1e-300));
+    s.ordinates.push_back(count * static_cast<double>(axes.size()));
+    k = end;
+  }
+  for (std::size_t order = 0; order < Spectrum::kOrders; ++order) {
+    for (const double omega : s.omega) {
+      s.cosine[order].push_back(std::cos(static_cast<double>(order + 1) * omega));
+      s.sine[order].push_back(std::sin(static_cast<double>(order + 1) * omega));
+    }
+  }
+  smooth(s);
+  return s;
+}
+
+}  // namespace ifog

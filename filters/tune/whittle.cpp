@@ -1,0 +1,138 @@
+#include "filters/tune/whittle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace ifog {
+namespace {
+
+class Objective {
+ public:
+  Objective(const Candidate& candidate, const Spectrum& spectrum)
+      : candidate_(candidate), spectrum_(spectrum), density_(spectrum.bins()), moved_(spectrum.bins()) {}
+
+  double cost(const std::vector<double>& theta) {
+    candidate_.density(theta, spectrum_, density_);
+    double sum = 0.0;
+    for (std::size_t b = 0; b < density_.size(); ++b)
+      sum += spectrum_.ordinates[b] * (std::log(density_[b]) + spectrum_.density[b] / density_[b]);
+    return std::isfinite(sum) ? 0.5 * sum : 1e300;
+  }
+
+  // Gradient and expected Hessian at theta; leaves cost()'s density in place.
+  void local(const std::vector<double>& theta, Eigen::VectorXd& gradient, Eigen::MatrixXd& information) {
+    constexpr double kStep = 1e-6;
+    candidate_.density(theta, spectrum_, density_);
+    const auto bins = static_cast<Eigen::Index>(density_.size());
+    const auto n = static_cast<Eigen::Index>(theta.size());
+    // Of ln f.
+    Eigen::MatrixXd slope(bins, n);
+    std::vector<double> other = theta;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      other[at] += kStep;
+      candidate_.density(other, spectrum_, moved_);
+      other[at] = theta[at];
+      for (Eigen::Index b = 0; b < bins; ++b) {
+        const auto bin = static_cast<std::size_t>(b);
+        slope(b, i) = (moved_[bin] - density_[bin]) / (density_[bin] * kStep);
+      }
+    }
+    Eigen::VectorXd weight(bins), misfit(bins);
+    for (Eigen::Index b = 0; b < bins; ++b) {
+      const auto bin = static_cast<std::size_t>(b);
+      weight(b) = 0.5 * spectrum_.ordinates[bin];
+      misfit(b) = weight(b) * (1.0 - spectrum_.density[bin] / density_[bin]);
+    }
+    gradient = slope.transpose() * misfit;
+    information = slope.transpose() * weight.asDiagonal() * slope;
+  }
+
+ private:
+  const Candidate& candidate_;
+  const Spectrum& spectrum_;
+  std::vector<double> density_, moved_;
+};
+
+// Fisher's scoring, damped after Marquardt: the expected Hessian is that of a nonlinear regression of the
+// spectrum.
+void descend(Objective& objective, const Candidate& candidate, WhittleOptimum& at) {
+  constexpr int kMostSteps = 60;
+  constexpr double kEnough = 1e-3;  // of −ln L
+  constexpr double kLongest = 2.0;  // step in a logarithm
+  const auto n = static_cast<Eigen::Index>(at.theta.size());
+  std::vector<double> low(at.theta.size()), high(low);
+  candidate.bounds(low, high);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+  double damping = 1e-2;
+  int small = 0;
+  for (int step = 0; step < kMostSteps && small < 3 && damping < 1e8; ++step) {
+    objective.local(at.theta, gradient, information);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      // A parameter held by its bound takes no part.
+      const bool held =
+          (at.theta[p] <= low[p] && gradient(i) > 0.0) || (at.theta[p] >= high[p] && gradient(i) < 0.0);
+      if (!held) continue;
+      information.row(i).setZero();
+      information.col(i).setZero();
+      gradient(i) = 0.0;
+    }
+    double gained = -1.0;
+    for (; gained < 0.0 && damping < 1e8; damping *= 8.0) {
+      Eigen::MatrixXd damped = information;
+      damped.diagonal() += damping * information.diagonal();
+      damped.diagonal().array() += 1e-6;
+      const Eigen::VectorXd move = damped.ldlt().solve(-gradient);
+      WhittleOptimum next = at;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto p = static_cast<std::size_t>(i);
+        next.theta[p] = std::clamp(at.theta[p] + std::clamp(move(i), -kLongest, kLongest), low[p], high[p]);
+      }
+      next.cost = objective.cost(next.theta);
+      gained = at.cost - next.cost;
+      if (gained >= 0.0) {
+        at = next;
+        damping /= 40.0;
+      }
+    }
+    small = gained >= 0.0 && gained < kEnough ? small + 1 : 0;
+  }
+}
+
+}  // namespace
+
+std::vector<WhittleOptimum> whittle_optima(const Candidate& candidate, const Spectrum& spectrum,
+                                           std::size_t draws) {
+  constexpr double kSame = 0.1;
+  Objective objective(candidate, spectrum);
+  std::mt19937_64 random(1);
+  std::vector<WhittleOptimum> starts;
+  for (std::size_t i = 0; i < draws; ++i) {
+    WhittleOptimum start{candidate.draw(spectrum, random), 0.0};
+    start.cost = objective.cost(start.theta);
+    starts.push_back(std::move(start));
+  }
+  const auto better = [](const WhittleOptimum& a, const WhittleOptimum& b) { return a.cost < b.cost; };
+  std::sort(starts.begin(), starts.end(), better);
+  starts.resize(std::max<std::size_t>(1, draws / 3));
+  for (WhittleOptimum& start : starts) descend(objective, candidate, start);
+  std::sort(starts.begin(), starts.end(), better);
+  std::vector<WhittleOptimum> distinct;
+  for (WhittleOptimum& start : starts)
+    if (distinct.empty() || start.cost > distinct.back().cost + kSame) distinct.push_back(std::move(start));
+  return distinct;
+}
+
+Eigen::MatrixXd whittle_information(const Candidate& candidate, const Spectrum& spectrum,
+                                    const std::vector<double>& theta) {
+  Objective objective(candidate, spectrum);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+  objective.local(theta, gradient, information);
+  return information;
+}
+
+}  // namespace ifog

@@ -1,0 +1,112 @@
+// What is published of a model with a colour or a line: the level alone. The rest of the model is the noise
+// it was tuned on.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <numbers>
+
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+// The settled Kalman filter of x(k+1) = A x(k) + w, z = x0 + x1 + … + noise of variance one, written by its
+// textbook form: the error that its first state, the level, keeps.
+double level_error(const Eigen::MatrixXd& transition, const Eigen::MatrixXd& driving,
+                   const Eigen::VectorXd& h) {
+  const auto n = transition.rows();
+  Eigen::MatrixXd p = 100.0 * Eigen::MatrixXd::Identity(n, n);
+  for (int i = 0; i < 200'000; ++i) {
+    p = transition * p * transition.transpose() + driving;
+    const Eigen::VectorXd gain = p * h / (h.dot(p * h) + 1.0);
+    p = (Eigen::MatrixXd::Identity(n, n) - gain * h.transpose()) * p;
+    p = 0.5 * (p + p.transpose()).eval();
+  }
+  return std::sqrt(p(0, 0));
+}
+
+double root_mean_square(const std::vector<double>& estimate, const std::vector<double>& truth,
+                        std::size_t from) {
+  return std::sqrt(mean_square_error(estimate, truth, from));
+}
+
+constexpr double kWalk = 1e-6;
+constexpr int kLength = 60'000;
+constexpr std::size_t kSettled = 10'000;
+
+// AR(1) of 0.9 as loud as the white noise. The level is known to some 0.1 sigma, the colour to 0.5: with the
+// colour in the output the error would be the colour's.
+TEST(Published, LeavesTheColourInside) {
+  constexpr double kPhi = 0.9, kShock = 0.19;  // unit variance
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  Record made = record(12, kLength, kWalk);
+  double colour = normal(random);
+  for (double& z : made.measured) {
+    z += colour;
+    colour = kPhi * colour + std::sqrt(kShock) * normal(random);
+  }
+  ifog::FilterSettings settings = told(kWalk);
+  settings.state = "random-walk + ar(1)";
+  settings.state_parameters = {kPhi, kShock / kWalk};
+  const double ideal = level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(),
+                                   Eigen::Vector2d(kWalk, kShock).asDiagonal(), Eigen::Vector2d(1.0, 1.0));
+  for (const char* rule : {"ckf", "irwe-akfg", "mmae"}) {
+    settings.rule = rule;
+    EXPECT_LT(root_mean_square(run(settings, made.measured).denoised, made.truth, kSettled), 1.6 * ideal)
+        << rule;
+  }
+  settings.rule = "ckf";
+  settings.follow_manoeuvres = settings.conserve_angle = false;
+  const Filtered plain = run(settings, made.measured);
+  EXPECT_NEAR(root_mean_square(plain.denoised, made.truth, kSettled) / ideal, 1.0, 0.25);
+}
+
+// A line of ten sigma: the output moves by less than a thousandth of it.
+TEST(Published, LeavesALineInside) {
+  constexpr double kFrequency = 4.17;
+  Record made = record(5, kLength, kWalk);
+  for (int i = 0; i < kLength; ++i)
+    made.measured[static_cast<std::size_t>(i)] +=
+        10.0 * std::sin(2.0 * std::numbers::pi * kFrequency * kPeriod * i + 0.3);
+  ifog::FilterSettings settings = told(kWalk);
+  settings.rule = "ckf";
+  settings.state = "random-walk + harmonic";
+  settings.state_parameters = {kFrequency, 1e-3};
+  const std::vector<double> denoised = run(settings, made.measured).denoised;
+  double in_phase = 0.0, quadrature = 0.0;
+  for (std::size_t i = kSettled; i < denoised.size(); ++i) {
+    const double angle = 2.0 * std::numbers::pi * kFrequency * kPeriod * static_cast<double>(i);
+    in_phase += denoised[i] * std::cos(angle);
+    quadrature += denoised[i] * std::sin(angle);
+  }
+  const double amplitude = 2.0 * std::hypot(in_phase, quadrature) / static_cast<double>(kLength - kSettled);
+  EXPECT_LT(amplitude, 0.01);
+}
+
+// The error that the filter announces is the level's, too.
+TEST(Published, VarianceIsTheLevels) {
+  constexpr double kPhi = 0.5, kShock = 0.75;
+  ifog::FilterSettings settings = told(kWalk);
+  settings.rule = "ckf";
+  settings.state = "random-walk + ar(1)";
+  settings.state_parameters = {kPhi, kShock / kWalk};
+  ifog::Estimator estimator(settings, 1, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    in.sequence = i;
+    in.dt_s = kPeriod;
+    in.valid_axes = 1;
+    in.rate_radps[0] = normal(random);
+    estimator.step(in, out);
+  }
+  const double ideal = level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(),
+                                   Eigen::Vector2d(kWalk, kShock).asDiagonal(), Eigen::Vector2d(1.0, 1.0));
+  EXPECT_NEAR(std::sqrt(out.variance_rad2ps2[0]) / ideal, 1.0, 1e-3);
+}
+
+}  // namespace
