@@ -171,8 +171,9 @@ TEST(Config, BrokenTomlIsToldByLine) {
 // What the file holds may have line ends of its own.
 TEST(Config, AComplaintIsOneLineWhateverTheFileHolds) {
   for (const char* text : {"venso\nx = 1\n", "\"a\\nb\" = 1\n", "x = \"\"\"a\nb\"\"\"\n"}) {
-    const std::string all =
-        complaint(std::string(kGood) + "[sensor.realtime]\nspin = true\n[sensor.filter]\n" + text);
+    std::string config = kGood;
+    config.append("[sensor.realtime]\nspin = true\n[sensor.filter]\n").append(text);
+    const std::string all = complaint(config);
     EXPECT_EQ(all.rfind("f.toml:1", 0), 0U) << all;
     EXPECT_EQ(all.find('\n'), std::string::npos) << all;
   }
