@@ -293,8 +293,7 @@ void Monitor::show(double interval_s) {
     sensor.shown = sensor.messages;
     sensor.in_interval = 0;
   }
-  if (refused_ > 0)
-    line(std::to_string(refused_) + " messages refused: not of their channel's type, or damaged");
+  if (refused_ > 0) line(std::to_string(refused_) + " messages that are none of ours, or damaged");
   if (terminal && lines_drawn_ > 0) std::printf("\x1b[%dA", lines_drawn_);
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
