@@ -16,7 +16,8 @@
 
 namespace ifog {
 
-// Of one moment in the reader thread, between two deliveries.
+// Of one moment in the reader thread: the samples as they are handed on, the bytes as of the end of the last
+// delivery, since within one the driver has not yet said what became of them.
 struct ReaderBooks {
   std::uint64_t bytes_read = 0, bytes_framed = 0, bytes_skipped = 0, bytes_pending = 0;
   std::uint64_t decoded = 0, samples = 0, repeated = 0;

@@ -24,7 +24,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       events_(events) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
-  ++decoded_;
+  ++now_.decoded;
   read_sample(sample, facts_.frame_channels, reading_);
   const std::int64_t came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
@@ -33,7 +33,12 @@ void Reader::take(const ifog_sample& sample) noexcept {
   }
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = queue_.next();
-  if (!incrementer_.next(reading_, increment)) return;
+  const bool taken = incrementer_.next(reading_, increment);
+  now_.samples = incrementer_.counts().samples;
+  now_.repeated = incrementer_.counts().repeated;
+  // Before the filter can have it: what that has taken must be in these books.
+  books_.write(now_);
+  if (!taken) return;
   report(increment, before);
   queue_.push();
 }
@@ -84,13 +89,11 @@ void Reader::publish_counters() noexcept {
   counters_.samples_incomplete.set(driver.samples_incomplete);
   counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
                                     (outside_ != nullptr ? outside_->refused() : 0));
-  books_.write({.bytes_read = transport_->counters().bytes,
-                .bytes_framed = driver.bytes_framed,
-                .bytes_skipped = driver.bytes_skipped,
-                .bytes_pending = driver.bytes_pending,
-                .decoded = decoded_,
-                .samples = counts.samples,
-                .repeated = counts.repeated});
+  now_.bytes_read = transport_->counters().bytes;
+  now_.bytes_framed = driver.bytes_framed;
+  now_.bytes_skipped = driver.bytes_skipped;
+  now_.bytes_pending = driver.bytes_pending;
+  books_.write(now_);
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

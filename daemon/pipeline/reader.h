@@ -65,7 +65,7 @@ class Reader {
   WallShift wall_shift_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
-  std::uint64_t decoded_ = 0;
+  ReaderBooks now_;
   ReaderCounters counters_;
   SharedBooks books_;
 };

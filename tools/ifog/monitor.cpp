@@ -307,8 +307,7 @@ void Monitor::show(double interval_s) {
     sensor.shown = sensor.messages;
     sensor.in_interval = 0;
   }
-  if (refused_ > 0)
-    line(std::to_string(refused_) + " messages refused: not of their channel's type, or damaged");
+  if (refused_ > 0) line(std::to_string(refused_) + " messages that are none of ours, or damaged");
   redraw(lines_drawn_, lines);
   lines_drawn_ = lines.size();
 }

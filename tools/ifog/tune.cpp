@@ -240,7 +240,9 @@ void add_tune(CLI::App& app) {
   command->add_option("capture", options->capture, "a capture at rest")->required();
   command->add_option("--write-model", options->model, "model file that ifogd and denoise read");
   command->add_option("--json", options->json_file, "write the figures as JSON");
-  command->add_option("--state", options->states, "state models to try; may stand several times");
+  // One a flag: a capture that follows is no state model.
+  command->add_option("--state", options->states, "state models to try; may stand several times")
+      ->allow_extra_args(false);
   command->add_option("--samples", options->samples, "most samples of each axis to fit")
       ->check(CLI::Range(std::size_t{200}, std::size_t{100000000}))
       ->capture_default_str();

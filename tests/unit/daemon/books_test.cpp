@@ -63,7 +63,8 @@ class Stream {
     if (fate == 2) return;  // lost on the way
     if (fate == 3)          // damaged: a checksum of 32 bits finds every single bit
       made[static_cast<std::size_t>(below(kFrame))] ^= static_cast<std::uint8_t>(1U << below(8));
-    if (fate == 4) made.resize(static_cast<std::size_t>(below(kFrame - 1) + 1));
+    // Cut off by the whole checksum at least: the next frame may begin with the one byte that is missing.
+    if (fate == 4) made.resize(static_cast<std::size_t>(below(kFrame - 4) + 1));
     if (fate == 5)
       for (int n = below(200); n >= 0; --n) bytes.push_back(static_cast<std::uint8_t>(below(256)));
     for (int copies = fate == 6 ? 2 : 1; copies > 0; --copies) {

@@ -157,7 +157,17 @@ TEST_F(Replay, AnInterruptEndsItWithTheReport) {
           nullptr);
     _exit(127);
   }
-  while (content("again.log").size() < 1000) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  // Until it is whole the file has no name: it is seen among what the process has open.
+  const auto written = [child] {
+    std::uintmax_t most = 0;
+    for (const auto& open : fs::directory_iterator("/proc/" + std::to_string(child) + "/fd")) {
+      struct stat file {};
+      if (stat(open.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 0)
+        most = std::max(most, static_cast<std::uintmax_t>(file.st_size));
+    }
+    return most;
+  };
+  while (written() < 1000) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(child, SIGINT);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
