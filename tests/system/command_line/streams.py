@@ -88,10 +88,10 @@ class Checks:
         text = self.capture.read_bytes()
         for command in (["allan"], ["tune", "--samples", "2000", "--state", "random-walk"], ["compare"], ["diagnose"]):
             path = self.folder / "in.json"
-            ifog(*command, self.capture, "--json", path)
+            ifog(command[0], self.capture, *command[1:], "--json", path)
             expected = json.loads(path.read_text())
             for sent in (text, gzip.compress(text)):
-                result = piped(sent, *command, "-", "--json", "-")
+                result = piped(sent, command[0], "-", *command[1:], "--json", "-")
                 assert result.returncode == 0, f"{command}: {result.stderr.decode()}"
                 found = json.loads(result.stdout)
                 for answer in (expected, found):
