@@ -19,7 +19,8 @@ std::string apply_to_this_thread(const ThreadPlan& plan);
 // Touches the calling thread's stack, so that its pages are there before the loop.
 void prefault_stack() noexcept;
 
-// mlockall of all that is and will be mapped; threads that start later get small stacks. Returns "" or why not.
+// mlockall of all that is and will be mapped; threads that start later get small stacks. Returns "" or why
+// not.
 std::string lock_memory();
 
 }  // namespace ifog

@@ -9,8 +9,8 @@
  *   - One instance serves one sensor and is called by one thread at a time.
  *   - After `create` has returned, `decode` must not allocate, lock, log or throw: it runs in the hot path.
  *   - SI units: rad, rad/s, m/s², s. Environment channels are in the unit their name ends in.
- *   - Missing values are NaN. A value that is impossible need not be caught: the host takes what is not finite
- *     or reaches `full_scale` as invalid.
+ *   - Missing values are NaN. A value that is impossible need not be caught: the host takes what is not
+ * finite or reaches `full_scale` as invalid.
  *
  * Version rule: IFOG_DRIVER_ABI grows whenever the meaning or layout of anything here changes. A host loads
  * exactly its own number, and says both numbers when it refuses.
@@ -84,10 +84,11 @@ typedef struct ifog_driver_counters {
   uint64_t bytes_skipped;   /* bytes passed over to find the next frame */
   uint64_t frames_repeated; /* good frames that came a second time and were left out */
   uint64_t samples_incomplete; /* begun but never whole: some of their frames are missing */
-  uint64_t bytes_framed;       /* bytes of complete frames, whatever became of these; with a text, of its lines */
-  uint64_t bytes_pending;      /* the one that falls, too: bytes that may yet begin a frame. Every byte that was fed is
-                                  in bytes_framed, bytes_skipped or bytes_pending; the host checks it. 0 for CAN */
-  uint64_t values_refused;     /* environment values beyond what the format states; the last good one stays */
+  uint64_t bytes_framed; /* bytes of complete frames, whatever became of these; with a text, of its lines */
+  uint64_t
+      bytes_pending; /* the one that falls, too: bytes that may yet begin a frame. Every byte that was fed is
+                        in bytes_framed, bytes_skipped or bytes_pending; the host checks it. 0 for CAN */
+  uint64_t values_refused; /* environment values beyond what the format states; the last good one stays */
 } ifog_driver_counters;
 
 /* What a configured instance will deliver. Filled by `describe`, constant afterwards. */
@@ -99,8 +100,9 @@ typedef struct ifog_description {
   uint32_t has_device_time;  /* 1: samples carry device_time_ns */
   double nominal_rate_hz;    /* samples a second; 0: unknown, the configuration must say */
   double angle_wrap_rad;     /* IFOG_ANGLE: the value wraps modulo this; 0: it does not */
-  double full_scale[IFOG_MAX_AXES]; /* rad/s whatever the kind: the sensor measures rates below it; 0: unknown */
-  uint32_t environments;     /* 0 … IFOG_MAX_ENVIRONMENT */
+  double
+      full_scale[IFOG_MAX_AXES]; /* rad/s whatever the kind: the sensor measures rates below it; 0: unknown */
+  uint32_t environments;         /* 0 … IFOG_MAX_ENVIRONMENT */
   char environment[IFOG_MAX_ENVIRONMENT][IFOG_NAME_LENGTH]; /* capture column names: "temperature_degC" */
   uint32_t can_ids; /* wanted CAN ids, for the kernel's filter; 0: all */
   struct {
