@@ -43,7 +43,7 @@ InnovationMonitor::Verdict InnovationMonitor::test(std::span<const double> innov
   bool beyond = false;
   for (std::size_t axis = 0; axis < innovations.size(); ++axis) {
     std::array<double, kRing>& sums = sums_[axis];
-    const bool valid = (valid_axes >> axis & 1U) != 0 && variance_[axis] > 0.0;
+    const bool valid = (valid_axes >> axis & 1U) != 0 && variance_[axis] > 0.0 && !still_learns(axis);
     const double normalised = valid ? innovations[axis] / std::sqrt(variance_[axis]) : 0.0;
     sums[at_] = sums[before] + std::clamp(normalised, -clip, clip);
     if (!armed_) continue;
@@ -104,7 +104,7 @@ void InnovationMonitor::adopt(std::size_t axis, double variance, double widening
 
 bool InnovationMonitor::learn(std::size_t axis, double innovation, double factor) noexcept {
   double square = innovation * innovation / factor;
-  if (armed_) square = std::min(square, kClip * kClip * variance_[axis]);
+  if (armed_ && !still_learns(axis)) square = std::min(square, kClip * kClip * variance_[axis]);
   if (learned_[axis] < kMemory) {
     learned_[axis] += 1.0;
     threshold_ = kThreshold * (1.0 + kScaleMargin / std::sqrt(learned_[axis]));
@@ -135,7 +135,7 @@ void InnovationMonitor::learn_still(std::size_t axis, double rate) noexcept {
     double variance = third * third / 20.0;
     // Like the scale itself. Beside the scale, so that a coarse sensor's runs of equal values do not end in a
     // variance of zero that nothing could raise again.
-    if (armed_)
+    if (armed_ && !still_learns(axis))
       variance = std::min(variance, kClip * kClip * std::max(still.variance, 0.5 * variance_[axis]));
     still.variance += (variance - still.variance) / (still.count - 2.0);
   }

@@ -85,6 +85,11 @@ class InnovationMonitor {
   static constexpr double kMostColour = 4.0;
 
   void learn_colour(std::size_t axis) noexcept;
+  // Armed by other axes, this one had no measurements yet: a scale of nothing clips everything, and would
+  // stay so.
+  [[nodiscard]] bool still_learns(std::size_t axis) const noexcept {
+    return armed_ && learned_[axis] < kLearning;
+  }
 
   std::array<std::array<double, kRing>, kMaxAxes> sums_{};  // of clipped innovations, up to each sample
   Axes variance_{};

@@ -192,4 +192,27 @@ TEST(Health, GivesLagAndCorrelationOfASettledGain) {
   EXPECT_NEAR(got.health.whiteness[0], 0.0, 0.2);
 }
 
+// An axis that measures nothing while the others teach the monitor what rest is.
+TEST(Faults, AnAxisThatBeginsLateIsFollowedLikeTheOthers) {
+  constexpr int kBegins = 3000, kSteps = 6000, kEnds = 6100;
+  constexpr double kStep = 50.0;
+  const auto motion = [](int i) { return i >= kSteps ? kStep : 0.0; };
+  const ifog::test::Record first = record(71, kEnds, 1e-3);
+  const ifog::test::Record late = record(72, kEnds, 1e-3, motion);
+  ifog::Estimator estimator(told(1e-3), 2, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  int reached = kEnds;
+  for (int i = 0; i < kEnds; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    in.sequence = n;
+    in.dt_s = kPeriod;
+    in.valid_axes = i < kBegins ? 1 : 3;
+    in.rate_radps = {first.measured[n], i < kBegins ? kNan : late.measured[n]};
+    estimator.step(in, out);
+    if (i >= kSteps && out.denoised_radps[1] > late.truth[n] - 0.1 * kStep) reached = std::min(reached, i);
+  }
+  EXPECT_LE(reached - kSteps, 25);
+}
+
 }  // namespace
