@@ -3,6 +3,7 @@
 #include <librsvg/rsvg.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kEdge = 10.0, kTitle = 30.0, kGap = 6.0;
 
-std::string whole(double value) { return std::to_string(static_cast<long>(value + 0.5)); }
+std::string whole(double value) { return std::to_string(std::lround(value)); }
 
 // One for each column that a chart begins in, so that frames stand in line.
 double column_margin(const std::vector<PictureRow>& rows, std::size_t column) {

@@ -56,9 +56,8 @@ TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
     GTEST_SKIP() << "no network namespace of its own (" << why << "); run as root";
   const std::string folder = ::testing::TempDir(), out = folder + "monitor_out",
                     record = folder + "monitor_record";
-  const std::string command =
-      std::string(IFOG_BINARY_DIR "/tools/ifog/ifog monitor --seconds 3 --lcm-url '") + kUrl + "' --record " +
-      record + " >" + out + " 2>&1";
+  std::string command = IFOG_BINARY_DIR "/tools/ifog/ifog monitor --seconds 3 --lcm-url '";
+  command.append(kUrl).append("' --record ").append(record).append(" >").append(out).append(" 2>&1");
   int result = -1;
   std::thread monitor([&] { result = std::system(command.c_str()); });
   lcm::LCM lcm(kUrl);
