@@ -40,7 +40,6 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
-      check_(settings.range_radps),
       ledger_(period_s) {}
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
@@ -97,7 +96,6 @@ std::uint32_t Engine::screen(const EstimatorInput& in, EstimatorOutput& out) noe
   std::uint32_t valid = 0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(in.valid_axes, a) || !std::isfinite(in.rate_radps[a])) continue;
-    if (check_.saturated(in.rate_radps[a])) out.flags |= kSaturated;
     if (check_.stuck(a, in.rate_radps[a])) {
       out.flags |= kStuck;
       continue;

@@ -28,9 +28,7 @@ enum EstimatorFlags : std::uint32_t {
   kGated = 1,      // a measurement was kept out as an outlier
   kManoeuvre = 2,  // change of rate detected, covariance raised
   kRestarted = 4,  // divergence: the filter started again from this measurement
-  kFloored = 8,    // the innovation covariance met its floor
-  kSaturated = 16,
-  kStuck = 32,
+  kStuck = 8,      // the sensor repeats one value
 };
 
 struct EstimatorOutput {

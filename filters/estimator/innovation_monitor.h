@@ -64,9 +64,6 @@ class InnovationMonitor {
   // Forgets the sums, keeps the scale: the change was dealt with.
   void rearm() noexcept { length_ = 0; }
 
-  // Threshold now: a scale learned from k innovations is off by 1/sqrt(2k), and a test at this many sigma
-  // would feel it.
-  [[nodiscard]] double threshold() const noexcept { return threshold_; }
   [[nodiscard]] bool armed() const noexcept { return armed_; }
   // Variance of an innovation at rest, (rad/s)^2.
   [[nodiscard]] double variance(std::size_t axis) const noexcept { return variance_[axis]; }
@@ -117,6 +114,7 @@ class InnovationMonitor {
   std::size_t at_ = 0;
   int length_ = 0;
   bool armed_ = false;
+  // A scale learned from k innovations is off by 1/sqrt(2k), and a test at this many sigma would feel it.
   double threshold_ = kThreshold;
 };
 

@@ -1,4 +1,4 @@
-// Two faults a rate alone can show: the sensor at the end of its range, and one that repeats its last value.
+// A fault that a rate alone can show: the sensor repeats its last value.
 #pragma once
 
 #include <array>
@@ -11,12 +11,6 @@ namespace ifog {
 
 class SensorCheck {
  public:
-  explicit SensorCheck(double range_radps) : range_radps_(range_radps) {}
-
-  [[nodiscard]] bool saturated(double rate_radps) const noexcept {
-    return range_radps_ > 0.0 && std::abs(rate_radps) >= range_radps_;
-  }
-
   // A coarsely quantised sensor repeats itself at rest; so a run counts only when it is ten times longer than
   // any that ended in a new value, and a hundred samples at least.
   [[nodiscard]] bool stuck(std::size_t axis, double rate_radps) noexcept {
@@ -38,7 +32,6 @@ class SensorCheck {
     double value = std::nan("");
     std::int64_t length = 0, longest = 0;
   };
-  double range_radps_;
   std::array<Run, kMaxAxes> runs_{};
 };
 

@@ -20,7 +20,6 @@ class SizedRestFilter final : public RestFilter {
         model_(std::move(model)),
         hypotheses_(rule_->hypotheses()),
         process_noise_(process_noise),
-        measurement_noise_(measurement_noise),
         level_(model_->level()),
         readout_(model_->rate()),
         start_(process_noise * model_->stationary()) {
@@ -204,7 +203,7 @@ class SizedRestFilter final : public RestFilter {
 
   std::unique_ptr<StateModel> model_;
   std::span<const double> hypotheses_;
-  double process_noise_, measurement_noise_;
+  double process_noise_;
   std::array<Core, Rule::kMaxHypotheses> cores_;
   typename Core::Vector level_, readout_;
   typename Core::Matrix start_, transition_, driving_;

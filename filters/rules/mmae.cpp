@@ -35,7 +35,6 @@ class Mmae final : public Rule {
 
   std::span<const double> hypotheses() const noexcept override { return kFactorOfModel; }
   double weight(std::size_t hypothesis) const noexcept override { return weight_[hypothesis]; }
-  std::size_t likeliest() const noexcept override { return likeliest_; }
 
   double innovation_covariance(const RuleInput& in) noexcept override {
     const std::size_t j = in.hypothesis;

@@ -44,7 +44,6 @@ class Rule {
     return {&kOne, 1};
   }
   [[nodiscard]] virtual double weight(std::size_t) const noexcept { return 1.0; }
-  [[nodiscard]] virtual std::size_t likeliest() const noexcept { return 0; }
 
   [[nodiscard]] std::uint64_t floor_hits() const noexcept { return floor_hits_; }
 

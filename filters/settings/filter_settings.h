@@ -27,7 +27,6 @@ struct FilterSettings {
   double floor = 0.01;            // epsilon of the floor on the innovation covariance; 0 switches it off
   bool follow_manoeuvres = true;  // the cure for inertia
   bool conserve_angle = true;     // integral of (denoised - compensated) returns to zero
-  double range_radps = 0.0;       // full scale of the sensor, for kSaturated; 0: not known
   std::uint64_t seed = 1;         // of the weights
 };
 
