@@ -116,7 +116,8 @@ class Box:
         command = {"canplayer": "canplayer -I /tmp/can.log", "ifog replay": "ifog replay /tmp/can.log --to can:vcan0"}[player]
 
         def started():
-            self.machine.run(f"rm -f /tmp/played; (chrt -f 60 {command}; echo $? >/tmp/played) </dev/null >/tmp/player 2>&1 &")
+            # On one processor: what a player sends from two, vcan may hand over in another order.
+            self.machine.run(f"rm -f /tmp/played; (taskset -c 0 chrt -f 60 {command}; echo $? >/tmp/played) </dev/null >/tmp/player 2>&1 &")
 
         def ended():
             self.machine.run(f"for i in $(seq {int(count / hertz) + 60}); do [ -e /tmp/played ] && break; sleep 1; done; "
