@@ -191,8 +191,8 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
         break;
       case ChannelConfig::Source::can: {
         CanChannel channel(one.config.dbc, one.config.signal);
-        impl_->buses[one.config.interface].channels.emplace_back(Entrance(std::move(one)),
-                                                                 std::move(channel));
+        auto& on_the_bus = impl_->buses[one.config.interface].channels;
+        on_the_bus.emplace_back(Entrance(std::move(one)), std::move(channel));
         break;
       }
     }

@@ -1,8 +1,10 @@
 #include "filters/diagnosis/residual/lines.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
@@ -130,18 +132,13 @@ SpectralLine refine(std::span<const double> error, double mean, double start_s, 
   const double f0 = bin / static_cast<double>(length);
   const std::vector<Complex> sums = demodulate(error, mean, f0, std::min(kPieces, error.size() / 4));
   const auto pieces = static_cast<double>(sums.size());
-  const auto power = [&](double offset_bins) {
-    return std::norm(shifted(sums, offset_bins / pieces, 0, sums.size()));
+  const auto power_lacking = [&](double offset_bins) {
+    return -std::norm(shifted(sums, offset_bins / pieces, 0, sums.size()));
   };
-  double low = -1.0;
-  double high = 1.0;
-  constexpr double kGolden = 0.6180339887498949;
-  while (high - low > 1e-4) {
-    const double a = high - kGolden * (high - low);
-    const double b = low + kGolden * (high - low);
-    (power(a) > power(b) ? high : low) = power(a) > power(b) ? b : a;
-  }
-  const double offset = 0.5 * (low + high);
+  constexpr int kBits = 14;  // 1e-4 of a bin
+  std::uintmax_t most_evaluations = 50;
+  const double offset =
+      boost::math::tools::brent_find_minima(power_lacking, -1.0, 1.0, kBits, most_evaluations).first;
   const Complex total = shifted(sums, offset / pieces, 0, sums.size());
 
   SpectralLine line;
