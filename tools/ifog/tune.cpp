@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,6 +19,7 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/utc_now.h"
 
 namespace ifog::tools {
 namespace {
@@ -54,15 +54,6 @@ std::vector<std::vector<double>> even(const Capture& capture, double period_s, s
   }
   left = capture.size() - row;
   return out;
-}
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
 }
 
 std::string tau_text(double tau_s) {
@@ -180,7 +171,7 @@ Model model_of(const Tuning& tuning, const Capture& capture, const std::string& 
       if (f.name == "rate_random_walk") model.noise[axis].K = f.value;
     }
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
-  model.source.date = today();
+  model.source.date = utc_now();
   return model;
 }
 

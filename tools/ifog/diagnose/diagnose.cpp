@@ -2,10 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -22,6 +20,7 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/utc_now.h"
 #include "tools/ifog/diagnose/diagnosis_json.h"
 #include "tools/ifog/diagnose/diagnosis_text.h"
 #include "tools/report/diagnosis_page.h"
@@ -38,15 +37,6 @@ struct Arguments {
   double fit_from = 0.0, fit_to = 1.0;
   bool quiet = false;
 };
-
-std::string today() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::string text(32, '\0');
-  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
-  return text;
-}
 
 // The model's own effects are subtracted first, by the code that subtracts them online.
 void compensate(Capture& capture, const Model& model) {
@@ -172,7 +162,7 @@ Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& argumen
   std::string all;
   for (const std::string& hash : hashes) all += hash;
   model.source.sha256 = hashes.size() == 1 ? all : sha256_hex(all);
-  model.source.date = today();
+  model.source.date = utc_now();
   return model;
 }
 
@@ -182,7 +172,7 @@ void write_report(const std::vector<Capture>& captures, const std::vector<AxisDi
   page.captures = arguments.captures;
   page.sensor = std::filesystem::path(arguments.captures.front()).filename().string();
   page.model_path = arguments.write_model;
-  page.made = today() + " by ifog " IFOG_VERSION;
+  page.made = utc_now() + " by ifog " IFOG_VERSION;
   const std::vector<std::string>& axes = captures.front().axes;
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};

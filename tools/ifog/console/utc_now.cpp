@@ -1,0 +1,16 @@
+#include "tools/ifog/console/utc_now.h"
+
+#include <ctime>
+
+namespace ifog::tools {
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::string text(32, '\0');
+  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
+  return text;
+}
+
+}  // namespace ifog::tools
