@@ -119,50 +119,81 @@ void append(std::string& out, double value) {
   out.append(text.data(), end);
 }
 
+// The names of the columns, from the first line that is neither empty nor a comment; `line` is then that
+// line.
+std::vector<std::string> header(Lines& lines, std::string_view& line, const std::string& path, Table& table) {
+  std::vector<std::string> names;
+  while (names.empty() && lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    if (line.front() == '#')
+      table.comments.emplace_back(trimmed(line.substr(1)));
+    else
+      names = split_header(line);
+  }
+  if (names.empty()) throw std::runtime_error(path + ": no header line, expected 'time_s,rate_radps,…'");
+  table.header_line = lines.number();
+  if (names.front() != "time_s")
+    fail(path, lines.number(), "first column is " + in_quotes(names.front()) + ", expected 'time_s'");
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.empty()) fail(path, lines.number(), "a column has no name");
+    if (!seen.insert(name).second) fail(path, lines.number(), "column " + in_quotes(name) + " stands twice");
+  }
+  return names;
+}
+
+// A column while it is read: the most that a cell of it may say, and where the cells go.
+struct Cells {
+  std::string name;
+  double most;
+  std::vector<double>* values;
+};
+
+// `text` from the header on. Rows are about as long as the first; one allocation that is large enough beats
+// doubling through a long record.
+void reserve_rows(std::vector<Cells>& columns, std::string_view text) {
+  const std::size_t first_row = text.find('\n');
+  if (first_row == std::string_view::npos) return;
+  // A row has at least a separator a column: a short second line of a wide file must not ask for all memory.
+  const std::size_t length = std::max(text.find('\n', first_row + 1) - first_row, columns.size());
+  const std::size_t rows = length > 1 && length < text.size() ? (text.size() - first_row) / length + 1 : 1;
+  for (Cells& column : columns) column.values->reserve(rows + rows / 16);
+}
+
+void add_row(std::vector<Cells>& columns, std::string_view line, const std::string& path,
+             std::size_t line_number) {
+  std::size_t place = 0;
+  for (std::string_view rest = line;;) {
+    const std::size_t comma = rest.find(',');
+    if (place == columns.size())
+      fail(path, line_number,
+           "more cells than the " + std::to_string(columns.size()) + " columns of the header");
+    const Cells& column = columns[place];
+    column.values->push_back(number(path, line_number, column.name, column.most, rest.substr(0, comma)));
+    ++place;
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (place != columns.size())
+    fail(path, line_number,
+         std::to_string(place) + " cells, expected " + std::to_string(columns.size()) +
+             " (a truncated line?)");
+}
+
 }  // namespace
 
 Table parse_table(std::string_view text, const std::string& path) {
   Table table;
   Lines lines(text);
   std::string_view line;
-  std::vector<std::string> names;
-  while (lines.next(line)) {
-    if (trimmed(line).empty()) continue;
-    if (line.front() == '#') {
-      table.comments.emplace_back(trimmed(line.substr(1)));
-      continue;
-    }
-    names = split_header(line);
-    break;
-  }
-  if (names.empty()) throw std::runtime_error(path + ": no header line, expected 'time_s,rate_radps,…'");
-  table.header_line = lines.number();
-  if (names.front() != "time_s")
-    fail(path, lines.number(), "first column is " + in_quotes(names.front()) + ", expected 'time_s'");
-
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (name.empty()) fail(path, lines.number(), "a column has no name");
-    if (!seen.insert(name).second) fail(path, lines.number(), "column " + in_quotes(name) + " stands twice");
-  }
-
-  std::vector<double> most;
-  for (const std::string& name : names) most.push_back(most_of(name));
-
-  // Where each column's values go; nothing is added to table.columns once the addresses are taken.
-  std::vector<std::vector<double>*> target{&table.time_s};
+  const std::vector<std::string> names = header(lines, line, path, table);
+  std::vector<Cells> columns;
+  // Nothing is added to table.columns once the addresses are taken.
   for (std::size_t i = 1; i < names.size(); ++i) table.columns.push_back({names[i], {}});
-  for (CaptureColumn& column : table.columns) target.push_back(&column.values);
-  // Rows are about as long as the first; one allocation that is large enough beats doubling through a long
-  // record.
-  const std::size_t first_row = text.find('\n', static_cast<std::size_t>(line.data() - text.data()));
-  if (first_row != std::string::npos) {
-    // A row has at least a separator a column: a short second line of a wide file must not ask for all
-    // memory.
-    const std::size_t length = std::max(text.find('\n', first_row + 1) - first_row, names.size());
-    const std::size_t rows = length > 1 && length < text.size() ? (text.size() - first_row) / length + 1 : 1;
-    for (std::vector<double>* values : target) values->reserve(rows + rows / 16);
-  }
+  columns.push_back({names.front(), most_of(names.front()), &table.time_s});
+  for (CaptureColumn& column : table.columns)
+    columns.push_back({column.name, most_of(column.name), &column.values});
+  reserve_rows(columns, text.substr(static_cast<std::size_t>(line.data() - text.data())));
 
   while (lines.next(line)) {
     if (trimmed(line).empty() || line.front() == '#') {
@@ -170,23 +201,7 @@ Table parse_table(std::string_view text, const std::string& path) {
       table.skipped.push_back(table.time_s.size());
       continue;
     }
-    std::size_t column = 0;
-    std::string_view rest = line;
-    for (;;) {
-      const std::size_t comma = rest.find(',');
-      if (column == names.size())
-        fail(path, lines.number(),
-             "more cells than the " + std::to_string(names.size()) + " columns of the header");
-      target[column]->push_back(
-          number(path, lines.number(), names[column], most[column], rest.substr(0, comma)));
-      ++column;
-      if (comma == std::string_view::npos) break;
-      rest.remove_prefix(comma + 1);
-    }
-    if (column != names.size())
-      fail(path, lines.number(),
-           std::to_string(column) + " cells, expected " + std::to_string(names.size()) +
-               " (a truncated line?)");
+    add_row(columns, line, path, lines.number());
     const double now = table.time_s.back();
     if (std::isnan(now)) fail(path, lines.number(), "time_s is missing, expected seconds");
     if (table.time_s.size() > 1 && now <= table.time_s[table.time_s.size() - 2])

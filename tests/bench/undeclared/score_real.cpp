@@ -89,10 +89,146 @@ struct Count {
   }
 };
 
-void print(const std::string& name, const Count& count) {
+void print_row(const std::string& name, const Count& count) {
   std::printf("| %s | %d | %d | %d | %d |\n", name.c_str(), count.trials, count.found, count.named,
               count.wrong);
 }
+
+struct Recordings {
+  std::vector<Source> sources;                          // whose noise is real
+  std::vector<std::pair<std::string, Series>> columns;  // to borrow from
+};
+
+Recordings recordings(const std::string& folder) {
+  const auto read = [&](const char* name) { return ifog::read_capture(folder + "/" + name + ".csv.gz"); };
+  const ifog::Capture bridge = read("blueseis_bridge_rbam2"), vehicle = read("rlg_vehicle"),
+                      mems = read("adis16405_imu1"), table = read("fog_rate_table"),
+                      turned = read("kvh1750_direct_imu_rate");
+  Recordings out;
+  const Series wander = resampled(bridge, bridge.rate_radps[0]);
+  out.sources.push_back({"blueseis_bridge_rbam2", wander});
+  out.sources.push_back({"adis16405_imu1", resampled(mems, mems.rate_radps[0])});
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Series all = resampled(vehicle, vehicle.rate_radps[a]);
+    const Series undisturbed(all.begin() + 1100, all.end());
+    out.sources.push_back({"rlg_vehicle " + vehicle.axes[a], undisturbed});
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+    out.columns.emplace_back("turning_" + turned.axes[a] + "_radps", resampled(turned, turned.rate_radps[a]));
+  for (const ifog::CaptureColumn& c : vehicle.channels)
+    out.columns.emplace_back(c.name, resampled(vehicle, c.values));
+  out.columns.emplace_back("temperature_degC", table.channels[0].values);
+  out.columns.emplace_back("table_rate_radps", table.reference_rate_radps[0]);
+  out.columns.emplace_back("other_gyro", low_passed(wander, 60.0, kStep_s));
+  return out;
+}
+
+// A piece of one source's noise beside borrowed channels.
+ifog::Capture piece(const Source& source, const Recordings& from, Draw& draw) {
+  const std::size_t samples = std::min<std::size_t>(source.rate.size(), 5000);
+  const auto start =
+      static_cast<std::size_t>(draw.uniform() * static_cast<double>(source.rate.size() - samples));
+  ifog::Capture c;
+  c.axes = {""};
+  for (std::size_t k = 0; k < samples; ++k) c.time_s.push_back(kStep_s * static_cast<double>(k));
+  c.rate_radps = {Series(source.rate.begin() + static_cast<std::ptrdiff_t>(start),
+                         source.rate.begin() + static_cast<std::ptrdiff_t>(start + samples))};
+  c.reference_rate_radps = {{}};
+  for (const auto& [name, values] : from.columns)
+    if (foreign(name, source.name)) c.channels.push_back({name, borrowed(values, samples, draw)});
+  return c;
+}
+
+// Adds an effect of `form` of the channel, 12 to 80 times its error in this noise; returns how many times.
+double implant_effect(ifog::Capture& c, const Series& channel, const std::string& form, Draw& draw) {
+  const std::size_t samples = channel.size();
+  Series effect(channel);
+  if (form != "linear") {
+    const double tau = draw.log_uniform(60.0, 300.0);
+    const Series slow = low_passed(channel, tau, kStep_s);
+    for (std::size_t k = 0; k < samples; ++k)
+      effect[k] = form == "rate" ? (channel[k] - slow[k]) / tau : slow[k];
+  }
+  const NoiseTruth noise = fitted_noise(c.rate_radps[0]);
+  const Visibility oracle(std::make_shared<const NoiseModel>(noise, samples, kStep_s), 1);
+  const double sigma = draw.log_uniform(12.0, 80.0);
+  const double size = sigma / oracle.of({effect}, {});
+  for (std::size_t k = 0; k < samples; ++k) c.rate_radps[0][k] += size * effect[k];
+  return sigma;
+}
+
+struct Trial {
+  std::string source, form, channel;  // form and channel of what was implanted, or empty
+  double sigma = 0.0;
+  bool hit = false, named = false;
+  int others = 0;      // claims of another channel
+  std::string claims;  // names of all
+
+  void count_in(Count& count) const {
+    ++count.trials;
+    count.found += hit ? 1 : 0;
+    count.named += named ? 1 : 0;
+    count.wrong += others > 0 ? 1 : 0;
+  }
+};
+
+Trial one_trial(int number, bool implant, const Recordings& from) {
+  Draw draw(static_cast<std::uint64_t>(number), 77);
+  const Source& source = from.sources[static_cast<std::size_t>(number) % from.sources.size()];
+  ifog::Capture c = piece(source, from, draw);
+  const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
+  const char* forms[] = {"linear", "rate", "lagged"};
+  std::string form = forms[draw.below(3)];
+  // The derivative of an acceleration is rotation, not an error: see candidates.cpp.
+  if (c.channels[target].name.starts_with("accel_") && form == "rate") form = "linear";
+  Trial trial{source.name, implant ? form : "", implant ? c.channels[target].name : "", 0.0, false, false, 0,
+              ""};
+  if (implant) trial.sigma = implant_effect(c, c.channels[target].values, form, draw);
+  const Finding finding = project_diagnosis()({c});
+  for (const Claim& claim : finding.effects) {
+    trial.claims += " " + name_of(claim.effect);
+    if (claim.effect.channel.empty()) continue;  // lines and jumps of the sensor's own
+    const bool here = implant && claim.effect.channel == trial.channel && claim.effect.with_channel.empty();
+    trial.hit = trial.hit || here;
+    trial.named = trial.named || (here && claim.effect.form == form);
+    trial.others += here ? 0 : 1;
+  }
+  return trial;
+}
+
+struct Tables {
+  std::map<std::string, Count> controls, by_form, by_size, by_source;
+
+  void add(const Trial& trial) {
+    if (trial.form.empty()) {
+      trial.count_in(controls[trial.source]);
+      return;
+    }
+    trial.count_in(by_form[trial.form]);
+    trial.count_in(by_size[trial.sigma < 20.0   ? "12 to 20 sigma"
+                           : trial.sigma < 40.0 ? "20 to 40 sigma"
+                                                : "40 to 80 sigma"]);
+    trial.count_in(by_source[trial.source]);
+  }
+
+  void print() const {
+    std::printf("| real noise, foreign channels | trials | explained by a channel |\n|---|---|---|\n");
+    Count all;
+    for (const auto& [name, count] : controls) {
+      std::printf("| %s | %d | %d |\n", name.c_str(), count.trials, count.wrong);
+      all.add(count);
+    }
+    std::printf("| all | %d | %d |\n\n", all.trials, all.wrong);
+    std::printf(
+        "| implanted | trials | channel found | form too | another channel besides "
+        "|\n|---|---|---|---|---|\n");
+    for (const auto* part : {&by_form, &by_size, &by_source})
+      for (const auto& [name, count] : *part) print_row(name, count);
+    Count implanted;
+    for (const auto& [name, count] : by_form) implanted.add(count);
+    print_row("all", implanted);
+  }
+};
 
 }  // namespace
 
@@ -106,113 +242,18 @@ int main(int argc, char** argv) {
   app.add_option("--only", only, "only the trials of these numbers, as the list of failures gives them");
   CLI11_PARSE(app, argc, argv);
 
-  const auto read = [&](const char* name) { return ifog::read_capture(folder + "/" + name + ".csv.gz"); };
-  std::vector<Source> sources;
-  std::vector<std::pair<std::string, Series>> columns;  // to borrow from
-  const ifog::Capture bridge = read("blueseis_bridge_rbam2"), vehicle = read("rlg_vehicle"),
-                      mems = read("adis16405_imu1"), table = read("fog_rate_table"),
-                      turned = read("kvh1750_direct_imu_rate");
-  sources.push_back({"blueseis_bridge_rbam2", resampled(bridge, bridge.rate_radps[0])});
-  sources.push_back({"adis16405_imu1", resampled(mems, mems.rate_radps[0])});
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Series all = resampled(vehicle, vehicle.rate_radps[a]);
-    sources.push_back(
-        {"rlg_vehicle " + vehicle.axes[a], Series(all.begin() + 1100, all.end())});  // undisturbed
+  const Recordings from = recordings(folder);
+  Tables tables;
+  for (int number = 0; number < 2 * trials; ++number) {
+    if (!only.empty() && std::find(only.begin(), only.end(), number) == only.end()) continue;
+    const bool implant = number >= trials;
+    const Trial trial = one_trial(number, implant, from);
+    tables.add(trial);
+    if (trial.others > 0 || (implant && !trial.hit))
+      std::fprintf(stderr, "trial %d %s %s %.0f sigma: found%s\n", number, trial.source.c_str(),
+                   implant ? (trial.form + " " + trial.channel).c_str() : "nothing implanted", trial.sigma,
+                   trial.claims.empty() ? " nothing" : trial.claims.c_str());
   }
-  for (std::size_t a = 0; a < 3; ++a)
-    columns.emplace_back("turning_" + turned.axes[a] + "_radps", resampled(turned, turned.rate_radps[a]));
-  for (const ifog::CaptureColumn& c : vehicle.channels)
-    columns.emplace_back(c.name, resampled(vehicle, c.values));
-  columns.emplace_back("temperature_degC", table.channels[0].values);
-  columns.emplace_back("table_rate_radps", table.reference_rate_radps[0]);
-  Series wander = resampled(bridge, bridge.rate_radps[0]);
-  columns.emplace_back("other_gyro", low_passed(wander, 60.0, kStep_s));
-
-  std::map<std::string, Count> controls, by_form, by_size, by_source;
-  for (int trial = 0; trial < 2 * trials; ++trial) {
-    if (!only.empty() && std::find(only.begin(), only.end(), trial) == only.end()) continue;
-    const bool implant = trial >= trials;
-    Draw draw(static_cast<std::uint64_t>(trial), 77);
-    const Source& source = sources[static_cast<std::size_t>(trial) % sources.size()];
-    const std::size_t samples = std::min<std::size_t>(source.rate.size(), 5000);
-    const auto from =
-        static_cast<std::size_t>(draw.uniform() * static_cast<double>(source.rate.size() - samples));
-    ifog::Capture c;
-    c.axes = {""};
-    for (std::size_t k = 0; k < samples; ++k) c.time_s.push_back(kStep_s * static_cast<double>(k));
-    c.rate_radps = {Series(source.rate.begin() + static_cast<std::ptrdiff_t>(from),
-                           source.rate.begin() + static_cast<std::ptrdiff_t>(from + samples))};
-    c.reference_rate_radps = {{}};
-    for (const auto& [name, values] : columns)
-      if (foreign(name, source.name)) c.channels.push_back({name, borrowed(values, samples, draw)});
-    const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
-    const char* forms[] = {"linear", "rate", "lagged"};
-    // The derivative of an acceleration is rotation, not an error: see candidates.cpp.
-    const bool acceleration = c.channels[target].name.starts_with("accel_");
-    std::string form = forms[draw.below(3)];
-    if (acceleration && form == "rate") form = "linear";
-    double sigma = 0.0;
-    if (implant) {
-      const Series& x = c.channels[target].values;
-      Series effect(x);
-      if (form != "linear") {
-        const double tau = draw.log_uniform(60.0, 300.0);
-        const Series slow = low_passed(x, tau, kStep_s);
-        for (std::size_t k = 0; k < samples; ++k)
-          effect[k] = form == "rate" ? (x[k] - slow[k]) / tau : slow[k];
-      }
-      const NoiseTruth noise = fitted_noise(c.rate_radps[0]);
-      const Visibility oracle(std::make_shared<const NoiseModel>(noise, samples, kStep_s), 1);
-      sigma = draw.log_uniform(12.0, 80.0);
-      const double size = sigma / oracle.of({effect}, {});
-      for (std::size_t k = 0; k < samples; ++k) c.rate_radps[0][k] += size * effect[k];
-    }
-    const Finding finding = project_diagnosis()({c});
-    bool hit = false, named = false;
-    int others = 0;
-    std::string names;
-    for (const Claim& claim : finding.effects) {
-      names += " " + name_of(claim.effect);
-      if (claim.effect.channel.empty()) continue;  // lines and jumps of the sensor's own
-      const bool here =
-          implant && claim.effect.channel == c.channels[target].name && claim.effect.with_channel.empty();
-      hit = hit || here;
-      named = named || (here && claim.effect.form == form);
-      others += here ? 0 : 1;
-    }
-    const auto add = [&](Count& count) {
-      ++count.trials;
-      count.found += hit ? 1 : 0;
-      count.named += named ? 1 : 0;
-      count.wrong += others > 0 ? 1 : 0;
-    };
-    const char* size = sigma < 20.0 ? "12 to 20 sigma" : sigma < 40.0 ? "20 to 40 sigma" : "40 to 80 sigma";
-    if (implant) {
-      add(by_form[form]);
-      add(by_size[size]);
-      add(by_source[source.name]);
-    } else {
-      add(controls[source.name]);
-    }
-    if (others > 0 || (implant && !hit))
-      std::fprintf(stderr, "trial %d %s %s %.0f sigma: found%s\n", trial, source.name.c_str(),
-                   implant ? (form + " " + c.channels[target].name).c_str() : "nothing implanted", sigma,
-                   names.empty() ? " nothing" : names.c_str());
-  }
-  std::printf("| real noise, foreign channels | trials | explained by a channel |\n|---|---|---|\n");
-  Count all;
-  for (const auto& [name, count] : controls) {
-    std::printf("| %s | %d | %d |\n", name.c_str(), count.trials, count.wrong);
-    all.add(count);
-  }
-  std::printf("| all | %d | %d |\n\n", all.trials, all.wrong);
-  std::printf(
-      "| implanted | trials | channel found | form too | another channel besides |\n|---|---|---|---|---|\n");
-  Count implanted;
-  for (const auto* part : {&by_form, &by_size, &by_source}) {
-    for (const auto& [name, count] : *part) print(name, count);
-  }
-  for (const auto& [name, count] : by_form) implanted.add(count);
-  print("all", implanted);
+  tables.print();
   return 0;
 }
