@@ -32,7 +32,7 @@ class Parser {
 
  private:
   std::string warn(std::size_t line, const std::string& what) {
-    const std::string text = out_.file + ":" + std::to_string(line) + ": " + what;
+    std::string text = out_.file + ":" + std::to_string(line) + ": " + what;
     if (out_.warnings.size() == kMostBadLines)
       throw std::runtime_error(text + "; more than " + std::to_string(kMostBadLines) +
                                " such lines, this is no DBC file");

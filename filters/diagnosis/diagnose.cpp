@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/record/channel_faults.h"
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/record/unused_channels.h"
@@ -13,6 +15,7 @@
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/series.h"
+#include "filters/diagnosis/report/written_model.h"
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/record_lines.h"
 #include "filters/diagnosis/residual/resonances.h"
@@ -25,14 +28,21 @@ namespace {
 constexpr double kOfLines = 1.0 / 200.0;  // of the significance: every frequency is tried
 constexpr std::size_t kMoreOnDwells = 4;  // effects: a scale factor comes with its powers and products
 
+std::string in_words(const Effect& effect) {
+  return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+}
+
 std::string dropped_in_words(const std::vector<Effect>& dropped) {
   std::string names;
-  for (const Effect& effect : dropped)
-    names +=
-        (names.empty() ? "" : ", ") + effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
+  for (const Effect& effect : dropped) names += (names.empty() ? "" : ", ") + in_words(effect);
   return "the innovations suggest " + names +
          ", but a few knocks or a change of the noise make it seem so, it is not the same "
          "all along the record, or the error on held-out data would grow: left out";
+}
+
+std::string harmful_in_words(const Effect& effect) {
+  return "the innovations suggest " + in_words(effect) +
+         ", but the daemon's own correction by it would leave a larger error than none: left out";
 }
 
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
@@ -53,9 +63,12 @@ class Run {
     separate_lines();
     separate_hysteresis();
     drop_what_is_not_proven();
-    joint_ = settle(data_, reconstructed_, found_);
-    subtract_found(data_, found_, errors_);
-    report_effects();
+    fit_jointly();
+    while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
+      say(harmful_in_words(result_.effects[*harmful].effect));
+      found_ = without_effect(data_, reconstructed_, std::move(found_), *harmful);
+      fit_jointly();
+    }
     report_figures();
     report_rest();
     return std::move(result_);
@@ -116,6 +129,26 @@ class Run {
     if (!dropped.empty()) say(dropped_in_words(dropped));
   }
 
+  void fit_jointly() {
+    joint_ = settle(data_, reconstructed_, found_);
+    subtract_found(data_, found_, errors_);
+    report_effects();
+    count_rates_from_the_bias(errors_, result_.effects);
+    run_written_model(records_, result_, data_.grid.sample_s, errors_);
+  }
+
+  // Of the effects as they are now written, by the run of the daemon's own correction and on blocks that were
+  // left out of the fit: index of the one to leave out, none when they make neither error larger.
+  std::optional<std::size_t> what_makes_it_worse() {
+    if (holds(reconstructed_, found_, errors_, &EvenError::written) &&
+        holds(reconstructed_, found_, errors_, &EvenError::held_out))
+      return std::nullopt;
+    if (const auto harmful =
+            most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
+      return harmful;
+    return least_certain(found_.chosen);
+  }
+
   void report_effects() {
     Findings findings = findings_of(data_, reconstructed_, found_, joint_, options_.axis);
     add_loop_rivals(reconstructed_, fit_loops(reconstructed_, found_.fitted, found_.noise),
@@ -129,10 +162,11 @@ class Run {
       result_.effects.push_back(std::move(each));
     result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), jointly);
     result_.ranges = ranges_of(data_, result_.effects);
-    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, findings.parts);
+    parts_ = std::move(findings.parts);
   }
 
   void report_figures() {
+    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_);
     write_before_and_after(errors_, data_.grid.sample_s, result_);
     result_.noise = noise_terms(found_.noise.shape, found_.noise.white_variance, data_.grid.block_s);
     result_.heading = predict_like_longest(result_, records_);
@@ -164,6 +198,7 @@ class Run {
   std::optional<MovingLine> moving_;
   SearchResult found_;
   JointFit joint_;
+  std::vector<Eigen::VectorXd> parts_;  // of the error by block, one an effect of found_
   Diagnosis result_;
 };
 
@@ -173,10 +208,13 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
   if (!(options.fit_from < options.fit_to))
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
-  const std::vector<Record> fitted = share.whole() ? records : fitted_parts(records, share);
+  check_columns(records);
+  const RepairedRecords repaired = repair_channels(records);
+  const std::vector<Record> fitted = share.whole() ? repaired.records : fitted_parts(repaired.records, share);
   const WithoutRamps without = take_out_ramps(fitted, options.significance);
   Diagnosis diagnosis = Run(fitted, without, options).run();
-  if (!share.whole()) judge(records, share, diagnosis);
+  diagnosis.remarks.insert(diagnosis.remarks.begin(), repaired.remarks.begin(), repaired.remarks.end());
+  if (!share.whole()) judge(repaired.records, share, diagnosis);
   return diagnosis;
 }
 

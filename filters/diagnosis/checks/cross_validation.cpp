@@ -45,19 +45,26 @@ double between(const Eigen::VectorXd& values, const BlockRange& record, double a
   return values[low] + share * (values[high] - values[low]);
 }
 
-// By block, each from the coefficients of the others' folds. Each fold's fit has a constant of its own:
-// without it a channel far from zero would step from fold to fold.
-Eigen::VectorXd held_out_effects(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns) {
+// By block, each from the coefficients of the others' folds; a step or a line helps to fit them and is then
+// left where it is, as online. Each fold's fit has a constant of its own: without it a channel far from zero
+// would step from fold to fold.
+Eigen::VectorXd held_out_effects(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
+                                 const std::vector<Candidate>& effects) {
   const std::vector<Eigen::VectorXd> coefficients = coefficients_without_each_fold(grid, shape, columns);
   const std::vector<int> fold = fold_of_block(grid);
   Columns centred = columns.rightCols(columns.cols() - 1 - grid.constants());
   centre_records(grid, centred);
-  Eigen::VectorXd effects(columns.rows());
-  for (Eigen::Index b = 0; b < effects.size(); ++b) {
-    const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
-    effects[b] = centred.row(b).dot(coefficients[held_out]);
+  Eigen::Index at = 0;
+  for (const Candidate& effect : effects) {
+    if (!carries_over(effect.form)) centred.middleCols(at, effect.width()).setZero();
+    at += effect.width();
   }
-  return effects;
+  Eigen::VectorXd sum(columns.rows());
+  for (Eigen::Index b = 0; b < sum.size(); ++b) {
+    const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
+    sum[b] = centred.row(b).dot(coefficients[held_out]);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -89,7 +96,7 @@ void subtract_effects(const BlockData& data, const std::vector<Candidate>& effec
   Eigen::VectorXd held_out = all;
   if (p > 0) {
     all = columns.rightCols(p) * coefficients.tail(p);
-    held_out = held_out_effects(grid, shape, columns);
+    held_out = held_out_effects(grid, shape, columns, effects);
   }
   for (std::size_t r = 0; r < errors.size(); ++r) {
     EvenError& error = errors[r];

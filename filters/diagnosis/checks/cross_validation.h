@@ -15,7 +15,8 @@ namespace ifog {
 std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
                                                             const Columns& columns);
 
-// `after` and `held_out` of each error from its rests. coefficients: of all blocks, the constants first.
+// `after` and `held_out` of each error from its rests: the first less all effects, the second less those that
+// carry over to another capture. coefficients: of all blocks, the constants first.
 void subtract_effects(const BlockData& data, const std::vector<Candidate>& effects, const NoiseShape& shape,
                       const Eigen::VectorXd& coefficients, std::vector<EvenError>& errors);
 

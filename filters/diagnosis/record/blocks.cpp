@@ -34,7 +34,9 @@ double median_period(const std::vector<Record>& records) {
   return median(std::move(steps));
 }
 
-void check(const std::vector<Record>& records) {
+}  // namespace
+
+void check_columns(const std::vector<Record>& records) {
   if (records.empty()) throw std::invalid_argument("a diagnosis needs a record");
   for (const Record& record : records) {
     const std::size_t n = record.time_s.size();
@@ -59,6 +61,8 @@ void check(const std::vector<Record>& records) {
   }
 }
 
+namespace {
+
 // Noise of one sample from its neighbours' differences, by their median: steps, ramps and bursts do not
 // count.
 double white_variance(const std::vector<Record>& records) {
@@ -79,6 +83,19 @@ double white_variance(const std::vector<Record>& records) {
 
 std::size_t fine_index(const Record& record, std::size_t i, double fine_s) {
   return static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s[0]) / fine_s + 0.5));
+}
+
+// Where the record has no rows the channel went on: linear between the steps beside such a hole. Held there
+// and then jumping, its derivative would be that of no temperature.
+void bridge_holes(const Record& record, double fine_s, std::span<double> means) {
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const std::size_t k = std::min(fine_index(record, i, fine_s), means.size() - 1);
+    for (std::size_t j = last + 1; j < k; ++j)
+      means[j] = means[last] +
+                 (means[k] - means[last]) * static_cast<double>(j - last) / static_cast<double>(k - last);
+    last = k;
+  }
 }
 
 // Means of one column over the fine grid of one record; steps without a value hold the last one.
@@ -104,6 +121,7 @@ void fill(const Record& record, std::span<const double> values, double fine_s, s
     means.push_back(held);
     if (power) power->push_back(count[k] ? std::max(0.0, square[k] / count[k] - held * held) : 0.0);
   }
+  bridge_holes(record, fine_s, std::span(means).last(steps));
 }
 
 void describe(FineChannel& channel) {
@@ -181,7 +199,7 @@ std::size_t BlockGrid::longest() const {
 }
 
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
-  check(records);
+  check_columns(records);
   BlockData data;
   data.grid = steps_and_blocks(records, most_blocks);
   std::vector<double> error;

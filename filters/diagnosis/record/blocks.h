@@ -72,6 +72,10 @@ struct BlockData {
   std::ptrdiff_t reference = -1;      // its index
 };
 
+// Throws std::invalid_argument, naming the record: no record, columns of different length, a reference in
+// some records only, a time that does not increase.
+void check_columns(const std::vector<Record>& records);
+
 // Throws std::invalid_argument as diagnose() does.
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks = 4096);
 

@@ -15,10 +15,13 @@ struct EvenError {
   std::vector<double> rest;           // less ramps, and later lines: what effects are sought in
   std::vector<double> rest_held_out;  // the same, less ramps as fitted without the sample's own part
   std::vector<double> after;          // less the effects, too
-  std::vector<double> held_out;  // less the effects as fitted without the sample's own part of the record
+  // Less what is corrected online, by coefficients that were fitted without the sample's own part.
+  std::vector<double> held_out;
+  std::vector<double>
+      written;  // what the daemon's own correction leaves of `before`, by the model as written
 };
 
-// after and held_out: still empty. Throws as on_even_grid() does.
+// after, held_out and written: still empty. Throws as on_even_grid() does.
 std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
                                    double sample_s);
 

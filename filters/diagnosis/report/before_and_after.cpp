@@ -1,20 +1,28 @@
 #include "filters/diagnosis/report/before_and_after.h"
 
+#include <cmath>
+
 #include "filters/diagnosis/record/figures.h"
 
 namespace ifog {
 
 void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, Diagnosis& diagnosis) {
   std::vector<std::map<std::string, double>> before;
-  std::vector<std::map<std::string, double>> after;
+  std::vector<std::map<std::string, double>> written;
+  std::vector<std::map<std::string, double>> held_out;
   std::vector<double> weight;
   for (const EvenError& error : errors) {
     before.push_back(error_figures(error.before, sample_s));
-    after.push_back(error_figures(error.held_out, sample_s));
+    written.push_back(error_figures(error.written, sample_s));
+    held_out.push_back(error_figures(error.held_out, sample_s));
     weight.push_back(static_cast<double>(error.before.size()));
   }
   diagnosis.before = pooled(before, weight);
-  diagnosis.after = pooled(after, weight);
+  diagnosis.after = pooled(written, weight);
+  for (const auto& [name, value] : pooled(held_out, weight)) {
+    double& figure = diagnosis.after[name];
+    if (std::abs(value) > std::abs(figure)) figure = value;
+  }
 }
 
 }  // namespace ifog

@@ -6,8 +6,9 @@
 
 namespace ifog {
 
-// `before` and `after` of the diagnosis, the latter less the effects as fitted without each sample's own
-// part.
+// `before` and `after` of the diagnosis. Each figure after is the larger of two, so that neither promises
+// what the other does not keep: what the written model leaves, and what effects leave that were fitted
+// without each sample's own part.
 void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, Diagnosis& diagnosis);
 
 }  // namespace ifog

@@ -145,9 +145,7 @@ void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<E
     for (std::size_t i = 0; i < error.rest.size(); ++i) {
       const double phase =
           2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * sample_s);
-      const double value = fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
-      error.rest[i] -= value;
-      error.rest_held_out[i] -= value;
+      error.rest[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
     }
   }
 }

@@ -33,17 +33,16 @@ bool slow_noise_may_oppose(const BlockData& reconstructed, const SearchResult& f
   return disagreement(reconstructed.grid, found.noise, columns, k, taken, known) < kOpposed;
 }
 
-// Index of the least certain effect that is corrected online; one past the last when there is none.
-std::size_t least_certain(const std::vector<Chosen>& chosen) {
-  std::size_t least = chosen.size();
+}  // namespace
+
+std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen) {
+  std::optional<std::size_t> least;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!carries_over(chosen[i].candidate.form)) continue;
-    if (least == chosen.size() || chosen[i].likelihood_ratio < chosen[least].likelihood_ratio) least = i;
+    if (!least || chosen[i].likelihood_ratio < chosen[*least].likelihood_ratio) least = i;
   }
   return least;
 }
-
-}  // namespace
 
 void subtract_found(const BlockData& data, const SearchResult& found, std::vector<EvenError>& errors) {
   subtract_effects(data, candidates_of(found.chosen), found.noise.shape, found.coefficients, errors);
@@ -74,17 +73,18 @@ bool stands(const BlockData& reconstructed, const SearchResult& found, std::size
   return unsteady.square < kUnsteady || unsteady.share < kUnsteadyShare;
 }
 
-bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors) {
+bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors,
+           std::vector<double> EvenError::*after) {
   const auto grows = [&](double pieces, double most) {
-    double before = 0.0;
-    double after = 0.0;
+    double without = 0.0;
+    double with = 0.0;
     for (const EvenError& error : errors) {
       const auto count = std::max<std::size_t>(
           1, static_cast<std::size_t>(static_cast<double>(error.before.size()) / pieces));
-      before += variance_of(means_over(error.before, count));
-      after += variance_of(means_over(error.held_out, count));
+      without += variance_of(means_over(error.before, count));
+      with += variance_of(means_over(error.*after, count));
     }
-    return after > most * before;
+    return with > most * without;
   };
   return !grows(2000.0, kWorse) &&
          (!grows(20.0, kWorseSlowly) || slow_noise_may_oppose(reconstructed, found));
@@ -105,10 +105,10 @@ std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockDa
     else
       drop(i);
   }
-  while (!holds(reconstructed, found, errors)) {
-    const std::size_t least = least_certain(found.chosen);
-    if (least == found.chosen.size()) break;
-    drop(least);
+  while (!holds(reconstructed, found, errors, &EvenError::held_out)) {
+    const std::optional<std::size_t> least = least_certain(found.chosen);
+    if (!least) break;
+    drop(*least);
   }
   return dropped;
 }

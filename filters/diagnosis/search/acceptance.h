@@ -1,6 +1,7 @@
 // What a search chose, put to the proof by what it leaves of the error.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "filters/diagnosis/record/even_error.h"
@@ -18,9 +19,14 @@ SearchResult without_effect(const BlockData& data, const BlockData& reconstructe
 // Whether effect `at` is more than a few outliers, a change of the noise or one part of the record make up.
 bool stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at, double significance);
 
-// Whether the effects do not make the error on held-out data larger: what is quick, and what a heading is
-// made of, where chance has fewer pieces to average over. errors: as `found` leaves them.
-bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors);
+// Whether the effects do not make the error larger: what is quick, and what a heading is made of, where
+// chance has fewer pieces to average over. errors: as `found` leaves them; `after`: EvenError::held_out or
+// written.
+bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors,
+           std::vector<double> EvenError::*after);
+
+// Index of the least certain effect that is corrected online; none when there is no such effect.
+std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 
 // Takes out of `found` every effect of a channel that does not stand, then, while the error on held-out data
 // does not hold, the least certain of those that are corrected online: effects that make it larger are no

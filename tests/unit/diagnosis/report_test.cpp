@@ -13,6 +13,7 @@
 #include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/separate.h"
 #include "filters/diagnosis/report/series.h"
+#include "filters/diagnosis/report/written_model.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
 namespace ifog {
@@ -71,17 +72,81 @@ TEST(HeldOutPart, JudgesWhatWasNotFitted) {
   EXPECT_NEAR(diagnosis.before.at("residual_rms_radps"), std::sqrt(1.0 + 50.0), 0.5);
 }
 
-TEST(BeforeAndAfter, AreTheFiguresOfTheErrorAndOfTheHeldOutOne) {
-  std::vector<EvenError> errors(1);
-  for (int i = 0; i < 500; ++i) {
-    errors[0].before.push_back(i % 2 ? 3.0 : -3.0);
-    errors[0].held_out.push_back(i % 2 ? 1.0 : -1.0);
-    errors[0].after.push_back(0.0);
+TEST(BeforeAndAfter, AreTheFiguresOfTheErrorAndTheLargerOfTheWrittenAndTheHeldOutOne) {
+  for (const double written : {0.5, 2.0}) {
+    std::vector<EvenError> errors(1);
+    for (int i = 0; i < 500; ++i) {
+      const double sign = i % 2 ? 1.0 : -1.0;
+      errors[0].before.push_back(3.0 * sign);
+      errors[0].held_out.push_back(sign);
+      errors[0].written.push_back(written * sign);
+      errors[0].after.push_back(0.0);
+    }
+    Diagnosis diagnosis;
+    write_before_and_after(errors, 1.0, diagnosis);
+    EXPECT_DOUBLE_EQ(diagnosis.before.at("residual_rms_radps"), 3.0);
+    EXPECT_DOUBLE_EQ(diagnosis.after.at("residual_rms_radps"), std::max(1.0, written));
   }
+}
+
+// A cubic scale factor beside a bias: z = w + b + s w^3. Online z - b is not known to be w; counted from the
+// bias the correction leaves that bias and nothing else, which is the closed form of what the daemon solves.
+TEST(WrittenModel, CountsRatesFromTheBiasThatStays) {
+  constexpr double kBias = 0.02, kCubic = 0.01;
+  std::vector<double> time, rate, reference;
+  for (int i = 0; i < 400; ++i) {
+    time.push_back(i);
+    reference.push_back(2.5 * std::sin(0.05 * i));
+    rate.push_back(reference.back() + kBias + kCubic * std::pow(reference.back(), 3));
+  }
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.reference_radps = reference;
   Diagnosis diagnosis;
-  write_before_and_after(errors, 1.0, diagnosis);
-  EXPECT_DOUBLE_EQ(diagnosis.before.at("residual_rms_radps"), 3.0);
-  EXPECT_DOUBLE_EQ(diagnosis.after.at("residual_rms_radps"), 1.0);
+  diagnosis.effects.resize(1);
+  Effect& effect = diagnosis.effects[0].effect;
+  effect.form = "cubic";
+  effect.channel = "reference_rate_radps";
+  effect.parameters = {{"coefficient", kCubic, 1e-6, ""}};
+  diagnosis.covariance = {1e-12};
+  diagnosis.ranges = {{"reference_rate_radps", -2.6, 2.6}};
+  std::vector<EvenError> errors(1);
+  errors[0].after.assign(400, kBias);
+  run_written_model({record}, diagnosis, 1.0, errors);
+  EXPECT_GT(std::sqrt(variance_of(errors[0].written)), 1e-3);
+  count_rates_from_the_bias(errors, diagnosis.effects);
+  EXPECT_NEAR(effect.reference, kBias, 1e-15);
+  run_written_model({record}, diagnosis, 1.0, errors);
+  for (const double left : errors[0].written) EXPECT_NEAR(left, kBias, 1e-9);
+}
+
+TEST(WrittenModel, TheEffectThatHarmsIsTheOneWithoutWhichLeastIsLeft) {
+  std::vector<double> time, rate, temperature, supply;
+  for (int i = 0; i < 4000; ++i) {
+    time.push_back(i);
+    temperature.push_back(25.0 + 5.0 * std::sin(0.01 * i));
+    supply.push_back(12.0 + std::sin(0.017 * i));
+    rate.push_back(1e-3 * (temperature.back() - 25.0));
+  }
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.channels = {{"temperature_degC", temperature}, {"supply_V", supply}};
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(2);
+  diagnosis.effects[0].effect = linear_in_temperature(1e-3);
+  diagnosis.effects[1].effect = linear_in_temperature(1e-3);
+  diagnosis.effects[1].effect.channel = "supply_V";
+  diagnosis.effects[1].effect.reference = 12.0;
+  diagnosis.covariance = {1e-12, 0.0, 0.0, 1e-12};
+  std::vector<EvenError> errors(1);
+  run_written_model({record}, diagnosis, 1.0, errors);
+  EXPECT_EQ(most_harmful_effect({record}, diagnosis, 2, 1.0, errors), std::optional<std::size_t>(1));
+  diagnosis.effects.pop_back();
+  diagnosis.covariance = {1e-12};
+  run_written_model({record}, diagnosis, 1.0, errors);
+  EXPECT_EQ(most_harmful_effect({record}, diagnosis, 1, 1.0, errors), std::nullopt);
 }
 
 TEST(SampleEffects, AreRampsThenLinesWithTheirShareOfTheVariance) {
@@ -138,7 +203,7 @@ TEST(Series, HasAPointABlockAndTheDeviationsOfTheError) {
   const BlockData data = white_with_temperature(400, 5);
   EvenError error;
   for (int i = 0; i < 400; ++i) error.before.push_back(i % 2 ? 1.0 : -1.0);
-  error.after = error.held_out = std::vector<double>(400, 0.5);
+  error.written = std::vector<double>(400, 0.5);
   const DiagnosisSeries series = series_of(data, {error}, {}, {}, {});
   ASSERT_EQ(series.time_s.size(), 400U);
   EXPECT_EQ(series.before_radps[7], 1.0);

@@ -121,7 +121,7 @@ TEST(Acceptance, KeepsWhatStandsAndDropsWhatIsNot) {
   subtract_found(data, found, errors);
   EXPECT_FALSE(stands(data, found, 0, 1e-4));
   EXPECT_TRUE(stands(data, found, 1, 1e-4));
-  EXPECT_TRUE(holds(data, found, errors));
+  EXPECT_TRUE(holds(data, found, errors, &EvenError::held_out));
   const std::vector<Effect> dropped = drop_what_does_not_hold(data, data, 1e-4, found, errors);
   ASSERT_EQ(dropped.size(), 1U);
   EXPECT_EQ(dropped[0].channel, "temperature_degC");
@@ -137,9 +137,9 @@ TEST(Acceptance, AnErrorThatGrowsDoesNotHold) {
   const SearchResult found = chosen(data, {of(0, Form::kLinear)});
   std::vector<EvenError> errors = errors_of(data);
   errors[0].held_out = errors[0].before;
-  EXPECT_TRUE(holds(data, found, errors));
+  EXPECT_TRUE(holds(data, found, errors, &EvenError::held_out));
   for (std::size_t i = 0; i < kBlocks; ++i) errors[0].held_out[i] += data.channels[1].values[i] - 12.0;
-  EXPECT_FALSE(holds(data, found, errors));
+  EXPECT_FALSE(holds(data, found, errors, &EvenError::held_out));
 }
 
 }  // namespace

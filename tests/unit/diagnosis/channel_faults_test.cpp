@@ -1,0 +1,105 @@
+// What loggers do to a channel is undone, and what only looks like it is left alone.
+#include "filters/diagnosis/record/channel_faults.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/record/blocks.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kSamples = 4000;
+
+struct Logged {
+  std::vector<double> time, rate = std::vector<double>(kSamples, 0.0), channel;
+
+  Logged() {
+    for (std::size_t i = 0; i < kSamples; ++i) time.push_back(static_cast<double>(i));
+  }
+  template <class Value>
+  explicit Logged(Value&& value) : Logged() {
+    for (std::size_t i = 0; i < kSamples; ++i) channel.push_back(value(static_cast<double>(i)));
+  }
+  [[nodiscard]] RepairedRecords repaired(const char* name) const {
+    Record record;
+    record.name = "logged";
+    record.time_s = time;
+    record.rate_radps = rate;
+    record.channels = {{name, channel}};
+    return repair_channels({record});
+  }
+};
+
+// Hundredths of a degree, as a thermometer gives them.
+double warming(double t) { return std::round(100.0 * (20.0 + 15.0 * std::sin(t / 900.0))) / 100.0; }
+
+TEST(ChannelFaults, WhatAThermometerCannotHaveMeasuredIsInterpolated) {
+  Logged logged(warming);
+  for (std::size_t i = 1000; i < 1007; ++i) logged.channel[i] = 85.0;
+  for (std::size_t i = 2500; i < 2503; ++i) logged.channel[i] = -127.0;
+  const RepairedRecords repaired = logged.repaired("temperature_degC");
+  for (std::size_t i = 0; i < kSamples; ++i)
+    EXPECT_NEAR(repaired.records[0].channels[0].values[i], warming(static_cast<double>(i)), 0.02) << i;
+  ASSERT_EQ(repaired.remarks.size(), 1U);
+  EXPECT_NE(repaired.remarks[0].find("temperature_degC leaps away and back 2 time(s), for 10 sample(s)"),
+            std::string::npos)
+      << repaired.remarks[0];
+}
+
+TEST(ChannelFaults, WhatStoodStillIsInterpolated) {
+  Logged logged(warming);
+  for (std::size_t i = 1500; i < 2300; ++i) logged.channel[i] = logged.channel[1500];
+  const RepairedRecords repaired = logged.repaired("temperature_degC");
+  ASSERT_EQ(repaired.remarks.size(), 1U);
+  EXPECT_NE(repaired.remarks[0].find(" s to 2300 s and then jumps"), std::string::npos) << repaired.remarks[0];
+  const auto values = repaired.records[0].channels[0].values;
+  for (std::size_t i = 1500; i < 2300; ++i)
+    EXPECT_NEAR(values[i], values[1500] + (values[2300] - values[1500]) * double(i - 1500) / 800.0, 1e-9);
+}
+
+TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const auto untouched = [](const Logged& logged, const char* name) {
+    const RepairedRecords repaired = logged.repaired(name);
+    EXPECT_TRUE(repaired.remarks.empty()) << name << ": " << repaired.remarks.front();
+    EXPECT_EQ(repaired.records[0].channels[0].values.data(), logged.channel.data());
+  };
+  untouched(Logged(warming), "temperature_degC");
+  Logged blow([&](double) { return 9.81 + 0.01 * normal(random); });
+  blow.channel[2000] = 10.0;  // nineteen of its standard deviations
+  untouched(blow, "accel_z_mps2");
+  untouched(Logged([](double t) { return t > 1000.0 && t < 1030.0 ? 1.0 : 0.0; }), "heater_on");
+  // A supply that another consumer pulls down for good: a step, and no return.
+  untouched(Logged([&](double t) { return (t < 2000.0 ? 12.0 : 11.2) + 0.01 * std::sin(t / 300.0); }),
+            "supply_V");
+  // A thermometer in whole degrees stands still by its resolution and moves by its usual change.
+  untouched(Logged([](double t) { return std::round(20.0 + 15.0 * std::sin(t / 900.0)); }), "coil_degC");
+}
+
+// Without rows for 300 s the channel goes on in a straight line: no step for a derivative to see.
+TEST(ChannelFaults, AHoleInTheRowsIsBridged) {
+  std::vector<double> time, rate, channel;
+  for (std::size_t i = 0; i < 4000; ++i) {
+    if (i >= 1000 && i < 1300) continue;
+    time.push_back(static_cast<double>(i));
+    rate.push_back(0.0);
+    channel.push_back(0.01 * static_cast<double>(i));
+  }
+  Record record;
+  record.name = "with a hole";
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.channels = {{"temperature_degC", channel}};
+  const BlockData data = cut_to_blocks({record});
+  ASSERT_EQ(data.grid.fine, 1U);
+  for (std::size_t k = 0; k < 4000; ++k)
+    EXPECT_NEAR(data.channels[0].values[k], 0.01 * static_cast<double>(k), 1e-9) << k;
+  EXPECT_EQ(data.grid.valid[1100], 0);
+}
+
+}  // namespace
+}  // namespace ifog
