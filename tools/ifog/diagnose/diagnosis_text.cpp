@@ -1,9 +1,10 @@
 #include "tools/ifog/diagnose/diagnosis_text.h"
-#include "filters/units/field_units.h"
-
 #include <array>
 #include <cmath>
 #include <cstdio>
+
+#include "filters/units/field_units.h"
+#include "tools/report/words.h"
 
 namespace ifog::tools {
 namespace {
@@ -26,15 +27,21 @@ std::string percent(double share) { return share >= 0.001 ? text("%.3g %%", 100.
 
 std::string chance(double p) { return p < 1e-6 ? "under one in a million" : text("%.2g", p); }
 
-// The coefficient in the field's units: °/h for what is rad/s.
+// In the field's units, as on the report's page.
 std::string value_of(const ModelParameter& parameter) {
-  const bool rate = parameter.unit.starts_with("rad/s");
-  const double scale = rate ? 1.0 / kDegreePerHour : 1.0;
-  const std::string unit = rate ? "°/h" + parameter.unit.substr(5) : parameter.unit;
-  return text("%.4g ± %.2g %s", parameter.value * scale, parameter.std_error * scale, unit.c_str());
+  const report::FieldUnit field = report::field_unit(parameter.unit);
+  return text("%.4g ± %.2g %s", parameter.value * field.scale, parameter.std_error * field.scale,
+              field.unit.c_str());
 }
 
-std::string effect_lines(const FoundEffect& found, std::size_t number) {
+// Parts that run against each other may each be as large as the error and more.
+bool parts_overlap(const Diagnosis& diagnosis) {
+  double sum = 0.0;
+  for (const FoundEffect& found : diagnosis.effects) sum += found.variance_explained;
+  return sum > 1.05;
+}
+
+std::string effect_lines(const FoundEffect& found, std::size_t number, bool overlap) {
   const Effect& effect = found.effect;
   std::string lines = text("  %zu. %s\n     %s\n", number, named(effect).c_str(), effect.meaning.c_str());
   for (const ModelParameter& parameter : effect.parameters) {
@@ -49,7 +56,8 @@ std::string effect_lines(const FoundEffect& found, std::size_t number) {
     lines += text("     %-18s %.4g °/h\n", "amplitude", amplitude / kDegreePerHour);
   }
   if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
-  lines += text("     explains %s of the error's variance; by chance: %s\n",
+  lines += text("     %s %s of the error's variance; by chance: %s\n",
+                overlap ? "taken alone, beside parts that overlap with it," : "explains",
                 percent(found.variance_explained).c_str(), chance(found.p_value).c_str());
   return lines;
 }
@@ -111,9 +119,10 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   } else {
     report += "\nFound:\n";
     for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
-      report += effect_lines(diagnosis.effects[i], i + 1);
+      report += effect_lines(diagnosis.effects[i], i + 1, parts_overlap(diagnosis));
   }
-  report += "\nError, on data held out of the fit:\n" + figure_lines(diagnosis);
+  report += "\nError, by the model as written and on data held out of the fit, whichever is larger:\n" +
+            figure_lines(diagnosis);
   if (!diagnosis.indistinguishable.empty()) report += "\nCannot be told apart on this data:\n";
   for (const Indistinguishable& pair : diagnosis.indistinguishable) {
     for (std::size_t i = 0; i < pair.effects.size(); ++i)
