@@ -5,11 +5,13 @@
 
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/record/turned.h"
 #include "filters/diagnosis/record/unused_channels.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/held_out_part.h"
 #include "filters/diagnosis/report/loop_rivals.h"
+#include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/series.h"
@@ -134,7 +136,7 @@ class Run {
 
   void report_figures() {
     write_before_and_after(errors_, data_.grid.sample_s, result_);
-    result_.noise = noise_terms(found_.noise.shape, found_.noise.white_variance, data_.grid.block_s);
+    write_noise(records_, errors_, data_.grid, found_.noise, result_);
     result_.heading = predict_like_longest(result_, records_);
   }
 
@@ -173,10 +175,12 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
   if (!(options.fit_from < options.fit_to))
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
-  const std::vector<Record> fitted = share.whole() ? records : fitted_parts(records, share);
+  const WithoutTurns resting = without_turns(records);
+  const std::vector<Record> fitted = share.whole() ? resting.records : fitted_parts(resting.records, share);
   const WithoutRamps without = take_out_ramps(fitted, options.significance);
   Diagnosis diagnosis = Run(fitted, without, options).run();
-  if (!share.whole()) judge(records, share, diagnosis);
+  diagnosis.remarks.insert(diagnosis.remarks.begin(), resting.remarks.begin(), resting.remarks.end());
+  if (!share.whole()) judge(resting.records, share, diagnosis);
   return diagnosis;
 }
 

@@ -85,8 +85,8 @@ class TermLines {
  public:
   TermLines(const std::vector<Curve>& curves, const Extent& extent) : extent_(extent), obstacles_(curves) {}
 
-  void add(report::Role role, const NoiseFit& fit, const NamedCoefficient& named) {
-    NoiseFit alone;
+  void add(report::Role role, const NoiseCoefficients& fit, const NamedCoefficient& named) {
+    NoiseCoefficients alone;
     alone.*named.member = fit.*named.member;
     Curve line;
     constexpr int kSteps = 200;

@@ -78,6 +78,8 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
       capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
   for (const CaptureColumn& column : capture.channels)
     record.channels.push_back({column.name, column.values});
+  for (std::size_t other = 0; other < capture.axes.size(); ++other)
+    if (other != axis) record.other_axes.emplace_back(capture.rate_radps[other]);
   return record;
 }
 
