@@ -18,6 +18,7 @@
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
@@ -31,6 +32,7 @@ using nlohmann::json;
 
 struct Options {
   CaptureInput input;
+  TimePart part;
   std::string capture, model, json_file;
   std::vector<std::string> states;
   std::size_t samples = 200000;
@@ -235,7 +237,8 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
 void run(const Options& options) {
   will_write("--json", options.json_file);
   will_write("--write-model", options.model);
-  const Capture capture = options.input.read(options.capture);
+  Capture capture = options.input.read(options.capture);
+  options.part.cut(capture, options.capture);
   if (capture.size() < 3)
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
                              " rows, expected at least 200");
@@ -306,6 +309,7 @@ void add_tune(CLI::App& app) {
       ->check(CLI::Range(std::size_t{200}, std::size_t{100000000}))
       ->capture_default_str();
   options->input.add_to(*command);
+  options->part.add_to(*command);
   command->callback([options] { run(*options); });
 }
 

@@ -98,8 +98,7 @@ void add_allan(CLI::App& app) {
   command->add_flag("--long", a->options.long_tau,
                     "Thêo1 beyond a quarter of the longest stretch, up to three quarters of it");
   command->add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
-  command->add_option("--from", a->options.from_s, "Leave out what is before this time, s");
-  command->add_option("--to", a->options.to_s, "Leave out what is from this time on, s");
+  a->options.part.add_to(*command);
   command->add_option("--json", a->json, "Write the analysis here, in SI");
   command->add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
       ->check(report::wrong_picture_name, "")

@@ -54,20 +54,6 @@ bool signal_of(const std::string& column, std::string& signal, std::string& axis
   return false;
 }
 
-void cut(Table& table, const AllanOptions& options, std::size_t& first_row) {
-  if (options.from_s == 0.0 && options.to_s == 0.0) return;
-  const auto begin = std::lower_bound(table.time_s.begin(), table.time_s.end(), options.from_s);
-  const auto end =
-      options.to_s > 0.0 ? std::lower_bound(begin, table.time_s.end(), options.to_s) : table.time_s.end();
-  const auto low = begin - table.time_s.begin(), high = end - table.time_s.begin();
-  first_row = static_cast<std::size_t>(low);
-  const auto keep = [&](std::vector<double>& v) {
-    v = std::vector<double>(v.begin() + low, v.begin() + high);
-  };
-  keep(table.time_s);
-  for (CaptureColumn& column : table.columns) keep(column.values);
-}
-
 std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
                                          std::size_t samples) {
   std::vector<std::size_t> m;
@@ -244,8 +230,7 @@ std::string AllanRecord::label() const {
 }
 
 std::vector<AllanRecord> allan_records(const std::string& name, Table table, const AllanOptions& options) {
-  std::size_t first_row = 0;
-  cut(table, options, first_row);
+  const std::size_t first_row = options.part.cut(table, name);
   if (table.time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(table.time_s.size()) +
                              " samples, expected at least 3");

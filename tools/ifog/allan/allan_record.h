@@ -11,6 +11,7 @@
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/allan/theo1.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {
@@ -28,7 +29,7 @@ struct AllanOptions {
   bool minus_reference = false;
   bool long_tau = false;            // Thêo1 beyond the Allan variance's τ
   bool keep_motion = false;         // analyse what a sensor at rest would not do, too
-  double from_s = 0.0, to_s = 0.0;  // part of the capture, by its own time; to_s 0: to the end
+  TimePart part;
 };
 
 struct AllanRecord {
