@@ -35,8 +35,8 @@ struct Window {
   double mean = 0.0, scatter = 0.0;  // NaN: too little there
 };
 
-// Of four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the second
-// smallest.
+// Of four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
+// second smallest.
 Window window_of(std::span<const double> rate) {
   constexpr std::size_t kQuarters = 4;
   std::array<double, kQuarters> scatter{}, level{};

@@ -130,9 +130,8 @@ FilterSettings Candidate::settings(std::span<const double> theta, double scale) 
 
 std::vector<CandidateFigure> Candidate::figures(std::span<const double> theta, double scale) const {
   const FilterSettings s = settings(theta, scale);
-  std::vector<CandidateFigure> all{
-      {"process_noise", "rad^2/s^3", s.process_noise},
-      {"measurement_noise", "rad^2/s^2", s.measurement_noise}};
+  std::vector<CandidateFigure> all{{"process_noise", "rad^2/s^3", s.process_noise},
+                                   {"measurement_noise", "rad^2/s^2", s.measurement_noise}};
   std::size_t at = kLevel;
   for (const auto& term : terms_) {
     const auto own =

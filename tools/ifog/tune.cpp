@@ -90,11 +90,10 @@ std::string tau_text(double tau_s) {
   return text;
 }
 
-// What people read: deg/sqrt(h), deg/h, deg/h/sqrt(h) beside SI.
+// What people read: deg/h, deg/h/sqrt(h) beside SI.
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
   const char* unit = "";
-  if (figure.unit == "rad/s/sqrt(Hz)") factor = 1.0 / kDegreePerRootHour, unit = "deg/sqrt(h)";
   if (figure.unit == "rad/s^2/sqrt(Hz)") factor = 1.0 / kDegreePerHourPerRootHour, unit = "deg/h/sqrt(h)";
   if (figure.unit == "rad/s") factor = 1.0 / kDegreePerHour, unit = "deg/h";
   if (factor == 0.0) return "";

@@ -27,8 +27,8 @@ struct AllanOptions {
   Deviation kind = Deviation::kAllan;
   bool refuse_gaps = false;
   bool minus_reference = false;
-  bool long_tau = false;            // Thêo1 beyond the Allan variance's τ
-  bool keep_motion = false;         // analyse what a sensor at rest would not do, too
+  bool long_tau = false;     // Thêo1 beyond the Allan variance's τ
+  bool keep_motion = false;  // analyse what a sensor at rest would not do, too
   TimePart part;
 };
 
