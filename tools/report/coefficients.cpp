@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "filters/units/field_units.h"
 
@@ -43,6 +44,17 @@ const std::vector<NamedCoefficient>& named_coefficients() {
   return kNamed;
 }
 
+std::string bound_text(double upper) {
+  std::array<char, 32> text{};
+  // The digits by the library's own rounding, then one more in the last place if that fell short.
+  std::snprintf(text.data(), text.size(), "%.2g", upper);
+  if (upper > 0.0 && std::strtod(text.data(), nullptr) < upper) {
+    const double last = std::pow(10.0, std::floor(std::log10(upper)) - 1.0);
+    std::snprintf(text.data(), text.size(), "%.2g", std::strtod(text.data(), nullptr) + last);
+  }
+  return text.data();
+}
+
 std::string coefficient_lines(const NoiseCoefficients& found) {
   std::string lines;
   std::array<char, 192> line{};
@@ -55,8 +67,8 @@ std::string coefficient_lines(const NoiseCoefficients& found) {
                     padded(with_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
                     padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit);
     else
-      std::snprintf(line.data(), line.size(), "  %s  %s not seen; below %.2g %s\n", named.letter,
-                    meaning.c_str(), c.upper * named.factor, named.unit);
+      std::snprintf(line.data(), line.size(), "  %s  %s not seen; below %s %s\n", named.letter,
+                    meaning.c_str(), bound_text(c.upper * named.factor).c_str(), named.unit);
     lines += line.data();
   }
   return lines;

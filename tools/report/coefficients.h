@@ -21,6 +21,9 @@ struct NamedCoefficient {
 };
 const std::vector<NamedCoefficient>& named_coefficients();
 
+// Two digits, never below the value: a bound that is printed has to hold as printed.
+std::string bound_text(double upper);
+
 // A line each: value and error bar, or the bound of a term that is not seen.
 std::string coefficient_lines(const NoiseCoefficients& found);
 

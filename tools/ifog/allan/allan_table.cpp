@@ -20,12 +20,9 @@ std::string name_of(const AllanRecord& record) {
 std::string cell(const AllanRecord& record, const NamedCoefficient& named) {
   if (!record.fit) return "unknown";
   const NoiseCoefficient& c = (*record.fit).*named.member;
+  if (!c.present) return "< " + report::bound_text(c.upper * named.factor);
   std::array<char, 48> text{};
-  if (c.present)
-    std::snprintf(text.data(), text.size(), "%.4g ± %.2g", c.value * named.factor,
-                  c.std_error * named.factor);
-  else
-    std::snprintf(text.data(), text.size(), "< %.2g", c.upper * named.factor);
+  std::snprintf(text.data(), text.size(), "%.4g ± %.2g", c.value * named.factor, c.std_error * named.factor);
   return text.data();
 }
 
