@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 
 namespace ifog {
@@ -169,8 +167,7 @@ std::size_t AngleSum::longest() const {
   return n;
 }
 
-std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m, Deviation which,
-                                      unsigned threads) {
+std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m, Deviation which) {
   const Kind kind = kind_of(which);
   // The modified deviation starts each block with m additions, so its blocks grow with m.
   const std::size_t longest_m = m.empty() ? 1 : *std::max_element(m.begin(), m.end());
@@ -180,27 +177,17 @@ std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::
     for (std::size_t begin = 0; begin < sum.parts()[p].angles; begin += block)
       tasks.push_back({p, begin, std::min(block, sum.parts()[p].angles - begin)});
 
-  // One row of partial sums per task, added up in order at the end: the same bits for any number of threads.
   std::vector<double> partial(tasks.size() * m.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t t = next++; t < tasks.size(); t = next++) {
-      const Task& task = tasks[t];
-      const AngleSum::Part& part = sum.parts()[task.part];
-      const double* x = sum.angle().data() + part.first + task.begin;
-      for (std::size_t k = 0; k < m.size(); ++k) {
-        const std::size_t all = places(kind, part.angles, m[k]);
-        if (all <= task.begin) continue;
-        partial[t * m.size() + k] = kind.block(x, m[k], std::min(task.size, all - task.begin));
-      }
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    const Task& task = tasks[t];
+    const AngleSum::Part& part = sum.parts()[task.part];
+    const double* x = sum.angle().data() + part.first + task.begin;
+    for (std::size_t k = 0; k < m.size(); ++k) {
+      const std::size_t all = places(kind, part.angles, m[k]);
+      if (all <= task.begin) continue;
+      partial[t * m.size() + k] = kind.block(x, m[k], std::min(task.size, all - task.begin));
     }
-  };
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-  threads = static_cast<unsigned>(std::min<std::size_t>(threads, tasks.size()));
-  std::vector<std::thread> others;
-  for (unsigned i = 1; i < threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& thread : others) thread.join();
+  }
 
   std::vector<DeviationPoint> points(m.size());
   for (std::size_t k = 0; k < m.size(); ++k) {
@@ -218,6 +205,12 @@ std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::
                                             (kind.norm * samples * samples);
   }
   return points;
+}
+
+std::size_t longest_average(Deviation which, std::size_t samples) {
+  const Kind kind = kind_of(which);
+  // places() > 0: span·m − less < samples + 1.
+  return (samples + kind.less) / kind.span;
 }
 
 std::vector<std::size_t> log_spaced(std::size_t longest, int per_decade) {

@@ -56,10 +56,12 @@ struct DeviationPoint {
   double variance = 0.0;  // (rad/s)²; NaN when terms is 0
 };
 
-// One point per entry of m (each >= 1), in that order. Work is shared among `threads` threads (0: as many as
-// the machine has); the result does not depend on their number.
+// The longest averaging time at which a difference fits into a stretch of so many samples; 0 if none does.
+[[nodiscard]] std::size_t longest_average(Deviation kind, std::size_t samples);
+
+// One point per entry of m (each >= 1), in that order.
 [[nodiscard]] std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m,
-                                                    Deviation kind = Deviation::kAllan, unsigned threads = 0);
+                                                    Deviation kind = Deviation::kAllan);
 
 // Averaging times in samples, `per_decade` to a factor of ten, without repeats, from 1 to longest.
 [[nodiscard]] std::vector<std::size_t> log_spaced(std::size_t longest, int per_decade);

@@ -48,7 +48,7 @@ std::vector<double> gapped_deviation(std::span<const double> rate_radps, std::sp
   found.reserve(m.size());
   if (std::all_of(rate_radps.begin(), rate_radps.end(), [](double v) { return std::isfinite(v); })) {
     const std::vector<Stretch> whole = {{0, rate_radps.size()}};
-    for (const DeviationPoint& point : deviation(AngleSum(rate_radps, whole), m, Deviation::kAllan, 1))
+    for (const DeviationPoint& point : deviation(AngleSum(rate_radps, whole), m, Deviation::kAllan))
       found.push_back(std::sqrt(point.variance));
   } else {
     const GappedSum sums(rate_radps);

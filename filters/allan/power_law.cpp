@@ -3,28 +3,80 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
+#include <vector>
 
 namespace ifog {
 namespace {
 
-// Coefficients of the difference over multiples of m, and the norm: variance = mean square / (norm·m²).
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// A difference of the angle, or of the angle's running sum: coefficients at multiples of m; variance = mean
+// square / (norm·m^power); it reaches over `less` angles fewer than its order times m.
 struct Difference {
   std::vector<double> weight;
-  double norm;
+  double norm, power;
+  bool of_sum;
 };
 
-Difference difference_of(Deviation kind) {
-  if (kind == Deviation::kAllan) return {{1.0, -2.0, 1.0}, 2.0};
-  if (kind == Deviation::kHadamard) return {{-1.0, 3.0, -3.0, 1.0}, 6.0};
-  throw std::invalid_argument("covariances are known for the Allan and the Hadamard variance only");
+const Difference& difference_of(Deviation kind) {
+  static const Difference kAllanOne{{1.0, -2.0, 1.0}, 2.0, 2.0, false};
+  static const Difference kHadamardOne{{-1.0, 3.0, -3.0, 1.0}, 6.0, 2.0, false};
+  // A mean over m neighbouring second differences is a third difference of the running sum.
+  static const Difference kModifiedOne{{-1.0, 3.0, -3.0, 1.0}, 2.0, 4.0, true};
+  return kind == Deviation::kAllan ? kAllanOne : kind == Deviation::kHadamard ? kHadamardOne : kModifiedOne;
 }
 
-// Generalised covariance of the angle at lag t for one unit of N, B, K: up to the polynomials a difference
-// does not see.
-std::array<double, 3> covariance_of_angle(double t) {
-  const double a = std::abs(t);
-  return {-0.5 * a, a > 0.0 ? a * a * std::log(a) / (2.0 * std::numbers::pi) : 0.0, a * a * a / 12.0};
+// Even g on the whole numbers with g(t+1) − 2g(t) + g(t−1) = −t² ln|t|/2π: the running sum's generalised
+// covariance under flicker noise. 1/(4 sinh²(∂/2)) = ∂⁻² − 1/12 + ∂²/240 − ∂⁴/6048 + … (Euler and Maclaurin)
+// gives it far from zero, the recursion carries it there, and evenness fixes the one free |t|.
+class FlickerSum {
+ public:
+  FlickerSum() {
+    for (int t = kTable - 1; t < kTable + 1; ++t) value_[static_cast<std::size_t>(t)] = far(t);
+    for (int t = kTable - 1; t >= 1; --t) {
+      const auto i = static_cast<std::size_t>(t);
+      value_[i - 1] = 2.0 * value_[i] - value_[i + 1] - t * t * std::log(t) / kTwoPi;
+    }
+    slope_ = value_[0] - value_[1];
+    for (int t = 0; t <= kTable; ++t) value_[static_cast<std::size_t>(t)] += slope_ * t;
+  }
+  [[nodiscard]] double at(double t) const {
+    return t <= kTable ? value_[static_cast<std::size_t>(t)] : far(t) + slope_ * t;
+  }
+
+ private:
+  static constexpr int kTable = 16;
+  static double far(double t) {
+    const double log = std::log(t), t2 = t * t;
+    return -(t2 * t2 * (log / 12.0 - 7.0 / 144.0) - t2 * log / 12.0 + (2.0 * log + 3.0) / 240.0 +
+             2.0 / (6048.0 * t2)) /
+           kTwoPi;
+  }
+  std::array<double, kTable + 1> value_{};
+  double slope_ = 0.0;
+};
+
+// The same as covariance_of_angle for the angle's running sum, on whole lags (and far lags that are not):
+// each has minus the angle's for its second difference.
+std::array<double, kTerms> covariance_of_sum(double t) {
+  static const FlickerSum kFlicker;
+  const double a = std::abs(t), a3 = a * a * a;
+  return {-0.5 * a, (a3 - a) / 12.0, kFlicker.at(a),
+          -a3 * a * a / 240.0 + a3 / 144.0 + a * (1.0 / 240.0 - 1.0 / 144.0)};
+}
+
+std::array<double, kTerms> covariance_of(const Difference& d, double t) {
+  return d.of_sum ? covariance_of_sum(t) : covariance_of_angle(t);
+}
+
+TermVariances covariance_between(const Difference& d, double m, double lag) {
+  TermVariances gamma{};
+  for (std::size_t a = 0; a < d.weight.size(); ++a)
+    for (std::size_t b = 0; b < d.weight.size(); ++b) {
+      const auto g = covariance_of(d, lag + (static_cast<double>(a) - static_cast<double>(b)) * m);
+      for (std::size_t k = 0; k < kTerms; ++k) gamma[k] += d.weight[a] * d.weight[b] * g[k];
+    }
+  return gamma;
 }
 
 // Eight-point Gauss–Legendre, positive half (Abramowitz and Stegun, table 25.4).
@@ -33,90 +85,50 @@ constexpr std::array<double, 4> kNode{0.183434642495649805, 0.525532409916328986
 constexpr std::array<double, 4> kWeight{0.362683783378361983, 0.313706645877887287, 0.222381034453374471,
                                         0.101228536290376259};
 
-constexpr long long kSummedExactly =
-    24;  // lags summed one by one on either side of a bend, and the shortest panel
+// Lags summed one by one on either side of a bend, and the shortest panel.
+constexpr long long kSummedExactly = 24;
+// Beyond a few spans only flicker is left, falling with the fourth power of the lag or faster.
+constexpr long long kReach = 8;
 
-// Two averaging times of one record (or of several stretches): covariance of the differences by lag, and its
-// use.
-class Pair {
+// Σ over lags of (pairs of places at that lag)·γⱼ·γₗ. Both factors are even, so lags below zero are counted
+// with those above.
+class LagSum {
  public:
-  Pair(const Difference& difference, std::size_t m1, std::size_t m2, std::span<const std::size_t> samples)
-      : difference_(difference), m1_(static_cast<double>(m1)), m2_(static_cast<double>(m2)) {
-    const std::size_t order = difference.weight.size() - 1;
-    for (const std::size_t n : samples) {
-      const auto places1 = static_cast<double>(n + 1) - static_cast<double>(order * m1);
-      const auto places2 = static_cast<double>(n + 1) - static_cast<double>(order * m2);
-      if (places1 <= 0.0 || places2 <= 0.0) continue;
-      places_.push_back({places1, places2});
-      first_ = std::min(first_, -static_cast<long long>(places2) + 1);
-      last_ = std::max(last_, static_cast<long long>(places1) - 1);
+  LagSum(const Difference& difference, std::size_t m, std::span<const double> places)
+      : difference_(difference), m_(static_cast<double>(m)), places_(places) {
+    const auto order = static_cast<long long>(difference.weight.size()) - 1;
+    const auto step = static_cast<long long>(m);
+    double most = 0.0;
+    for (const double p : places) most = std::max(most, p);
+    const long long end = std::min(static_cast<long long>(most), kReach * order * step);
+    std::vector<long long> bends{0, 1, end};
+    for (long long k = 1; k <= order; ++k) {
+      bends.push_back(k * step);
+      bends.push_back(k * step + 1);  // the spike at k·m stands alone
     }
-    // Beyond a few spans only flicker is left, falling with the fourth power of the lag or faster.
-    const auto reach = 8 * static_cast<long long>(order * m2);
-    first_ = std::max(first_, -reach - static_cast<long long>(order * m1));
-    last_ = std::min(last_, reach);
-  }
-
-  // Σ over lags of (pairs of places at that lag)·γⱼ·γₗ, for all pairs of terms j <= l.
-  std::array<double, kTerms*(kTerms + 1) / 2> sums() {
-    if (places_.empty()) return sums_;
-    std::vector<long long> bends{first_, last_ + 1, 0};
-    std::vector<std::pair<long long, double>> spikes;  // of the quantisation's covariance
-    for (std::size_t a = 0; a < difference_.weight.size(); ++a)
-      for (std::size_t b = 0; b < difference_.weight.size(); ++b) {
-        const auto lag = static_cast<long long>(static_cast<double>(b) * m2_ - static_cast<double>(a) * m1_);
-        bends.push_back(lag);
-        spikes.emplace_back(lag, difference_.weight[a] * difference_.weight[b]);
-      }
-    for (const Places& p : places_) bends.push_back(static_cast<long long>(p.first - p.second));
+    for (const double p : places) bends.push_back(static_cast<long long>(p));
     std::sort(bends.begin(), bends.end());
     bends.erase(std::unique(bends.begin(), bends.end()), bends.end());
     for (std::size_t i = 0; i + 1 < bends.size(); ++i)
-      if (bends[i] >= first_ && bends[i + 1] <= last_ + 1) between(bends[i], bends[i + 1]);
-    add_spikes(spikes);
-    return sums_;
+      if (bends[i] >= 0 && bends[i + 1] <= end) between(bends[i], bends[i + 1]);
   }
+  [[nodiscard]] const std::array<std::array<double, kTerms>, kTerms>& sums() const { return sums_; }
 
  private:
-  struct Places {
-    double first, second;
-  };
-
-  // Pairs (i, j) of places with i − j = lag.
-  [[nodiscard]] double pairs(double lag) const {
-    double count = 0.0;
-    for (const Places& p : places_)
-      count += std::max(0.0, std::min(p.first, p.second + lag) - std::max(0.0, lag));
-    return count;
-  }
-
-  [[nodiscard]] std::array<double, 3> smooth(double lag) const {
-    std::array<double, 3> gamma{};
-    for (std::size_t a = 0; a < difference_.weight.size(); ++a)
-      for (std::size_t b = 0; b < difference_.weight.size(); ++b) {
-        const auto g = covariance_of_angle(lag + static_cast<double>(a) * m1_ - static_cast<double>(b) * m2_);
-        for (std::size_t k = 0; k < 3; ++k) gamma[k] += difference_.weight[a] * difference_.weight[b] * g[k];
-      }
-    return gamma;
-  }
-
   void add(double lag, double times) {
-    const auto g = smooth(lag);
-    const double w = times * pairs(lag);
-    sums_[index(kN, kN)] += w * g[0] * g[0];
-    sums_[index(kN, kB)] += w * g[0] * g[1];
-    sums_[index(kN, kK)] += w * g[0] * g[2];
-    sums_[index(kB, kB)] += w * g[1] * g[1];
-    sums_[index(kB, kK)] += w * g[1] * g[2];
-    sums_[index(kK, kK)] += w * g[2] * g[2];
-  }
-
-  void exactly(long long begin, long long end) {
-    for (long long s = begin; s < end; ++s) add(static_cast<double>(s), 1.0);
+    const TermVariances gamma = covariance_between(difference_, m_, lag);
+    double pairs = 0.0;
+    for (const double p : places_) pairs += std::max(0.0, p - lag);
+    pairs *= lag == 0.0 ? times : 2.0 * times;
+    for (std::size_t j = 0; j < kTerms; ++j)
+      for (std::size_t l = 0; l < kTerms; ++l) sums_[j][l] += pairs * gamma[j] * gamma[l];
   }
 
   void panel(long long begin, long long end) {
-    if (end - begin <= kSummedExactly) return exactly(begin, end);
+    if (end - begin <= kSummedExactly) {
+      for (long long s = begin; s < end; ++s) add(static_cast<double>(s), 1.0);
+      return;
+    }
     const double half = 0.5 * static_cast<double>(end - begin);
     const double middle = static_cast<double>(begin) - 0.5 + half;
     for (std::size_t k = 0; k < kNode.size(); ++k) {
@@ -127,6 +139,10 @@ class Pair {
 
   // Lags begin … end − 1, with bends at both ends: panels double in length towards the middle.
   void between(long long begin, long long end) {
+    if (end - begin <= 4 * kSummedExactly) {
+      for (long long s = begin; s < end; ++s) add(static_cast<double>(s), 1.0);
+      return;
+    }
     long long low = begin, high = end, length = kSummedExactly;
     while (high - low > 4 * length) {
       panel(low, low + length);
@@ -140,86 +156,74 @@ class Pair {
     panel(middle, high);
   }
 
-  void add_spikes(std::vector<std::pair<long long, double>>& spikes) {
-    std::sort(spikes.begin(), spikes.end());
-    for (std::size_t i = 0; i < spikes.size();) {
-      const long long lag = spikes[i].first;
-      double height = 0.0;
-      for (; i < spikes.size() && spikes[i].first == lag; ++i) height += spikes[i].second;
-      if (lag < first_ || lag > last_) continue;
-      const double w = pairs(static_cast<double>(lag));
-      const auto g = smooth(static_cast<double>(lag));
-      sums_[index(kQ, kQ)] += w * height * height;
-      sums_[index(kQ, kN)] += w * height * g[0];
-      sums_[index(kQ, kB)] += w * height * g[1];
-      sums_[index(kQ, kK)] += w * height * g[2];
-    }
-  }
-
- public:
-  // Position of (j, l), j <= l, in the packed upper triangle.
-  static constexpr std::size_t index(std::size_t j, std::size_t l) {
-    return j * kTerms - j * (j + 1) / 2 + l;
-  }
-
- private:
   const Difference& difference_;
-  double m1_, m2_;
-  std::vector<Places> places_;
-  long long first_ = 0, last_ = 0;
-  std::array<double, kTerms*(kTerms + 1) / 2> sums_{};
+  double m_;
+  std::span<const double> places_;
+  std::array<std::array<double, kTerms>, kTerms> sums_{};
 };
 
 }  // namespace
 
-double expected_variance(Deviation kind, Term term, std::size_t averaged) {
+std::array<double, kTerms> covariance_of_angle(double t) {
+  const double a = std::abs(t);
+  return {a == 0.0 ? 1.0 : 0.0, -0.5 * a, a > 0.0 ? a * a * std::log(a) / kTwoPi : 0.0, a * a * a / 12.0};
+}
+
+std::array<double, kTerms> covariance_of_differences(Deviation kind, std::size_t m, double lag) {
+  return covariance_between(difference_of(kind), static_cast<double>(m), lag);
+}
+
+std::size_t differences_of(Deviation kind, std::size_t m, std::size_t samples) {
+  const Difference& d = difference_of(kind);
+  const std::size_t reach = (d.weight.size() - 1) * m - (d.of_sum ? 1 : 0);
+  return samples + 1 > reach ? samples + 1 - reach : 0;
+}
+
+double expected_variance(Deviation kind, const TermVariances& variances, std::size_t averaged) {
   const double m = static_cast<double>(averaged);
-  const Difference d = difference_of(kind);
+  const Difference& d = difference_of(kind);
   double variance = 0.0;
   for (std::size_t a = 0; a < d.weight.size(); ++a)
     for (std::size_t b = 0; b < d.weight.size(); ++b) {
-      const double t = (static_cast<double>(a) - static_cast<double>(b)) * m;
-      const double g = term == kQ ? (a == b ? 1.0 : 0.0) : covariance_of_angle(t)[term - 1];
-      variance += d.weight[a] * d.weight[b] * g;
+      const auto g = covariance_of(d, (static_cast<double>(a) - static_cast<double>(b)) * m);
+      for (std::size_t t = 0; t < kTerms; ++t) variance += variances[t] * d.weight[a] * d.weight[b] * g[t];
     }
-  return variance / (d.norm * m * m);
+  return variance / (d.norm * std::pow(m, d.power));
 }
 
-DifferenceCovariance::DifferenceCovariance(Deviation kind, std::span<const std::size_t> m,
-                                           std::span<const std::size_t> samples)
-    : count_(m.size()) {
-  const Difference d = difference_of(kind);
-  const std::size_t order = d.weight.size() - 1;
-  const auto places = [&](std::size_t averaged) {
-    double all = 0.0;
-    for (const std::size_t n : samples)
-      all += std::max(0.0, static_cast<double>(n + 1) - static_cast<double>(order * averaged));
-    return all;
-  };
-  for (std::size_t i = 0; i < m.size(); ++i)
-    for (std::size_t j = i; j < m.size(); ++j) {
-      auto& sums = sums_.emplace_back();
-      // Averaging times this far apart share no noise worth the name: correlation below 1e-4.
-      if (m[j] / m[i] > 1024 || places(m[j]) == 0.0) continue;
-      sums = Pair(d, m[i], m[j], samples).sums();
-      const double mi = static_cast<double>(m[i]), mj = static_cast<double>(m[j]);
-      const double scale = 2.0 / (d.norm * mi * mi * places(m[i])) / (d.norm * mj * mj * places(m[j]));
-      for (double& s : sums) s *= scale;
-    }
+double expected_variance(Deviation kind, Term term, std::size_t m) {
+  TermVariances one{};
+  one[term] = 1.0;
+  return expected_variance(kind, one, m);
 }
 
-std::vector<double> DifferenceCovariance::at(const TermVariances& v) const {
-  std::vector<double> c(count_ * count_);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < count_; ++i)
-    for (std::size_t j = i; j < count_; ++j, ++next) {
-      double value = 0.0;
-      for (std::size_t a = 0; a < kTerms; ++a)
-        for (std::size_t b = a; b < kTerms; ++b)
-          value += (a == b ? 1.0 : 2.0) * v[a] * v[b] * sums_[next][Pair::index(a, b)];
-      c[i * count_ + j] = c[j * count_ + i] = value;
+EstimateVariance::EstimateVariance(Deviation kind, std::size_t m, std::span<const std::size_t> samples)
+    : kind_(kind), m_(m) {
+  const Difference& d = difference_of(kind);
+  std::vector<double> places;
+  double all = 0.0;
+  for (const std::size_t n : samples)
+    if (const std::size_t fit = differences_of(kind, m, n); fit > 0) {
+      places.push_back(static_cast<double>(fit));
+      all += places.back();
     }
-  return c;
+  if (places.empty()) return;
+  sums_ = LagSum(d, m, places).sums();
+  const double scale = d.norm * std::pow(static_cast<double>(m), d.power) * all;
+  for (auto& row : sums_)
+    for (double& s : row) s *= 2.0 / (scale * scale);
+}
+
+double EstimateVariance::at(const TermVariances& v) const {
+  double value = 0.0;
+  for (std::size_t j = 0; j < kTerms; ++j)
+    for (std::size_t l = 0; l < kTerms; ++l) value += v[j] * v[l] * sums_[j][l];
+  return value;
+}
+
+double EstimateVariance::degrees(const TermVariances& v) const {
+  const double mean = expected_variance(kind_, v, m_), variance = at(v);
+  return variance > 0.0 ? 2.0 * mean * mean / variance : 0.0;
 }
 
 }  // namespace ifog

@@ -1,7 +1,5 @@
-// What the noise terms of IEEE Std 952 do to a difference variance: its mean, and the covariance of estimates
-// at different averaging times. Overlapping estimates share most of their data, so neighbouring points of an
-// Allan plot are strongly correlated; a fit that takes them for independent promises error bars it does not
-// keep.
+// What the noise terms of IEEE Std 952 do to a difference variance: its mean, and how far an estimate of it
+// scatters, for any mixture of the terms.
 //
 // Everything is in samples: the angle in (rad/s × sample), one sample time = 1.
 #pragma once
@@ -9,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "filters/allan/deviation.h"
 
@@ -18,33 +15,47 @@ namespace ifog {
 inline constexpr std::size_t kTerms = 4;
 enum Term : std::size_t { kQ = 0, kN = 1, kB = 2, kK = 3 };
 
-// Variances of the terms, all (rad/s)²: (Q/τ₀)², N²/τ₀, B², K²·τ₀.
+// Variances of the terms, all (rad/s)²: (Q/τ₀)², N²/τ₀, B², K²·τ₀. Averages over L samples are noise of the
+// same terms with variances /L², /L, ·1, ·L.
 using TermVariances = std::array<double, kTerms>;
+
+// Generalised covariance of the angle at lag t for one unit of each term, up to the polynomials that a second
+// difference does not see: spike, −|t|/2, t² ln|t|/2π, |t|³/12. The spike is told apart by t == 0 exactly.
+[[nodiscard]] std::array<double, kTerms> covariance_of_angle(double t);
+
+// Covariance of the differences of `kind`, not normalised, at places `lag` samples apart, for one unit of
+// each term. For kModified lag is whole or far from zero.
+[[nodiscard]] std::array<double, kTerms> covariance_of_differences(Deviation kind, std::size_t m, double lag);
+
+// Places where a difference fits into a stretch of so many samples.
+[[nodiscard]] std::size_t differences_of(Deviation kind, std::size_t m, std::size_t samples);
 
 // Expected variance at m for one unit of a term: Allan 3/m², 1/m, 2 ln 2/π, m/3.
 [[nodiscard]] double expected_variance(Deviation kind, Term term, std::size_t m);
+[[nodiscard]] double expected_variance(Deviation kind, const TermVariances& variances, std::size_t m);
 
-// Covariances of the overlapping Allan or Hadamard variances of Gaussian noise at a set of averaging times.
+// Variance of the overlapping estimate at one averaging time, for Gaussian noise: twice the mean over all
+// pairs of places of the squared covariance of their differences (Isserlis). Greenhall and Riley,
+// "Uncertainty of stability variances based on finite differences" (35th PTTI, 2003), sum the same for one
+// power law; here the covariance is that of a sum of terms, so the noise may change its type at the very τ in
+// question.
 //
-// The covariance of two squares is twice the squared covariance of the differences (Isserlis), which follows
-// from the generalised covariance of the angle: −|t|/2, t² ln|t|/2π, |t|³/12 for N, B, K and a spike for Q.
-// Summed over all pairs of places: exactly near the points where these functions bend, by Gauss–Legendre
-// panels that widen away from them. The result is quadratic in the terms' variances, so the sums are made
-// once and serve every set of values, every axis and every iteration of a fit.
-class DifferenceCovariance {
+// Summed exactly where the covariance bends and by Gauss–Legendre panels that widen away from there. The
+// result is quadratic in the terms' variances, so the sums are made once and serve every set of them.
+class EstimateVariance {
  public:
-  // m ascending. Only kAllan and kHadamard. samples: lengths of the stretches, taken as independent of each
-  // other.
-  DifferenceCovariance(Deviation kind, std::span<const std::size_t> m, std::span<const std::size_t> samples);
+  // samples: lengths of the stretches, taken as independent of each other; one too short for the difference
+  // counts nothing.
+  EstimateVariance(Deviation kind, std::size_t m, std::span<const std::size_t> samples);
 
-  // Row-major, m.size() squared, (rad/s)⁴.
-  [[nodiscard]] std::vector<double> at(const TermVariances& variances) const;
-  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] double at(const TermVariances& variances) const;  // (rad/s)⁴
+  // Equivalent degrees of freedom, 2·mean²/variance; 0 where no difference fits.
+  [[nodiscard]] double degrees(const TermVariances& variances) const;
 
  private:
-  static constexpr std::size_t kPairs = kTerms * (kTerms + 1) / 2;
-  std::size_t count_;
-  std::vector<std::array<double, kPairs>> sums_;  // upper triangle, row by row
+  Deviation kind_;
+  std::size_t m_;
+  std::array<std::array<double, kTerms>, kTerms> sums_{};
 };
 
 }  // namespace ifog

@@ -7,11 +7,13 @@
 #include "filters/diagnosis/record/channel_faults.h"
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/record/turned.h"
 #include "filters/diagnosis/record/unused_channels.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/held_out_part.h"
 #include "filters/diagnosis/report/loop_rivals.h"
+#include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/series.h"
@@ -168,7 +170,7 @@ class Run {
   void report_figures() {
     result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_);
     write_before_and_after(errors_, data_.grid.sample_s, result_);
-    result_.noise = noise_terms(found_.noise.shape, found_.noise.white_variance, data_.grid.block_s);
+    write_noise(records_, errors_, data_.grid, found_.noise, result_);
     result_.heading = predict_like_longest(result_, records_);
   }
 
@@ -210,11 +212,13 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
   const TimeShare share{options.fit_from, options.fit_to};
   check_columns(records);
   const RepairedRecords repaired = repair_channels(records);
-  const std::vector<Record> fitted = share.whole() ? repaired.records : fitted_parts(repaired.records, share);
+  const WithoutTurns resting = without_turns(repaired.records);
+  const std::vector<Record> fitted = share.whole() ? resting.records : fitted_parts(resting.records, share);
   const WithoutRamps without = take_out_ramps(fitted, options.significance);
   Diagnosis diagnosis = Run(fitted, without, options).run();
-  diagnosis.remarks.insert(diagnosis.remarks.begin(), repaired.remarks.begin(), repaired.remarks.end());
-  if (!share.whole()) judge(repaired.records, share, diagnosis);
+  for (const auto* remarks : {&resting.remarks, &repaired.remarks})
+    diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks->begin(), remarks->end());
+  if (!share.whole()) judge(resting.records, share, diagnosis);
   return diagnosis;
 }
 

@@ -89,7 +89,8 @@ struct DiagnosisSeries {
 struct Diagnosis {
   std::size_t samples = 0;
   double sample_rate_hz = 0.0;
-  NoiseTerms noise;                             // after the effects
+  NoiseTerms noise;                             // after the effects, as noise_coefficients finds it at rest
+  NoiseTerms noise_error;                       // standard deviations of those
   std::vector<FoundEffect> effects;             // traced to channels, then ramps, then lines of the samples
   std::vector<double> covariance;               // of all parameters of all effects in order, row-major
   std::vector<ChannelRange> ranges;             // of the channels the effects use

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "filters/allan/stretches.h"
+
 namespace ifog {
 
 // The caller keeps the arrays alive; all are as long as time_s.
@@ -21,6 +23,8 @@ struct Record {
   std::span<const double> reference_radps{};  // empty: none; then the true rate is taken as constant
   std::string reference_name = "reference_rate_radps";
   std::vector<RecordChannel> channels;
+  std::vector<std::span<const double>> other_axes;  // rates of the same sensor: it rests when all of them do
+  std::vector<Stretch> at_rest;                     // samples, in order; empty: not looked for, all
 };
 
 // Of the channel of that name; empty when the record has none.

@@ -130,11 +130,8 @@ FilterSettings Candidate::settings(std::span<const double> theta, double scale) 
 
 std::vector<CandidateFigure> Candidate::figures(std::span<const double> theta, double scale) const {
   const FilterSettings s = settings(theta, scale);
-  std::vector<CandidateFigure> all{
-      {"process_noise", "rad^2/s^3", s.process_noise},
-      {"measurement_noise", "rad^2/s^2", s.measurement_noise},
-      {"angle_random_walk", "rad/s/sqrt(Hz)", std::sqrt(s.measurement_noise * period_s_)},
-      {"rate_random_walk", "rad/s^2/sqrt(Hz)", std::sqrt(s.process_noise)}};
+  std::vector<CandidateFigure> all{{"process_noise", "rad^2/s^3", s.process_noise},
+                                   {"measurement_noise", "rad^2/s^2", s.measurement_noise}};
   std::size_t at = kLevel;
   for (const auto& term : terms_) {
     const auto own =

@@ -10,7 +10,6 @@ namespace ifog {
 namespace {
 
 // One thread: the caller has its own.
-constexpr unsigned kThreads = 1;
 
 RateFigures figures_of(std::span<const double> rate, double period_s) {
   RateFigures out;
@@ -30,7 +29,7 @@ RateFigures figures_of(std::span<const double> rate, double period_s) {
     const double samples = std::round(kOutcomeTaus[t] / period_s);
     if (samples < 1.0 || 3.0 * samples > static_cast<double>(rate.size())) continue;
     const std::array<std::size_t, 1> m{static_cast<std::size_t>(samples)};
-    const DeviationPoint point = deviation(sum, m, Deviation::kAllan, kThreads)[0];
+    const DeviationPoint point = deviation(sum, m, Deviation::kAllan)[0];
     if (point.terms > 0) out.adev_radps[t] = std::sqrt(point.variance);
   }
   return out;

@@ -54,7 +54,8 @@ void run(const Arguments& a) {
                              (axes == 1 ? "none, the sensor has one axis" : "x, y or z"));
   AllanOptions options;
   options.axis = a.axis;
-  options.from_s = a.from_s;
+  options.part.from_s = a.from_s;
+  options.keep_motion = true;  // what was denoised is shown, moving or not
   std::vector<AllanRecord> records;
   for (AllanRecord& record : allan_records(a.log, table, options))
     if (record.signal == "raw" || record.signal == "denoised") records.push_back(std::move(record));

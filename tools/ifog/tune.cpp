@@ -5,21 +5,25 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "filters/allan/stretches.h"
+#include "filters/allan/noise_coefficients.h"
 #include "filters/model_file/model.h"
+#include "filters/rest/rest.h"
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/console/utc_now.h"
+#include "tools/report/coefficients.h"
 
 namespace ifog::tools {
 namespace {
@@ -28,18 +32,31 @@ using nlohmann::json;
 
 struct Options {
   CaptureInput input;
+  TimePart part;
   std::string capture, model, json_file;
   std::vector<std::string> states;
   std::size_t samples = 200000;
 };
 
-// Evenly spaced columns: a sample that is missing from the record becomes a NaN, so that the filter's step
-// stays the period. Returns one column an axis, at most `most` samples of each, and says how many were left
-// out.
-std::vector<std::vector<double>> even(const Capture& capture, double period_s, std::size_t most,
-                                      std::size_t& left) {
+// Of all axes together; a sensor that was mostly turned is refused.
+Rest rest_of(const Capture& capture, double period_s, const std::string& path) {
+  const std::vector<std::span<const double>> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  Rest rest = find_rest(axes, period_s);
+  try {
+    require_rest(rest, period_s, capture.time_s.front());
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+  return rest;
+}
+
+// Evenly spaced columns: a sample that moved or is missing from the record becomes a NaN, so that the
+// filter's step stays the period. Returns one column an axis, at most `most` samples of each, and says how
+// many were left out.
+std::vector<std::vector<double>> even(const Capture& capture, const Rest& rest, double period_s,
+                                      std::size_t most, std::size_t& left) {
   std::vector<std::vector<double>> out(capture.axes.size());
-  std::size_t row = 0;
+  std::size_t row = 0, part = 0;
   for (; row < capture.size(); ++row) {
     // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing.
     constexpr double kLongestHole = 10000.0;
@@ -47,9 +64,11 @@ std::vector<std::vector<double>> even(const Capture& capture, double period_s, s
         row == 0 ? 1.0 : std::round((capture.time_s[row] - capture.time_s[row - 1]) / period_s);
     const auto missing = static_cast<std::size_t>(std::clamp(steps - 1.0, 0.0, kLongestHole));
     if (out[0].size() + missing + 1 > most) break;
+    while (part < rest.at_rest.size() && rest.at_rest[part].end <= row) ++part;
+    const bool resting = part < rest.at_rest.size() && rest.at_rest[part].begin <= row;
     for (std::size_t a = 0; a < out.size(); ++a) {
       out[a].resize(out[a].size() + missing, std::nan(""));
-      out[a].push_back(capture.rate_radps[a][row]);
+      out[a].push_back(resting ? capture.rate_radps[a][row] : std::nan(""));
     }
   }
   left = capture.size() - row;
@@ -62,11 +81,10 @@ std::string tau_text(double tau_s) {
   return text;
 }
 
-// What people read: deg/sqrt(h), deg/h, deg/h/sqrt(h) beside SI.
+// What people read: deg/h, deg/h/sqrt(h) beside SI.
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
   const char* unit = "";
-  if (figure.unit == "rad/s/sqrt(Hz)") factor = 1.0 / kDegreePerRootHour, unit = "deg/sqrt(h)";
   if (figure.unit == "rad/s^2/sqrt(Hz)") factor = 1.0 / kDegreePerHourPerRootHour, unit = "deg/h/sqrt(h)";
   if (figure.unit == "rad/s") factor = 1.0 / kDegreePerHour, unit = "deg/h";
   if (factor == 0.0) return "";
@@ -104,6 +122,13 @@ json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
           {"bic", model.bic},
           {"figures", figures},
           {"held_out", model.held_out ? outcome_json(*model.held_out, axes) : json(nullptr)}};
+}
+
+json noise_json(const std::map<std::string, NoiseCoefficients>& noise) {
+  json axes = json::array();
+  for (const auto& [axis, found] : noise)
+    axes.push_back({{"axis", axis}, {"coefficients", report::coefficients_json(found)}});
+  return axes;
 }
 
 void print(const Tuning& tuning) {
@@ -159,17 +184,41 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
   }
 }
 
-Model model_of(const Tuning& tuning, const Capture& capture, const std::string& path) {
-  Model model;
-  const TunedModel& chosen = tuning.models[tuning.chosen];
-  model.filter = chosen.settings;
-  for (const std::string& axis : capture.axes)
-    for (const TunedFigure& f : chosen.figures) {
-      // A figure whose error is unknown lies at its bound: the data do not show it.
-      if (!f.std_error) continue;
-      if (f.name == "angle_random_walk") model.noise[axis].N = f.value;
-      if (f.name == "rate_random_walk") model.noise[axis].K = f.value;
+// By axis, of all of the capture's rest: what `ifog allan` says of it. A filter's own Q and R are no noise
+// terms: with colour in the state they are whatever predicts best.
+using NoiseByAxis = std::map<std::string, NoiseCoefficients>;
+
+// An axis too short for them has none, and is said to.
+NoiseByAxis noise_of(const Capture& capture, const SampleClock& clock, const Rest& rest,
+                     std::vector<std::string>& notes) {
+  NoiseByAxis noise;
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    const std::vector<double>& rate = capture.rate_radps[a];
+    const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
+    try {
+      noise[capture.axes[a]] = noise_coefficients(AngleSum(rate, parts), clock.period_s);
+    } catch (const std::invalid_argument& error) {
+      notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
+                      error.what());
     }
+  }
+  return noise;
+}
+
+Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
+  Model model;
+  model.filter = tuning.models[tuning.chosen].settings;
+  for (const auto& [axis, found] : noise) {
+    const auto put = [](const NoiseCoefficient& c, std::optional<double>& value) {
+      if (c.present) value = c.value;
+    };
+    NoiseTerms& terms = model.noise[axis];
+    put(found.Q, terms.Q);
+    put(found.N, terms.N);
+    put(found.B, terms.B);
+    put(found.K, terms.K);
+    put(found.R, terms.R);
+  }
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
   model.source.date = utc_now();
   return model;
@@ -178,13 +227,20 @@ Model model_of(const Tuning& tuning, const Capture& capture, const std::string& 
 void run(const Options& options) {
   will_write("--json", options.json_file);
   will_write("--write-model", options.model);
-  const Capture capture = options.input.read(options.capture);
+  Capture capture = options.input.read(options.capture);
+  options.part.cut(capture, options.capture);
   if (capture.size() < 3)
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
                              " rows, expected at least 200");
-  const double period = sample_clock(capture.time_s).period_s;
+  const SampleClock clock = sample_clock(capture.time_s);
+  const double period = clock.period_s;
+  const Rest rest = rest_of(capture, period, options.capture);
+  std::vector<std::string> notes;
+  const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
+  if (const std::string motion = in_words(rest, period, capture.time_s.front()); !motion.empty())
+    notes.push_back(motion + "; only the rest is used");
   std::size_t left = 0;
-  const auto columns = even(capture, period, options.samples, left);
+  const auto columns = even(capture, rest, period, options.samples, left);
   const std::vector<std::span<const double>> axes(columns.begin(), columns.end());
   TuneOptions tune_options;
   tune_options.states = options.states;
@@ -201,8 +257,12 @@ void run(const Options& options) {
       capture.axes.size() > 1 ? ", all axes under one model" : "");
   if (left > 0)
     say("the last %zu rows are left out; --samples %zu takes all\n", left, columns[0].size() + left);
+  for (const std::string& note : notes) say("note: %s\n", note.c_str());
   print(tuning);
   print_held_out(tuning, capture.axes);
+  for (const auto& [axis, found] : noise)
+    say("\nnoise%s%s at rest, as `ifog allan` finds it\n%s", axis.empty() ? "" : " of ", axis.c_str(),
+        report::coefficient_lines(found).c_str());
   if (!options.json_file.empty()) {
     json models = json::array();
     for (const TunedModel& model : tuning.models) models.push_back(model_json(model, capture.axes));
@@ -213,10 +273,11 @@ void run(const Options& options) {
                                        {"sample_rate_hz", 1.0 / period},
                                        {"best", tuning.models[tuning.chosen].settings.state},
                                        {"best_by_bic", tuning.models.front().settings.state},
+                                       {"noise", noise_json(noise)},
                                        {"models", models}});
   }
   if (!options.model.empty()) {
-    write_file(options.model, model_text(model_of(tuning, capture, options.capture)));
+    write_file(options.model, model_text(model_of(tuning, noise, options.capture)));
     say("\nwritten: %s\n  ifog denoise %s --model %s --output denoised.csv\n", options.model.c_str(),
         options.capture.c_str(), options.model.c_str());
   }
@@ -238,6 +299,7 @@ void add_tune(CLI::App& app) {
       ->check(CLI::Range(std::size_t{200}, std::size_t{100000000}))
       ->capture_default_str();
   options->input.add_to(*command);
+  options->part.add_to(*command);
   command->callback([options] { run(*options); });
 }
 

@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "filters/allan/noise_coefficients.h"
 #include "tools/simulate/noise.h"
 
 namespace {
-
-using ifog::NoiseType;
 
 // Abramowitz and Stegun, table 26.8, and the median and tails of the exponential distribution (two degrees of
 // freedom).
@@ -25,65 +25,41 @@ TEST(Confidence, ChiSquaredQuantilesAreTheTables) {
               std::pow(1.0 - 2.0 / 9e6 + std::sqrt(2.0 / 9e6), 3), 1e-8);
 }
 
-TEST(Confidence, NamesThePureNoises) {
-  const struct {
-    ifog::simulate::NoiseLevels levels;
-    NoiseType type;
-  } cases[] = {{{.N = 1.0}, NoiseType::kAngleRandomWalk},
-               {{.B = 1.0}, NoiseType::kBiasInstability},
-               {{.K = 1.0}, NoiseType::kRateRandomWalk}};
-  for (const auto& c : cases) {
-    const auto rate = ifog::simulate::noise(c.levels, 1.0, 20000, 2);
-    const std::vector<ifog::Stretch> all{{0, rate.size()}};
-    const ifog::AngleSum sum(rate, all);
-    for (const std::size_t m : {1U, 20U})
-      EXPECT_EQ(ifog::noise_type(sum, m, NoiseType::kFlickerPhase), c.type)
-          << static_cast<int>(c.type) << " m " << m;
-  }
-  std::vector<double> phase_noise(20001);
-  ifog::simulate::Draw draw(3);
-  double before = draw.normal();
-  for (double& y : phase_noise) {
-    const double now = draw.normal();
-    y = now - before;
-    before = now;
-  }
-  const std::vector<ifog::Stretch> all{{0, phase_noise.size()}};
-  EXPECT_EQ(ifog::noise_type(ifog::AngleSum(phase_noise, all), 1, NoiseType::kAngleRandomWalk),
-            NoiseType::kQuantisation);
-  EXPECT_EQ(ifog::noise_type(ifog::AngleSum(phase_noise, all), 16, NoiseType::kAngleRandomWalk),
-            NoiseType::kQuantisation);
-  EXPECT_EQ(ifog::noise_type(ifog::AngleSum(phase_noise, all), 1000, NoiseType::kBiasInstability),
-            NoiseType::kBiasInstability);
-}
-
-// The interval must hold the true deviation as often as it says, by simulation.
+// The interval must hold the true deviation as often as it says, whatever the estimator, also where the noise
+// changes its type at the longest τ. A short version of tests/bench/allan/coverage.cpp.
 TEST(Confidence, IntervalsCoverTheTruth) {
-  constexpr int kRecords = 400;
+  constexpr int kRecords = 120;
+  constexpr std::size_t kSamples = 1024;
   const std::vector<std::size_t> m{1, 8, 64, 256};
-  const struct {
-    ifog::simulate::NoiseLevels levels;
-    double (*truth)(double tau);
-  } cases[] = {{{.N = 1.0}, [](double tau) { return 1.0 / std::sqrt(tau); }},
-               {{.B = 1.0}, [](double) { return std::sqrt(2.0 * std::log(2.0) / M_PI); }},
-               {{.K = 1.0}, [](double tau) { return std::sqrt(tau / 3.0); }}};
-  for (const auto& c : cases) {
-    std::vector<int> inside(m.size());
+  for (const ifog::simulate::NoiseLevels& levels :
+       {ifog::simulate::NoiseLevels{.N = 1.0}, ifog::simulate::NoiseLevels{.K = 1.0},
+        ifog::simulate::NoiseLevels{.N = 1.0, .K = 0.03}}) {
+    const ifog::TermVariances truth{0.0, levels.N * levels.N, 0.0, levels.K * levels.K};
+    std::array<std::vector<int>, 3> inside;
     for (int record = 0; record < kRecords; ++record) {
-      const auto rate = ifog::simulate::noise(c.levels, 1.0, 2048, 1000 + static_cast<std::uint64_t>(record));
+      const auto rate =
+          ifog::simulate::noise(levels, 1.0, kSamples, 1000 + static_cast<std::uint64_t>(record));
       const std::vector<ifog::Stretch> all{{0, rate.size()}};
       const ifog::AngleSum sum(rate, all);
-      const auto points = ifog::deviation(sum, m, ifog::Deviation::kAllan, 1);
-      const auto intervals = ifog::allan_intervals(sum, points, 0.9);
-      for (std::size_t i = 0; i < m.size(); ++i) {
-        const double truth = c.truth(static_cast<double>(m[i]));
-        inside[i] += truth >= intervals[i].lower_radps && truth <= intervals[i].upper_radps;
+      const auto found = ifog::noise_coefficients(sum, 1.0);
+      for (const ifog::Deviation kind :
+           {ifog::Deviation::kAllan, ifog::Deviation::kModified, ifog::Deviation::kHadamard}) {
+        auto& count = inside[static_cast<std::size_t>(kind)];
+        count.resize(m.size());
+        const auto points = ifog::deviation(sum, m, kind);
+        const auto intervals = ifog::allan_intervals(sum, kind, points, found.variances, 0.683);
+        for (std::size_t i = 0; i < m.size(); ++i) {
+          const double deviation = std::sqrt(ifog::expected_variance(kind, truth, m[i]));
+          count[i] += deviation >= intervals[i].lower_radps && deviation <= intervals[i].upper_radps;
+        }
       }
     }
-    // Three standard errors of 400 trials at 0.9 are 0.045; the tables' own approximation costs a little
-    // more.
-    for (std::size_t i = 0; i < m.size(); ++i)
-      EXPECT_NEAR(inside[i] / double{kRecords}, 0.9, 0.06) << "m " << m[i] << " levels N " << c.levels.N;
+    // Three standard errors of 120 trials at 0.683 are 0.127. The type frozen before the end covered 20 to
+    // 40 %.
+    for (const auto& count : inside)
+      for (std::size_t i = 0; i < m.size(); ++i)
+        EXPECT_NEAR(count[i] / double{kRecords}, 0.683, 0.13)
+            << "m " << m[i] << " N " << levels.N << " K " << levels.K;
   }
 }
 

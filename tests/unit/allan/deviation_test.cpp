@@ -17,11 +17,10 @@ using ifog::Deviation;
 using ifog::Stretch;
 
 std::vector<double> allan(const std::vector<double>& rate, const std::vector<std::size_t>& m,
-                          Deviation kind = Deviation::kAllan, unsigned threads = 0) {
+                          Deviation kind = Deviation::kAllan) {
   const std::vector<Stretch> all{{0, rate.size()}};
   std::vector<double> out;
-  for (const auto& p : ifog::deviation(AngleSum(rate, all), m, kind, threads))
-    out.push_back(std::sqrt(p.variance));
+  for (const auto& p : ifog::deviation(AngleSum(rate, all), m, kind)) out.push_back(std::sqrt(p.variance));
   return out;
 }
 
@@ -69,12 +68,17 @@ TEST(Deviation, LargeBiasAndRampCostNoDigits) {
     EXPECT_NEAR(allan(rate, {m})[0] / by_definition(rate, m), 1.0, 1e-12) << m;
 }
 
-TEST(Deviation, ThreadsDoNotChangeABit) {
-  const auto rate = ifog::simulate::noise({.N = 1e-6, .K = 1e-7}, 100.0, 200001, 5);
-  const auto m = ifog::log_spaced(100000, 7);
+TEST(Deviation, TheLongestAverageIsTheLastWithADifference) {
   for (const Deviation kind : {Deviation::kAllan, Deviation::kModified, Deviation::kHadamard})
-    EXPECT_EQ(allan(rate, m, kind, 1)[3], allan(rate, m, kind, 5)[3]);
-  EXPECT_EQ(allan(rate, m, Deviation::kAllan, 1), allan(rate, m, Deviation::kAllan, 3));
+    for (const std::size_t n : {64U, 65U, 66U, 67U, 68U, 69U}) {
+      const auto rate = ifog::simulate::noise({.N = 1e-6}, 100.0, n, 5);
+      const std::vector<Stretch> all{{0, n}};
+      const std::size_t longest = ifog::longest_average(kind, n);
+      const std::vector<std::size_t> m{longest, longest + 1};
+      const auto points = ifog::deviation(AngleSum(rate, all), m, kind);
+      EXPECT_GT(points[0].terms, 0U) << n;
+      EXPECT_EQ(points[1].terms, 0U) << n;
+    }
 }
 
 TEST(Deviation, TheSumInPlaceIsTheSameSum) {

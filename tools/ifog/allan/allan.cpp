@@ -19,7 +19,7 @@ struct Arguments {
   CaptureInput input;
   std::vector<std::string> captures;
   AllanOptions options;
-  std::string estimator = "overlapping", gaps = "part", json, picture;
+  std::string estimator = "overlapping", gaps = "part", moving = "leave-out", json, picture;
 };
 
 // Read through a driver, a recording becomes the columns that a CSV capture of it would have.
@@ -45,6 +45,7 @@ void run(Arguments& a) {
                    : a.estimator == "hadamard" ? Deviation::kHadamard
                                                : Deviation::kAllan;
   a.options.refuse_gaps = a.gaps == "refuse";
+  a.options.keep_motion = a.moving == "keep";
   std::vector<AllanRecord> records;
   {
     Progress progress("Allan", a.captures.size());
@@ -55,6 +56,7 @@ void run(Arguments& a) {
     }
   }
   for (const AllanRecord& record : records) print_allan(record, a.options);
+  if (records.size() > 1) print_comparison(records);
   if (!a.json.empty()) write_json(a.json, allan_json(records, a.options), 1);
   if (!a.picture.empty()) draw_allan(a.picture, records);
 }
@@ -88,9 +90,15 @@ void add_allan(CLI::App& app) {
                    "part: analyse the stretches between holes; refuse: any hole is an error")
       ->check(CLI::IsMember({"part", "refuse"}))
       ->capture_default_str();
+  command
+      ->add_option("--moving", a->moving,
+                   "leave-out: analyse the parts at rest; keep: all of it, as if it had not moved")
+      ->check(CLI::IsMember({"leave-out", "keep"}))
+      ->capture_default_str();
+  command->add_flag("--long", a->options.long_tau,
+                    "Thêo1 beyond a quarter of the longest stretch, up to three quarters of it");
   command->add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
-  command->add_option("--from", a->options.from_s, "Leave out what is before this time, s");
-  command->add_option("--to", a->options.to_s, "Leave out what is from this time on, s");
+  a->options.part.add_to(*command);
   command->add_option("--json", a->json, "Write the analysis here, in SI");
   command->add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
       ->check(report::wrong_picture_name, "")

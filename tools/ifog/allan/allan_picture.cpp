@@ -56,16 +56,19 @@ Curve curve_of(const AllanRecord& record, Extent& extent) {
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return record.tau_s[a] < record.tau_s[b]; });
   Curve curve;
-  for (const std::size_t i : order) {
-    curve.tau_s.push_back(record.tau_s[i]);
-    curve.sigma.push_back(std::sqrt(record.points[i].variance) / kDegreePerHour);
-    curve.low.push_back(record.intervals[i].lower_radps / kDegreePerHour);
-    curve.high.push_back(record.intervals[i].upper_radps / kDegreePerHour);
+  const auto add = [&](double tau_s, double variance, const AllanInterval& interval) {
+    curve.tau_s.push_back(tau_s);
+    curve.sigma.push_back(std::sqrt(variance) / kDegreePerHour);
+    curve.low.push_back(interval.lower_radps / kDegreePerHour);
+    curve.high.push_back(interval.upper_radps / kDegreePerHour);
     extent.first = std::min(extent.first, curve.tau_s.back());
     extent.last = std::max(extent.last, curve.tau_s.back());
     extent.low = std::min(extent.low, curve.sigma.back());
     extent.high = std::max(extent.high, curve.sigma.back());
-  }
+  };
+  for (const std::size_t i : order) add(record.tau_s[i], record.points[i].variance, record.intervals[i]);
+  for (const LongPoint& point : record.longer)
+    if (curve.tau_s.empty() || point.tau > curve.tau_s.back()) add(point.tau, point.variance, point.interval);
   return curve;
 }
 
@@ -85,8 +88,8 @@ class TermLines {
  public:
   TermLines(const std::vector<Curve>& curves, const Extent& extent) : extent_(extent), obstacles_(curves) {}
 
-  void add(report::Role role, const NoiseFit& fit, const NamedCoefficient& named) {
-    NoiseFit alone;
+  void add(report::Role role, const NoiseCoefficients& fit, const NamedCoefficient& named) {
+    NoiseCoefficients alone;
     alone.*named.member = fit.*named.member;
     Curve line;
     constexpr int kSteps = 200;

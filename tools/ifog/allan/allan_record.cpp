@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/rest/rest.h"
 
 namespace ifog::tools {
 namespace {
@@ -27,6 +28,12 @@ double rounded_rate(double period_s) {
   const double rate = 1.0 / period_s;
   const double unit = std::pow(10.0, std::floor(std::log10(rate)) - 8.0);
   return std::round(rate / unit) * unit;
+}
+
+const char* name_of(Deviation kind) {
+  return kind == Deviation::kModified   ? "the modified deviation"
+         : kind == Deviation::kHadamard ? "the Hadamard deviation"
+                                        : "the overlapping deviation";
 }
 
 // "rate_x_radps" → signal "rate", axis "x"; of a denoised file "raw_x_radps" and so on.
@@ -47,59 +54,53 @@ bool signal_of(const std::string& column, std::string& signal, std::string& axis
   return false;
 }
 
-void cut(Table& table, const AllanOptions& options, std::size_t& first_row) {
-  if (options.from_s == 0.0 && options.to_s == 0.0) return;
-  const auto begin = std::lower_bound(table.time_s.begin(), table.time_s.end(), options.from_s);
-  const auto end =
-      options.to_s > 0.0 ? std::lower_bound(begin, table.time_s.end(), options.to_s) : table.time_s.end();
-  const auto low = begin - table.time_s.begin(), high = end - table.time_s.begin();
-  first_row = static_cast<std::size_t>(low);
-  const auto keep = [&](std::vector<double>& v) {
-    v = std::vector<double>(v.begin() + low, v.begin() + high);
-  };
-  keep(table.time_s);
-  for (CaptureColumn& column : table.columns) keep(column.values);
-}
-
 std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
                                          std::size_t samples) {
   std::vector<std::size_t> m;
   for (const double tau : options.tau_s) {
     const double exact = tau / period;
     const auto whole = static_cast<std::size_t>(std::max(1.0, std::round(exact)));
-    const std::size_t most = samples / 2;
+    const std::size_t most = longest_average(options.kind, samples);
     if (exact < 0.5 || whole > most)
-      throw std::runtime_error(name + ": --tau " + number(tau) + " s is outside the record, expected " +
+      throw std::runtime_error(name + ": --tau " + number(tau) + " s is outside what " +
+                               name_of(options.kind) + " can tell of the longest stretch, expected " +
                                number(period) + " to " + number(static_cast<double>(most) * period) + " s");
     m.push_back(whole);
   }
   return m;
 }
 
-// Intervals want ascending τ; the points keep the order that was asked for.
-std::vector<AllanInterval> intervals_in_order(const AngleSum& sum, const std::vector<DeviationPoint>& points,
-                                              double confidence) {
-  std::vector<std::size_t> order(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return points[a].m < points[b].m; });
-  std::vector<DeviationPoint> sorted;
-  sorted.reserve(order.size());
-  for (const std::size_t i : order) sorted.push_back(points[i]);
-  const auto found = allan_intervals(sum, sorted, confidence);
-  std::vector<AllanInterval> out(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) out[order[i]] = found[i];
-  return out;
+double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation kind, double period) {
+  std::vector<std::size_t> samples;
+  for (const AngleSum::Part& part : sum.parts()) samples.push_back(part.angles - 1);
+  double trusted = 0.0;
+  for (std::size_t m = 1; m <= longest_average(kind, sum.longest()); m *= 2)
+    if (EstimateVariance(kind, m, samples).degrees(noise) >= kTrustedDegrees)
+      trusted = static_cast<double>(m) * period;
+  return trusted;
 }
 
-double trusted_tau(const AngleSum& sum, double period) {
-  std::vector<DeviationPoint> octaves;
-  for (std::size_t m = 1; 2 * m <= sum.longest(); m *= 2) octaves.push_back({m, 1, 1.0});
-  double trusted = 0.0;
-  const auto intervals = allan_intervals(sum, octaves, 0.683);
-  for (std::size_t i = 0; i < octaves.size(); ++i)
-    if (intervals[i].degrees >= kTrustedDegrees) trusted = static_cast<double>(octaves[i].m) * period;
-  return trusted;
+std::string in_words(const std::vector<FrequencyRange>& ranges) {
+  constexpr std::size_t kShown = 6;
+  std::string words;
+  for (std::size_t i = 0; i < std::min(kShown, ranges.size()); ++i)
+    words += (i > 0 ? ", " : "") + number(ranges[i].low) + "–" + number(ranges[i].high);
+  if (ranges.size() > kShown) words += " and " + std::to_string(ranges.size() - kShown) + " more";
+  return words + " Hz";
+}
+
+void note_what_was_left_out(const std::string& column, AllanRecord& record) {
+  const std::string start = record.capture + ": " + column + ": ";
+  if (!record.fit->lines_hz.empty())
+    record.notes.push_back(start + "lines, left out of the noise terms: " + in_words(record.fit->lines_hz));
+  if (!record.fit->left_out_hz.empty())
+    record.notes.push_back(start +
+                           "left out of the noise terms, because no sum of them comes near (resonance, "
+                           "vibration, a filter): " +
+                           in_words(record.fit->left_out_hz));
+  if (record.fit->misfit > 0.0)
+    record.notes.push_back(start + "the terms miss the curve by " + number(100.0 * record.fit->misfit) +
+                           " % beyond chance; the error bars allow for it");
 }
 
 // Where a row stands in its file: "file:line", or the sample's number where the file is no text.
@@ -122,9 +123,32 @@ class Gaps {
   std::size_t first_row_;
 };
 
+// All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
+// rates.
+Rest rest_of(const std::string& name, const Table& table, const SampleClock& clock,
+             const AllanOptions& options) {
+  std::vector<std::span<const double>> axes;
+  std::string signal, axis;
+  for (const CaptureColumn& column : table.columns)
+    if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw"))
+      axes.emplace_back(column.values);
+  Rest all;
+  all.samples = table.time_s.size();
+  all.at_rest = {{0, all.samples}};
+  // Against a reference the sensor may turn.
+  if (options.keep_motion || options.minus_reference || axes.empty()) return all;
+  Rest rest = find_rest(axes, clock.period_s);
+  try {
+    require_rest(rest, clock.period_s, table.time_s.front());
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(name + ": " + error.what() + ", or --moving keep");
+  }
+  return rest;
+}
+
 AllanRecord analyse(const std::string& name, const std::string& signal, const std::string& axis,
                     std::span<const double> time_s, std::vector<double> rate, const SampleClock& clock,
-                    const Gaps& gaps, const AllanOptions& options) {
+                    const Gaps& gaps, const Rest& rest, const AllanOptions& options) {
   AllanRecord record;
   record.capture = name;
   record.axis = axis;
@@ -160,7 +184,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
                            " ms; taken as jitter of the stamps of an even clock of " +
                            number(record.sample_rate_hz) + " Hz");
 
-  const std::vector<Stretch> parts = stretches(time_s, rate, clock);
+  const std::vector<Stretch> parts = common(stretches(time_s, rate, clock), rest.at_rest);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
   const AngleSum sum(std::move(rate), parts);
   record.samples = sum.samples();
@@ -178,31 +202,24 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   const std::vector<std::size_t> m =
       options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
                             : asked_multiples(name, options, period, record.longest);
+  try {
+    record.fit = noise_coefficients(sum, period);
+  } catch (const std::invalid_argument& error) {
+    record.notes.push_back(name + ": " + column + ": no coefficients: " + error.what());
+  }
+  const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
   record.points = deviation(sum, m, options.kind);
-  record.intervals = intervals_in_order(sum, record.points, options.confidence);
+  record.intervals = allan_intervals(sum, options.kind, record.points, noise, options.confidence);
+  if (options.long_tau) record.longer = theo1(sum, noise, options.confidence, options.per_decade);
+  for (LongPoint& point : record.longer) point.tau *= period;
   for (const std::size_t k : m) record.tau_s.push_back(static_cast<double>(k) / record.sample_rate_hz);
   for (std::size_t i = 0; i < options.tau_s.size(); ++i)
     if (std::abs(record.tau_s[i] / options.tau_s[i] - 1.0) > 1e-6)
       record.notes.push_back(name + ": --tau " + number(options.tau_s[i]) +
                              " s is no multiple of the sample time, taken at " + number(record.tau_s[i]) +
                              " s");
-  record.trusted_tau_s = trusted_tau(sum, period);
-  try {
-    record.fit = fit_noise(sum, period);
-  } catch (const std::invalid_argument& error) {
-    record.notes.push_back(name + ": " + column + ": no coefficients: " + error.what());
-  }
-  if (record.fit && !record.fit->left_out_tau_s.empty()) {
-    std::string taus;
-    for (const double tau : record.fit->left_out_tau_s) taus += (taus.empty() ? "" : ", ") + number(tau);
-    record.notes.push_back(name + ": " + column +
-                           ": left out of the fit, because no sum of the terms comes near: τ " + taus +
-                           " s (a line, vibration or a filter)");
-  }
-  if (record.fit && record.fit->misfit > 0.0)
-    record.notes.push_back(name + ": " + column + ": the five terms miss the curve by " +
-                           number(100.0 * record.fit->misfit) +
-                           " % beyond chance (lines, filters, temperature?); the error bars allow for it");
+  record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
+  if (record.fit) note_what_was_left_out(column, record);
   return record;
 }
 
@@ -213,8 +230,7 @@ std::string AllanRecord::label() const {
 }
 
 std::vector<AllanRecord> allan_records(const std::string& name, Table table, const AllanOptions& options) {
-  std::size_t first_row = 0;
-  cut(table, options, first_row);
+  const std::size_t first_row = options.part.cut(table, name);
   if (table.time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(table.time_s.size()) +
                              " samples, expected at least 3");
@@ -225,6 +241,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, Table table, con
     throw std::runtime_error(name + ": " + error.what());
   }
   const Gaps gaps(name, table, first_row);
+  const Rest rest = rest_of(name, table, clock, options);
   std::vector<AllanRecord> records;
   std::string signal, axis, known;
   for (CaptureColumn& column : table.columns) {
@@ -241,7 +258,9 @@ std::vector<AllanRecord> allan_records(const std::string& name, Table table, con
       signal = "error";
     }
     records.push_back(
-        analyse(name, signal, axis, table.time_s, std::move(column.values), clock, gaps, options));
+        analyse(name, signal, axis, table.time_s, std::move(column.values), clock, gaps, rest, options));
+    if (const std::string motion = in_words(rest, clock.period_s, table.time_s.front()); !motion.empty())
+      records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }
   if (known.empty())
     throw std::runtime_error(
@@ -249,16 +268,6 @@ std::vector<AllanRecord> allan_records(const std::string& name, Table table, con
   if (records.empty())
     throw std::runtime_error(name + ": no axis " + in_quotes(options.axis) + ", expected one of " + known);
   return records;
-}
-
-const std::vector<NamedCoefficient>& named_coefficients() {
-  static const std::vector<NamedCoefficient> kNamed{
-      {"Q", "quantisation", "rad", "arcsec", 1.0 / kArcsecond, &NoiseFit::Q},
-      {"N", "angle random walk", "rad/s/√Hz", "°/√h", 1.0 / kDegreePerRootHour, &NoiseFit::N},
-      {"B", "bias instability", "rad/s", "°/h", 1.0 / kDegreePerHour, &NoiseFit::B},
-      {"K", "rate random walk", "rad/s²/√Hz", "°/h/√h", 1.0 / kDegreePerHourPerRootHour, &NoiseFit::K},
-      {"R", "rate ramp", "rad/s²", "°/h/h", 1.0 / kDegreePerHourPerHour, &NoiseFit::R}};
-  return kNamed;
 }
 
 }  // namespace ifog::tools

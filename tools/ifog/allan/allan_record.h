@@ -9,9 +9,15 @@
 
 #include "drivers/capture/capture.h"
 #include "filters/allan/confidence.h"
-#include "filters/allan/noise_fit.h"
+#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/theo1.h"
+#include "tools/ifog/captures/time_part.h"
+#include "tools/report/coefficients.h"
 
 namespace ifog::tools {
+
+using report::named_coefficients;
+using report::NamedCoefficient;
 
 struct AllanOptions {
   std::string axis;           // only this axis; every one when empty
@@ -21,7 +27,9 @@ struct AllanOptions {
   Deviation kind = Deviation::kAllan;
   bool refuse_gaps = false;
   bool minus_reference = false;
-  double from_s = 0.0, to_s = 0.0;  // part of the capture, by its own time; to_s 0: to the end
+  bool long_tau = false;     // Thêo1 beyond the Allan variance's τ
+  bool keep_motion = false;  // analyse what a sensor at rest would not do, too
+  TimePart part;
 };
 
 struct AllanRecord {
@@ -36,7 +44,8 @@ struct AllanRecord {
   std::vector<double> tau_s;
   std::vector<DeviationPoint> points;
   std::vector<AllanInterval> intervals;
-  std::optional<NoiseFit> fit;
+  std::vector<LongPoint> longer;  // Thêo1, when asked for
+  std::optional<NoiseCoefficients> fit;
   double trusted_tau_s = 0.0;      // up to here the deviation is known to a quarter
   std::vector<std::string> notes;  // what the reader should know, one line each
 
@@ -46,19 +55,9 @@ struct AllanRecord {
 // One record for each rate column of the file. Throws std::runtime_error with one line for people.
 std::vector<AllanRecord> allan_records(const std::string& name, Table table, const AllanOptions& options);
 
-// The coefficients in order Q N B K R with the units of the field: name, value in SI, and the factor to
-// people's unit.
-struct NamedCoefficient {
-  const char* letter;
-  const char* meaning;
-  const char* si_unit;
-  const char* unit;
-  double factor;
-  NoiseCoefficient NoiseFit::*member;
-};
-const std::vector<NamedCoefficient>& named_coefficients();
-
 nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
 void print_allan(const AllanRecord& record, const AllanOptions& options);
+// One line a record, for several.
+void print_comparison(const std::vector<AllanRecord>& records);
 
 }  // namespace ifog::tools

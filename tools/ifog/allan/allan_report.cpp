@@ -13,20 +13,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const char* name_of(NoiseType type) {
-  switch (type) {
-    case NoiseType::kQuantisation:
-      return "white phase";
-    case NoiseType::kFlickerPhase:
-      return "flicker phase";
-    case NoiseType::kAngleRandomWalk:
-      return "white rate";
-    case NoiseType::kBiasInstability:
-      return "flicker rate";
-    case NoiseType::kRateRandomWalk:
-      return "random walk";
-  }
-  return "";
+const char* name_of(Term term) {
+  constexpr std::array<const char*, kTerms> kNames{"white phase", "white rate", "flicker rate",
+                                                   "random walk"};
+  return kNames[term];
 }
 
 const char* name_of(Deviation kind) {
@@ -46,24 +36,25 @@ std::string text(const char* format, double a, double b = 0.0) {
   return line.data();
 }
 
-// Pads by characters, not bytes: ° and √ take two or three.
-std::string padded(std::string s, std::size_t width) {
-  std::size_t characters = 0;
-  for (const char c : s) characters += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  if (characters < width) s.append(width - characters, ' ');
-  return s;
+ordered_json theo1_json(const std::vector<LongPoint>& points) {
+  ordered_json out;
+  for (const char* key : {"tau_s", "adev_radps", "lower_radps", "upper_radps", "degrees_of_freedom", "bias"})
+    out[key] = ordered_json::array();
+  for (const LongPoint& point : points) {
+    out["tau_s"].push_back(point.tau);
+    out["adev_radps"].push_back(finite(std::sqrt(point.variance)));
+    out["lower_radps"].push_back(finite(point.interval.lower_radps));
+    out["upper_radps"].push_back(finite(point.interval.upper_radps));
+    out["degrees_of_freedom"].push_back(point.interval.degrees);
+    out["bias"].push_back(point.bias);
+  }
+  return out;
 }
 
-std::string with_error(double value, double error) {
-  // As many digits as the error has to say: two of its own.
-  const int digits =
-      error > 0.0 && value > 0.0
-          ? std::clamp(static_cast<int>(std::floor(std::log10(value)) - std::floor(std::log10(error))) + 2, 2,
-                       8)
-          : 3;
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(), "%.*g ± %.2g", digits, value, error);
-  return line.data();
+void print_point(double tau_s, double variance, const AllanInterval& interval, const char* remark) {
+  say("  %12.6g  %12.5g  %12.5g … %-10.5g  %9.4g  %s%s\n", tau_s, std::sqrt(variance) / kDegreePerHour,
+      interval.lower_radps / kDegreePerHour, interval.upper_radps / kDegreePerHour, interval.degrees,
+      name_of(interval.strongest), remark);
 }
 
 }  // namespace
@@ -96,19 +87,15 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
       axis["lower_radps"].push_back(finite(interval.lower_radps));
       axis["upper_radps"].push_back(finite(interval.upper_radps));
       axis["degrees_of_freedom"].push_back(interval.degrees);
-      axis["noise_type"].push_back(name_of(interval.type));
+      axis["noise_type"].push_back(name_of(interval.strongest));
       axis["terms"].push_back(record.points[i].terms);
     }
+    if (!record.longer.empty()) axis["theo1"] = theo1_json(record.longer);
     axis["trusted_tau_s"] = record.trusted_tau_s;
-    axis["coefficients"] = ordered_json::object();
-    for (const NamedCoefficient& named : named_coefficients()) {
-      const NoiseCoefficient c = record.fit ? (*record.fit).*named.member : NoiseCoefficient{};
-      axis["coefficients"][named.letter] = {
-          {"value", c.value},
-          {"std_error", record.fit ? finite(c.std_error) : ordered_json(nullptr)},
-          {"unit", named.si_unit},
-          {"present", c.present}};
-    }
+    // Without a fit nothing is known: neither value nor error.
+    axis["coefficients"] = report::coefficients_json(record.fit ? *record.fit : NoiseCoefficients{});
+    if (!record.fit)
+      for (auto& term : axis["coefficients"]) term["std_error"] = term["upper"] = nullptr;
     axis["misfit"] = record.fit ? finite(record.fit->misfit) : ordered_json(nullptr);
     axis["notes"] = record.notes;
     out["axes"].push_back(axis);
@@ -129,24 +116,13 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
     const bool last = i + 1 == record.points.size();
     if (options.tau_s.empty() && record.tau_s[i] < next && !last) continue;
     next = record.tau_s[i] * 2.1;
-    const AllanInterval& interval = record.intervals[i];
-    say("  %12.6g  %12.5g  %12.5g … %-10.5g  %9.4g  %s%s\n", record.tau_s[i],
-        std::sqrt(record.points[i].variance) / kDegreePerHour, interval.lower_radps / kDegreePerHour,
-        interval.upper_radps / kDegreePerHour, interval.degrees, name_of(interval.type),
-        record.tau_s[i] > record.trusted_tau_s * 1.0001 ? "  (too few averages to trust)" : "");
+    print_point(record.tau_s[i], record.points[i].variance, record.intervals[i],
+                record.tau_s[i] > record.trusted_tau_s * 1.0001 ? "  (too few averages to trust)" : "");
   }
+  for (const LongPoint& point : record.longer)
+    print_point(point.tau, point.variance, point.interval, "  (Theo1, bias taken out)");
   say("  To be trusted to a quarter up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
-  if (!record.fit) return;
-  for (const NamedCoefficient& named : named_coefficients()) {
-    const NoiseCoefficient& c = (*record.fit).*named.member;
-    if (c.present)
-      say("  %s  %s %s %s  (%.4g ± %.2g %s)\n", named.letter, padded(named.meaning, 18).c_str(),
-          padded(with_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
-          padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit);
-    else
-      say("  %s  %s not seen; below about %.2g %s\n", named.letter, padded(named.meaning, 18).c_str(),
-          2.0 * c.std_error * named.factor, named.unit);
-  }
+  if (record.fit) say("%s", report::coefficient_lines(*record.fit).c_str());
 }
 
 }  // namespace ifog::tools

@@ -16,6 +16,7 @@
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
@@ -30,6 +31,7 @@ namespace {
 
 struct Arguments {
   CaptureInput input;
+  TimePart part;
   std::vector<std::string> captures;
   std::string model, write_model, json, report;
   std::vector<std::string> axes;
@@ -68,6 +70,8 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
       capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
   for (const CaptureColumn& column : capture.channels)
     record.channels.push_back({column.name, column.values});
+  for (std::size_t other = 0; other < capture.axes.size(); ++other)
+    if (other != axis) record.other_axes.emplace_back(capture.rate_radps[other]);
   return record;
 }
 
@@ -200,6 +204,7 @@ void run(const Arguments& arguments) {
     model = read_model(arguments.model);
     for (Capture& capture : captures) compensate(capture, model);
   }
+  for (std::size_t c = 0; c < captures.size(); ++c) arguments.part.cut(captures[c], arguments.captures[c]);
   const std::vector<AxisDiagnosis> found = all_axes(captures, arguments);
   if (!arguments.quiet) {
     for (const AxisDiagnosis& each : found)
@@ -219,6 +224,7 @@ void add_diagnose(CLI::App& app) {
       app.add_subcommand("diagnose", "trace the error to its effects, with the model that corrects them");
   command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")->required();
   arguments->input.add_to(*command);
+  arguments->part.add_to(*command);
   command->add_option("--axis", arguments->axes, "only these axes");
   command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
   command->add_option("--write-model", arguments->write_model, "write the model with what was found");

@@ -109,7 +109,11 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     json[key] = Json::object();
     for (const AxisDiagnosis& each : axes) json[key][each.axis] = make(each.diagnosis);
   };
-  put("noise", [](const Diagnosis& d) { return noise_json(d.noise); });
+  put("noise", [](const Diagnosis& d) {
+    Json noise = noise_json(d.noise);
+    noise["std_error"] = noise_json(d.noise_error);
+    return noise;
+  });
   json["effects"] = Json::array();
   for (const AxisDiagnosis& each : axes) {
     for (const FoundEffect& found : each.diagnosis.effects) {

@@ -95,12 +95,22 @@ std::string figure_lines(const Diagnosis& diagnosis) {
   return lines;
 }
 
-std::string noise_line(const NoiseTerms& noise) {
+std::string noise_line(const NoiseTerms& noise, const NoiseTerms& error) {
   std::string line = "Noise:";
-  if (noise.N) line += text(" angle random walk %.3g °/√h", *noise.N / kDegreePerRootHour);
-  if (noise.B) line += text(", bias instability %.3g °/h", *noise.B / kDegreePerHour);
-  if (noise.K) line += text(", rate random walk %.3g °/h/√h", *noise.K / kDegreePerHourPerRootHour);
-  if (!noise.B && !noise.K) line += ", nothing slower that this record shows";
+  const auto add = [&](const char* name, const std::optional<double>& value,
+                       const std::optional<double>& sigma, double unit_si, const char* unit) {
+    if (!value) return;
+    line += line.back() == ':' ? " " : ", ";
+    line += std::string(name) + text(" %.3g", *value / unit_si);
+    if (sigma) line += text(" ± %.2g", *sigma / unit_si);
+    line += std::string(" ") + unit;
+  };
+  add("quantisation", noise.Q, error.Q, kArcsecond, "arcsec");
+  add("angle random walk", noise.N, error.N, kDegreePerRootHour, "°/√h");
+  add("bias instability", noise.B, error.B, kDegreePerHour, "°/h");
+  add("rate random walk", noise.K, error.K, kDegreePerHourPerRootHour, "°/h/√h");
+  add("rate ramp", noise.R, error.R, kDegreePerHourPerHour, "°/h/h");
+  if (!noise.B && !noise.K) line += ", no bias instability or random walk that this record shows";
   return line + "\n";
 }
 
@@ -111,7 +121,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   std::string report;
   if (!axis.axis.empty()) report += "Axis " + axis.axis + "\n";
   report += text("%zu samples at %.4g Hz\n", diagnosis.samples, diagnosis.sample_rate_hz);
-  report += noise_line(diagnosis.noise);
+  report += noise_line(diagnosis.noise, diagnosis.noise_error);
   if (diagnosis.effects.empty() && diagnosis.hysteresis) {
     report += "\nFound: nothing that a correction could take away; see what stays unexplained.\n";
   } else if (diagnosis.effects.empty()) {

@@ -1,0 +1,21 @@
+// How well the terms describe a spectrum, and which bands of it no sum of them comes near.
+#pragma once
+
+#include <vector>
+
+#include "filters/allan/noise_likelihood.h"
+
+namespace ifog {
+
+// Half-octave bands of the bins in use that stand farther from the likeliest terms than kTolerated of the
+// deviation are left out, the one whose absence helps most first and at most half of them. What misfit stays
+// is made part of the uncertainty: it lowers the bins' degrees of freedom.
+struct Described {
+  NoiseSpectrum spectrum;
+  TermVariances terms{};                 // the likeliest
+  double misfit = 0.0;                   // relative, of the deviation, beyond chance
+  std::vector<FrequencyRange> left_out;  // cycles a sample, neighbours joined
+};
+[[nodiscard]] Described described(NoiseSpectrum spectrum);
+
+}  // namespace ifog

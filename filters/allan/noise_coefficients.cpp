@@ -1,0 +1,228 @@
+#include "filters/allan/noise_coefficients.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "filters/allan/described_bands.h"
+#include "filters/allan/noise_likelihood.h"
+
+namespace ifog {
+namespace {
+
+// What a term costs in twice the log-likelihood, and how much cheaper the best set of terms with it has to be
+// than the best without. Together: a term that is not there passes 6 in 0.72 % of records (half of a χ² of
+// one degree, Self and Liang, J. Am. Stat. Assoc. 82, 1987). The margin alone stands between two sets of as
+// many terms, where one can stand for the other.
+constexpr double kCost = 3.0, kMargin = 3.0;
+// In the average over sets of terms, from which values and error bars come.
+constexpr double kCostInAverage = 7.0;
+// A bound that is printed only where the term stayed unseen must allow for that choice: what would have been
+// seen, had it been above.
+constexpr double kBound = kCost + kMargin;
+// A ramp competes with a random walk estimated from few numbers, so its likelihood ratio has a long tail.
+constexpr double kRampPresent = 10.0;
+constexpr double kOneSided = 1.959964;
+
+// Variance of `term` at which the likelihood, the others at their best, has fallen by kBound/2. The root of
+// twice the loss is nearly a straight line there, which secants follow in a few steps.
+double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::Maximum& best, Term term) {
+  const TermSet all = TermSet().set();
+  TermVariances near = best.variances;
+  const auto lost = [&](double variance) {
+    const auto at = likelihood.maximise_with(term, variance, all, near);
+    near = at.variances;
+    return std::sqrt(std::max(0.0, 2.0 * (best.log_likelihood - at.log_likelihood)));
+  };
+  const double wanted = std::sqrt(kBound);
+  const auto index = static_cast<Eigen::Index>(term);
+  double low = best.variances[term], lost_low = 0.0;
+  double high = low + wanted / std::sqrt(likelihood.information(best.variances)(index, index));
+  double lost_high = lost(high);
+  while (lost_high < wanted) {
+    low = std::exchange(high, low + 2.0 * (high - low));
+    lost_low = std::exchange(lost_high, lost(high));
+  }
+  for (int i = 0; i < 12; ++i) {
+    const double share = std::clamp((wanted - lost_low) / (lost_high - lost_low), 0.05, 0.95);
+    const double middle = low + share * (high - low), lost_middle = lost(middle);
+    const bool below = lost_middle < wanted;
+    (below ? low : high) = middle;
+    (below ? lost_low : lost_high) = lost_middle;
+    if (std::abs(lost_middle - wanted) < 0.01 * wanted) break;
+  }
+  return high;
+}
+
+// Standard deviations of the coefficients (roots of the variances) when the terms of the fit are all open.
+TermVariances errors(const NoiseLikelihood& likelihood, const TermVariances& fit) {
+  std::vector<Eigen::Index> open;
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (fit[t] > 0.0) open.push_back(static_cast<Eigen::Index>(t));
+  const Eigen::Matrix4d information = likelihood.information(fit);
+  Eigen::MatrixXd some = information(open, open);
+  // Terms differ by many powers of ten.
+  const Eigen::VectorXd scale = some.diagonal().cwiseSqrt().cwiseInverse();
+  some = scale.asDiagonal() * some * scale.asDiagonal();
+  const Eigen::MatrixXd covariance = scale.asDiagonal() * some.inverse() * scale.asDiagonal();
+  TermVariances error{};
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    const auto t = static_cast<std::size_t>(open[i]);
+    error[t] = 0.5 * std::sqrt(std::max(0.0, covariance(j, j)) / fit[t]);
+  }
+  return error;
+}
+
+// Every set of terms, its likeliest variances, and what they say together.
+class TermSets {
+ public:
+  TermSets(const NoiseLikelihood& likelihood, const TermVariances& near) {
+    for (unsigned long bits = (1UL << kTerms) - 1; bits > 0; --bits) {
+      const TermSet set(bits);
+      const auto fit =
+          likelihood.maximise(set, bits == (1UL << kTerms) - 1 ? near : sets_.front().fit.variances);
+      const double cost = 2.0 * (sets_.empty() ? 0.0 : sets_.front().fit.log_likelihood - fit.log_likelihood);
+      // A term that fell to zero: the set without it is tried by itself.
+      bool whole = true;
+      for (std::size_t t = 0; t < kTerms; ++t) whole = whole && (!set[t] || fit.variances[t] > 0.0);
+      sets_.push_back({set, fit, cost, whole});
+    }
+    for (Entry& e : sets_)
+      if (e.whole && e.cost < 30.0) e.error = errors(likelihood, e.fit.variances);
+  }
+  [[nodiscard]] const NoiseLikelihood::Maximum& all() const { return sets_.front().fit; }
+
+  // What the best set without the term costs more than the best with it.
+  [[nodiscard]] double need(std::size_t term) const {
+    std::array<double, 2> best;
+    best.fill(std::numeric_limits<double>::infinity());
+    for (const Entry& e : sets_) {
+      if (!e.whole) continue;
+      double& cheapest = best[e.set[term] ? 1 : 0];
+      cheapest = std::min(cheapest, e.cost + kCost * static_cast<double>(e.set.count()));
+    }
+    return std::isfinite(best[1]) ? best[0] - best[1] : -kCost;
+  }
+
+  // Weighted mean of the coefficient over the sets that have the term, and the spread within and among them.
+  struct Average {
+    double value = 0.0, error = 0.0;
+  };
+  [[nodiscard]] Average average(std::size_t term) const {
+    double weight = 0.0, first = 0.0, second = 0.0;
+    for (const Entry& e : sets_) {
+      if (!e.whole || !e.set[term]) continue;
+      const double w = weight_of(e), value = std::sqrt(e.fit.variances[term]);
+      weight += w;
+      first += w * value;
+      second += w * (value * value + e.error[term] * e.error[term]);
+    }
+    if (weight <= 0.0) return {};
+    const double mean = first / weight;
+    return {mean, std::sqrt(std::max(0.0, second / weight - mean * mean))};
+  }
+
+  // Of the variances, over all sets.
+  [[nodiscard]] TermVariances variances() const {
+    TermVariances mean{};
+    double weight = 0.0;
+    for (const Entry& e : sets_) {
+      if (!e.whole) continue;
+      weight += weight_of(e);
+      for (std::size_t t = 0; t < kTerms; ++t) mean[t] += weight_of(e) * e.fit.variances[t];
+    }
+    for (double& v : mean) v /= weight;
+    return mean;
+  }
+
+ private:
+  struct Entry {
+    TermSet set;
+    NoiseLikelihood::Maximum fit;
+    double cost = 0.0;  // twice the log-likelihood lost against all terms
+    bool whole = false;
+    TermVariances error{};
+  };
+  static double weight_of(const Entry& e) {
+    return e.cost < 30.0 ? std::exp(-0.5 * (e.cost + kCostInAverage * static_cast<double>(e.set.count())))
+                         : 0.0;
+  }
+  std::vector<Entry> sets_;  // all terms first
+};
+
+void fit_ramp(const NoiseSpectrum& spectrum, const TermVariances& variances, double period_s,
+              NoiseCoefficients& found) {
+  const NoiseLikelihood free(spectrum, Ramp::kFree), none(spectrum, Ramp::kNone);
+  const TermSet all = TermSet().set();
+  const double gain =
+      2.0 * (free.maximise(all, variances).log_likelihood - none.maximise(all, variances).log_likelihood);
+  const NoiseLikelihood::RampEstimate ramp = free.ramp(variances);
+  found.ramp_radps2 = ramp.value / period_s;
+  const double error = ramp.std_error / period_s, size = std::abs(found.ramp_radps2);
+  NoiseCoefficient& R = found.R;
+  R.score = std::sqrt(std::max(0.0, gain));
+  R.present = gain > kRampPresent;
+  R.upper = size + (R.present ? kOneSided : std::sqrt(kRampPresent)) * error;
+  R.value = R.present ? size : 0.0;
+  R.std_error = R.present ? error : R.upper / kOneSided;
+}
+
+FrequencyRange in_hz(const FrequencyRange& range, double period_s) {
+  return {range.low / period_s, range.high / period_s};
+}
+
+}  // namespace
+
+NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
+  const std::size_t longest = sum.longest();
+  if (longest < kShortestStretch)
+    throw std::invalid_argument("the longest stretch without gaps has " + std::to_string(longest) +
+                                " samples, expected at least " + std::to_string(kShortestStretch) +
+                                " for a noise fit");
+  NoiseSpectrum measured = noise_spectrum(sum);
+  if (std::all_of(measured.bins.begin(), measured.bins.end(), [](const auto& b) { return !(b.power > 0.0); }))
+    throw std::invalid_argument("the rate never changes; there is no noise to fit");
+  NoiseCoefficients found;
+  for (const FrequencyRange& line : measured.lines) found.lines_hz.push_back(in_hz(line, period_s));
+  const Described record = described(std::move(measured));
+  found.misfit = record.misfit;
+  for (const FrequencyRange& range : record.left_out) found.left_out_hz.push_back(in_hz(range, period_s));
+
+  const NoiseLikelihood likelihood(record.spectrum, Ramp::kProjected);
+  const TermSets sets(likelihood, record.terms);
+  found.variances = sets.variances();
+
+  const std::array<double, kTerms> scale{period_s, std::sqrt(period_s), 1.0, 1.0 / std::sqrt(period_s)};
+  const std::array<NoiseCoefficient*, kTerms> target{&found.Q, &found.N, &found.B, &found.K};
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    NoiseCoefficient& c = *target[t];
+    const double need = sets.need(t);
+    c.score = std::sqrt(std::max(0.0, need + kCost));
+    c.present = need > kMargin;
+    if (c.present) {
+      const TermSets::Average average = sets.average(t);
+      c.value = average.value * scale[t];
+      c.std_error = average.error * scale[t];
+      c.upper = c.value + kOneSided * c.std_error;
+    } else {
+      c.upper = std::sqrt(upper_variance(likelihood, sets.all(), static_cast<Term>(t))) * scale[t];
+      c.std_error = c.upper / kOneSided;
+    }
+  }
+  fit_ramp(record.spectrum, sets.all().variances, period_s, found);
+  return found;
+}
+
+double modelled_deviation(const NoiseCoefficients& found, double tau_s) {
+  const double q = found.Q.value, n = found.N.value, b = found.B.value, k = found.K.value, r = found.R.value;
+  return std::sqrt(3.0 * q * q / (tau_s * tau_s) + n * n / tau_s +
+                   2.0 * std::numbers::ln2 / std::numbers::pi * b * b + k * k * tau_s / 3.0 +
+                   r * r * tau_s * tau_s / 2.0);
+}
+
+}  // namespace ifog

@@ -1,0 +1,53 @@
+#include "filters/diagnosis/record/turned.h"
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "filters/rest/rest.h"
+
+namespace ifog {
+namespace {
+
+// Of a record without an even clock, such as a list of dwells, nothing can be said.
+std::optional<double> period_of(const Record& record) {
+  try {
+    return sample_clock(record.time_s).period_s;
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+WithoutTurns without_turns(const std::vector<Record>& records) {
+  WithoutTurns out;
+  for (const Record& record : records) {
+    out.records.push_back(record);
+    const std::optional<double> period = period_of(record);
+    if (!record.reference_radps.empty() || !period) continue;
+    const double period_s = *period;
+    std::vector<std::span<const double>> axes = record.other_axes;
+    axes.push_back(record.rate_radps);
+    const Rest rest = find_rest(axes, period_s);
+    if (rest.turned == 0) {
+      out.records.back().at_rest = rest.at_rest;
+      continue;
+    }
+    try {
+      require_rest(rest, period_s, record.time_s.front());
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(std::string(error.what()) + ", or a reference rate beside it");
+    }
+    std::vector<double>& rate = out.rates.emplace_back(record.rate_radps.size(), std::nan(""));
+    for (const Stretch& part : rest.at_rest)
+      for (std::size_t i = part.begin; i < part.end; ++i) rate[i] = record.rate_radps[i];
+    out.records.back().rate_radps = rate;
+    out.records.back().at_rest = rest.at_rest;
+    out.remarks.push_back(record.name + ": " + in_words(rest, period_s, record.time_s.front()) +
+                          "; only the rest is diagnosed");
+  }
+  return out;
+}
+
+}  // namespace ifog

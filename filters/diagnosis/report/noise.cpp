@@ -1,0 +1,64 @@
+#include "filters/diagnosis/report/noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "filters/allan/noise_coefficients.h"
+#include "filters/diagnosis/record/even_grid.h"
+
+namespace ifog {
+namespace {
+
+void put(const NoiseCoefficient& found, std::optional<double>& value, std::optional<double>& error) {
+  if (!found.present) return;
+  value = found.value;
+  error = found.std_error;
+}
+
+// What the effects leave of the samples at rest, all records one after the other.
+AngleSum angle_at_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
+                       double sample_s) {
+  std::vector<double> all;
+  std::vector<Stretch> parts;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    std::vector<double> resting(record.time_s.size(), record.at_rest.empty() ? 1.0 : std::nan(""));
+    for (const Stretch& part : record.at_rest)
+      std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
+    const std::vector<double> rests = on_even_grid(record, sample_s, resting);
+    std::vector<double> rate = errors[r].after;
+    for (std::size_t i = 0; i < rate.size(); ++i)
+      if (std::isnan(rests[i])) rate[i] = std::nan("");
+    for (const Stretch& part : stretches({}, rate, {}))
+      parts.push_back({all.size() + part.begin, all.size() + part.end});
+    all.insert(all.end(), rate.begin(), rate.end());
+  }
+  return AngleSum(all, parts);
+}
+
+}  // namespace
+
+void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
+                 const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis) {
+  NoiseTerms &value = diagnosis.noise, &error = diagnosis.noise_error;
+  if (grid.dwells) {
+    value = noise_terms(regression.shape, regression.white_variance, grid.block_s);
+    return;
+  }
+  try {
+    const NoiseCoefficients found =
+        noise_coefficients(angle_at_rest(records, errors, grid.sample_s), grid.sample_s);
+    put(found.Q, value.Q, error.Q);
+    put(found.N, value.N, error.N);
+    put(found.B, value.B, error.B);
+    put(found.K, value.K, error.K);
+    put(found.R, value.R, error.R);
+  } catch (const std::invalid_argument& reason) {
+    diagnosis.remarks.push_back(std::string("no noise terms: ") + reason.what());
+  }
+}
+
+}  // namespace ifog

@@ -1,0 +1,17 @@
+// The noise terms of what the effects leave, as every command reports them.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/even_error.h"
+#include "filters/diagnosis/regression/noise_fit.h"
+
+namespace ifog {
+
+// `noise` and `noise_error` of the diagnosis; a remark where the record is too short for them. Dwells are no
+// evenly sampled record: there the regression's own white noise is all there is.
+void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
+                 const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis);
+
+}  // namespace ifog

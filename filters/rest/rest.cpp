@@ -1,0 +1,233 @@
+#include "filters/rest/rest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+namespace ifog {
+namespace {
+
+constexpr double kWindow_s = 0.5;
+constexpr std::size_t kLeastWindow = 32;  // samples
+constexpr std::size_t kFewestWindows = 16;
+constexpr double kSlowest_s = 2.0;   // sample time
+constexpr double kAround_s = 10.0;   // on either side, of the running median
+constexpr double kTurned = 20.0;     // times the scatter of neighbouring quiet windows
+constexpr double kLeastTurn = 1e-3;  // rad/s
+constexpr double kShaken = 4.0;
+constexpr double kQuieter = 0.3;          // share of the windows taken to be quiet
+constexpr std::size_t kShortestRest = 8;  // windows between two that move
+constexpr double kEnough = 0.5;           // of the record
+
+enum class State : unsigned char { kResting, kShaking, kTurning };
+
+double quantile(std::vector<double> values, double p) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+struct Window {
+  double mean = 0.0, scatter = 0.0;  // NaN: too little there
+};
+
+// Of four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
+// second smallest.
+Window window_of(std::span<const double> rate) {
+  constexpr std::size_t kQuarters = 4;
+  std::array<double, kQuarters> scatter{}, level{};
+  for (std::size_t q = 0; q < kQuarters; ++q) {
+    const std::size_t begin = q * rate.size() / kQuarters, end = (q + 1) * rate.size() / kQuarters;
+    double n = 0.0, mean = 0.0, squares = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!std::isfinite(rate[i])) continue;
+      n += 1.0;
+      const double away = rate[i] - mean;
+      mean += away / n;
+      squares += away * (rate[i] - mean);
+    }
+    if (n < 2.0) return {std::nan(""), std::nan("")};
+    scatter[q] = std::sqrt(squares / (n - 1.0));
+    level[q] = mean;
+  }
+  std::sort(level.begin(), level.end());
+  std::sort(scatter.begin(), scatter.end());
+  return {0.5 * (level[1] + level[2]), scatter[1]};
+}
+
+// Median of the means around each window.
+std::vector<double> running_median(const std::vector<Window>& windows, std::size_t around) {
+  std::vector<double> out(windows.size());
+  // Every few windows: a median of seconds does not change between two half seconds.
+  const std::size_t step = std::max<std::size_t>(1, around / 8);
+  for (std::size_t i = 0; i < windows.size(); i += step) {
+    std::vector<double> near;
+    const std::size_t low = i - std::min(i, around), high = std::min(windows.size(), i + around + 1);
+    for (std::size_t j = low; j < high; ++j)
+      if (std::isfinite(windows[j].mean)) near.push_back(windows[j].mean);
+    const double median = quantile(std::move(near), 0.5);
+    for (std::size_t j = i; j < std::min(windows.size(), i + step); ++j) out[j] = median;
+  }
+  return out;
+}
+
+void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state) {
+  std::vector<double> scatters, steps;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (!std::isfinite(windows[i].mean)) continue;
+    scatters.push_back(windows[i].scatter);
+    if (i > 0 && std::isfinite(windows[i - 1].mean))
+      steps.push_back(std::abs(windows[i].mean - windows[i - 1].mean));
+  }
+  // Of the quieter windows, so that a record that mostly moves is still told from its rest: a normal variable
+  // stays within 0.385 of its standard deviation in 30 % of cases.
+  const double usual = quantile(steps, kQuieter) / 0.385;
+  const double quiet = quantile(scatters, kQuieter);
+  const auto around = static_cast<std::size_t>(std::lround(kAround_s / window_s));
+  const std::vector<double> level = running_median(windows, std::max<std::size_t>(4, around));
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (!std::isfinite(windows[i].mean)) continue;
+    // A turn that goes on becomes the median itself; it began and will end with a step.
+    const bool between = i > 0 && i + 1 < windows.size();
+    const double across = between ? std::abs(windows[i + 1].mean - windows[i - 1].mean) : 0.0;
+    const double away = std::abs(windows[i].mean - level[i]);
+    if (std::max(away, std::isfinite(across) ? across : 0.0) > std::max(kLeastTurn, kTurned * usual))
+      state[i] = State::kTurning;
+    else if (quiet > 0.0 && windows[i].scatter > kShaken * quiet && state[i] == State::kResting)
+      state[i] = State::kShaking;
+  }
+}
+
+// What moves takes a window on either side with it, and rests too short between.
+void widen(std::vector<State>& state) {
+  const std::vector<State> found = state;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] == State::kResting) continue;
+    if (i > 0) state[i - 1] = std::max(state[i - 1], found[i]);
+    if (i + 1 < found.size()) state[i + 1] = std::max(state[i + 1], found[i]);
+  }
+  for (std::size_t i = 0; i < state.size();) {
+    std::size_t end = i;
+    while (end < state.size() && state[end] == State::kResting) ++end;
+    const bool inside = i > 0 && end < state.size();
+    if (inside && end - i < kShortestRest)
+      for (std::size_t j = i; j < end; ++j) state[j] = state[i - 1];
+    i = std::max(end, i + 1);
+  }
+}
+
+// A turn that goes on at a steady rate is quiet in itself: a rest between two turns is one only at the level
+// of the longest rest.
+void mark_steady_turns(const std::vector<Window>& windows, std::vector<State>& state) {
+  struct Run {
+    std::size_t begin, end;
+    double mean;
+  };
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < state.size();) {
+    std::size_t end = i;
+    double sum = 0.0, count = 0.0;
+    for (; end < state.size() && state[end] == State::kResting; ++end)
+      if (std::isfinite(windows[end].mean)) {
+        sum += windows[end].mean;
+        count += 1.0;
+      }
+    if (count > 0.0) runs.push_back({i, end, sum / count});
+    i = std::max(end, i + 1);
+  }
+  if (runs.size() < 2) return;
+  const auto longest = std::max_element(
+      runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
+  const double level = longest->mean;
+  for (const Run& run : runs) {
+    const bool between = run.begin > 0 && run.end < state.size() && state[run.begin - 1] == State::kTurning &&
+                         state[run.end] == State::kTurning;
+    if (between && std::abs(run.mean - level) > 10.0 * kLeastTurn)
+      std::fill(state.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                state.begin() + static_cast<std::ptrdiff_t>(run.end), State::kTurning);
+  }
+}
+
+Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t samples) {
+  Rest rest;
+  rest.samples = samples;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const std::size_t begin = i * window, end = i + 1 == state.size() ? samples : begin + window;
+    if (state[i] == State::kTurning) rest.turned += end - begin;
+    if (state[i] == State::kShaking) rest.shaken += end - begin;
+    if (state[i] != State::kResting) continue;
+    if (!rest.at_rest.empty() && rest.at_rest.back().end == begin)
+      rest.at_rest.back().end = end;
+    else
+      rest.at_rest.push_back({begin, end});
+  }
+  return rest;
+}
+
+}  // namespace
+
+Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
+  const std::size_t samples = axes.empty() ? 0 : axes.front().size();
+  const auto window = std::max(kLeastWindow, static_cast<std::size_t>(std::lround(kWindow_s / period_s)));
+  const std::size_t count = samples / window;
+  std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
+  if (count < kFewestWindows || period_s > kSlowest_s) return as_samples(state, window, samples);
+  std::vector<std::vector<Window>> windows;
+  for (const std::span<const double> rate : axes) {
+    std::vector<Window>& of_axis = windows.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) of_axis.push_back(window_of(rate.subspan(i * window, window)));
+    mark_axis(of_axis, static_cast<double>(window) * period_s, state);
+  }
+  widen(state);
+  for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
+  return as_samples(state, window, samples);
+}
+
+std::string in_words(const Rest& rest, double period_s, double first_s) {
+  if (rest.turned + rest.shaken == 0) return {};
+  std::array<char, 160> text{};
+  const auto seconds = [&](std::size_t n) { return static_cast<double>(n) * period_s; };
+  std::snprintf(text.data(), text.size(), "moving in %.4g of %.4g s (turned %.4g s, shaken %.4g s), at rest",
+                seconds(rest.turned + rest.shaken), seconds(rest.samples), seconds(rest.turned),
+                seconds(rest.shaken));
+  std::string words = text.data();
+  constexpr std::size_t kShown = 4;
+  std::vector<Stretch> longest = rest.at_rest;
+  std::stable_sort(longest.begin(), longest.end(),
+                   [](const Stretch& a, const Stretch& b) { return a.size() > b.size(); });
+  longest.resize(std::min(longest.size(), kShown));
+  std::sort(longest.begin(), longest.end(),
+            [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
+  for (std::size_t i = 0; i < longest.size(); ++i) {
+    std::snprintf(text.data(), text.size(), "%s %.4g … %.4g s", i > 0 ? "," : "",
+                  first_s + seconds(longest[i].begin), first_s + seconds(longest[i].end));
+    words += text.data();
+  }
+  if (rest.at_rest.empty()) words += " nowhere";
+  if (rest.at_rest.size() > kShown)
+    words += " and " + std::to_string(rest.at_rest.size() - kShown) + " shorter parts";
+  return words;
+}
+
+void require_rest(const Rest& rest, double period_s, double first_s) {
+  if (rest.turned == 0) return;
+  if (static_cast<double>(rest.resting()) >= kEnough * static_cast<double>(rest.samples)) return;
+  throw std::invalid_argument("the sensor was " + in_words(rest, period_s, first_s) +
+                              "; expected a record that is mostly at rest");
+}
+
+std::vector<Stretch> common(std::span<const Stretch> a, std::span<const Stretch> b) {
+  std::vector<Stretch> out;
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    const Stretch both{std::max(a[i].begin, b[j].begin), std::min(a[i].end, b[j].end)};
+    if (both.begin < both.end) out.push_back(both);
+    (a[i].end < b[j].end ? i : j) += 1;
+  }
+  return out;
+}
+
+}  // namespace ifog

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""What the command line says of a sensor's noise: the same from every command, of the parts at rest, up to the τ there is.
+
+usage: noise.py PATH_OF_IFOG SOURCE_DIR
+"""
+import json
+import math
+import sys
+
+from run import RATE_HZ, SECONDS, columns, has, ifog, main_of, near, refused
+
+N, K = 2.5e-7, 4e-8
+SCENARIO = f"""
+seed = 5
+sample_rate_hz = {RATE_HZ}
+duration_s = {SECONDS}
+bias_radps = 5e-5
+[noise]
+N = {N}
+K = {K}
+"""
+
+
+class Noise:
+    def __init__(self, folder):
+        self.folder = folder
+        (folder / "walk.toml").write_text(SCENARIO)
+        self.capture = folder / "walk.csv"
+        ifog("simulate", folder / "walk.toml", "--output", self.capture)
+
+    def json(self, command, *arguments):
+        path = self.folder / f"{command}.json"
+        said = ifog(command, *arguments, "--json", path)
+        assert "nan" not in said.split(), said
+        return json.loads(path.read_text())
+
+    def turned(self, name, first_s, last_s):
+        """The same with a turn of half a radian a second, eight seconds on and four off."""
+        rate = columns(self.capture)["rate_radps"]
+        lines = [f"{i / RATE_HZ},{r + (0.5 if first_s <= i / RATE_HZ < last_s and i / RATE_HZ % 12 < 8 else 0.0)}"
+                 for i, r in enumerate(rate)]
+        path = self.folder / name
+        path.write_text("time_s,rate_radps\n" + "\n".join(lines) + "\n")
+        return path
+
+    def check_every_command_says_the_same(self):
+        allan = self.json("allan", self.capture)["axes"][0]["coefficients"]
+        tune = self.json("tune", self.capture)["noise"][0]["coefficients"]
+        noise = self.json("diagnose", self.capture)["noise"]
+        for letter, key, truth in (("N", "N_radps_rthz", N), ("K", "K_radps2_rthz", K)):
+            near(allan[letter]["value"], truth, 4 * allan[letter]["std_error"], letter)
+            assert tune[letter] == allan[letter], f"tune {tune[letter]}, allan {allan[letter]}"
+            near(noise[key], allan[letter]["value"], allan[letter]["std_error"], f"{letter} of diagnose")
+            has(noise["std_error"], key)
+        assert not allan["B"]["present"] and noise.get("B_radps") is None
+
+    def check_no_average_beyond_the_estimator(self):
+        third = SECONDS / 3
+        refused(1, "allan", self.capture, "--estimator", "hadamard", "--tau", math.ceil(third) + 1,
+                says=["Hadamard deviation", f"to {math.floor(third * RATE_HZ) / RATE_HZ:.6g} s"])
+        refused(1, "allan", self.capture, "--tau", SECONDS / 2 + 1, says=["overlapping deviation", f"to {SECONDS // 2} s"])
+        for estimator in ("overlapping", "modified", "hadamard"):
+            found = self.json("allan", self.capture, "--estimator", estimator, "--tau", math.floor(third))["axes"][0]
+            assert 0 < found["lower_radps"][0] < found["adev_radps"][0] < found["upper_radps"][0], found
+
+    def check_long_averages(self):
+        found = self.json("allan", self.capture, "--long")["axes"][0]["theo1"]
+        near(found["tau_s"][-1], 0.75 * SECONDS, 0.02 * SECONDS, "the longest averaging time")
+        assert all(low < sigma < high for low, sigma, high in
+                   zip(found["lower_radps"], found["adev_radps"], found["upper_radps"])), found
+
+    def check_a_part_of_the_record(self):
+        part = ("--from", 100, "--to", 250)
+        assert self.json("allan", self.capture, *part)["axes"][0]["samples"] == 150 * RATE_HZ
+        assert self.json("tune", self.capture, *part)["samples"] == 150 * RATE_HZ
+        found = self.json("diagnose", self.capture, *part)
+        assert found.get("samples", found.get("axes", [{}])[0].get("samples")) == 150 * RATE_HZ, list(found)
+        for command in ("allan", "tune", "diagnose"):
+            refused(1, command, self.capture, "--from", SECONDS + 1, says=["--from", f"{SECONDS - 1 / RATE_HZ:.10g} s"])
+
+    def check_turned_parts_are_left_out(self):
+        path = self.turned("turned.csv", 100, 148)
+        for command in ("allan", "tune", "diagnose"):
+            said = ifog(command, path)
+            assert "turned" in said and "only the rest is" in said, f"{command}: {said[:600]}"
+        found = self.json("allan", path)["axes"][0]["coefficients"]["N"]
+        near(found["value"], N, 4 * found["std_error"], "N beside a turn")
+
+    def check_a_turned_record_is_refused(self):
+        path = self.turned("hand.csv", 0, SECONDS)
+        for command in ("allan", "tune", "diagnose"):
+            refused(1, command, path, says=[str(path), "turned", "mostly at rest"])
+        assert self.json("allan", path, "--moving", "keep")["axes"][0]["samples"] == SECONDS * RATE_HZ
+
+    def check_several_captures_in_one_table(self):
+        other = self.turned("other.csv", 0, 0)
+        said = ifog("allan", self.capture, other, "--plot", self.folder / "both.svg")
+        table = said[said.rindex("lowest deviation"):]
+        assert "walk.csv" in table and "other.csv" in table, table
+        assert (self.folder / "both.svg").read_text().count("other.csv") >= 1
+
+
+if __name__ == "__main__":
+    sys.exit(main_of(Noise))

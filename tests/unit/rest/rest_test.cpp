@@ -1,0 +1,126 @@
+// Motion that was put into a record is found where it is, and noise of every kind is not taken for it.
+#include "filters/rest/rest.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "drivers/capture/capture.h"
+#include "filters/allan/noise_coefficients.h"
+#include "filters/diagnosis/diagnose.h"
+#include "tools/simulate/noise.h"
+
+namespace {
+
+using ifog::Rest;
+using ifog::simulate::NoiseLevels;
+
+constexpr double kRate = 100.0;
+
+Rest rest_of(const std::vector<double>& rate) {
+  const std::vector<std::span<const double>> axes{rate};
+  return ifog::find_rest(axes, 1.0 / kRate);
+}
+
+bool at_rest(const Rest& rest, double from_s, double to_s) {
+  for (const ifog::Stretch& part : rest.at_rest)
+    if (static_cast<double>(part.begin) <= from_s * kRate && static_cast<double>(part.end) >= to_s * kRate)
+      return true;
+  return false;
+}
+
+TEST(Rest, NoiseOfAnyKindIsNoMotion) {
+  for (const NoiseLevels& levels :
+       {NoiseLevels{.N = 1e-6}, NoiseLevels{.B = 1e-6}, NoiseLevels{.K = 1e-6}, NoiseLevels{.N = 1e-2},
+        NoiseLevels{.N = 1e-3, .K = 1e-3}, NoiseLevels{.K = 1.0}, NoiseLevels{.N = 1e-6, .R = 1e-4}}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const Rest rest = rest_of(ifog::simulate::noise(levels, kRate, 60000, seed));
+      EXPECT_EQ(rest.resting(), 60000U) << "N " << levels.N << " B " << levels.B << " K " << levels.K;
+    }
+  }
+}
+
+TEST(Rest, AStepOfTheBiasAndOutliersAreNoMotion) {
+  auto rate = ifog::simulate::noise({.N = 1e-5}, kRate, 60000, 3);
+  for (std::size_t i = 30000; i < rate.size(); ++i) rate[i] += 1e-4;
+  for (std::size_t i = 500; i < rate.size(); i += 1700) rate[i] += 0.5;
+  const Rest rest = rest_of(rate);
+  EXPECT_EQ(rest.turned, 0U);
+  EXPECT_LE(rest.shaken, 200U);
+}
+
+TEST(Rest, ATurnAndAShakeAreFoundWhereTheyAre) {
+  auto rate = ifog::simulate::noise({.N = 1e-5}, kRate, 60000, 4);
+  for (std::size_t i = 10000; i < 10400; ++i) rate[i] += 0.3;  // 100 … 104 s
+  for (std::size_t i = 40000; i < 41000; ++i)                  // 400 … 410 s
+    rate[i] += 2e-3 * std::sin(2.0 * 3.14159265 * 7.0 * static_cast<double>(i) / kRate);
+  const Rest rest = rest_of(rate);
+  EXPECT_TRUE(at_rest(rest, 0.0, 99.0));
+  EXPECT_TRUE(at_rest(rest, 105.5, 399.0));
+  EXPECT_TRUE(at_rest(rest, 411.5, 600.0));
+  EXPECT_EQ(rest.at_rest.size(), 3U);
+  // What moved takes up to a second on either side with it.
+  EXPECT_GE(static_cast<double>(rest.turned) / kRate, 4.0);
+  EXPECT_LE(static_cast<double>(rest.turned) / kRate, 6.0);
+  EXPECT_GE(static_cast<double>(rest.shaken) / kRate, 9.5);
+  EXPECT_LE(static_cast<double>(rest.shaken) / kRate, 12.0);
+  EXPECT_NE(ifog::in_words(rest, 1.0 / kRate, 0.0), "");
+  EXPECT_NO_THROW(ifog::require_rest(rest, 1.0 / kRate, 0.0));
+}
+
+TEST(Rest, ASteadyTurnIsNoRest) {
+  auto rate = ifog::simulate::noise({.N = 1e-5}, kRate, 60000, 5);
+  for (std::size_t i = 10000; i < 22000; ++i) rate[i] += 0.2;  // two minutes
+  const Rest rest = rest_of(rate);
+  EXPECT_FALSE(at_rest(rest, 150.0, 170.0));
+  EXPECT_NEAR(static_cast<double>(rest.turned) / kRate, 120.0, 3.0);
+}
+
+TEST(Rest, TheNoiseIsThatOfTheRest) {
+  auto rate = ifog::simulate::noise({.N = 1e-5}, kRate, 60000, 6);
+  for (std::size_t i = 10000; i < 10400; ++i) rate[i] += 0.3;
+  const auto found = ifog::noise_coefficients(ifog::AngleSum(rate, rest_of(rate).at_rest), 1.0 / kRate);
+  ASSERT_TRUE(found.N.present);
+  EXPECT_NEAR(found.N.value, 1e-5, 4.0 * found.N.std_error);
+  EXPECT_LT(found.N.std_error, 2e-7);
+  EXPECT_FALSE(found.B.present);
+  EXPECT_FALSE(found.K.present);
+}
+
+TEST(Rest, WhatTwoListsHaveInCommon) {
+  const std::vector<ifog::Stretch> a{{0, 10}, {20, 30}}, b{{5, 22}, {25, 40}};
+  const auto both = ifog::common(a, b);
+  ASSERT_EQ(both.size(), 3U);
+  EXPECT_EQ(both[0].begin, 5U);
+  EXPECT_EQ(both[0].end, 10U);
+  EXPECT_EQ(both[1].begin, 20U);
+  EXPECT_EQ(both[1].end, 22U);
+  EXPECT_EQ(both[2].begin, 25U);
+  EXPECT_EQ(both[2].end, 30U);
+}
+
+// A gyro that was turned by hand: no noise figure, no heading forecast, no model may come of it.
+TEST(Rest, AHandTurnedGyroIsRefused) {
+  const std::string path = IFOG_SHARED_DATA "/kvh1750_direct_imu_rate.csv.gz";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the measured capture " << path;
+  const ifog::Capture capture = ifog::read_capture(path);
+  const std::vector<std::span<const double>> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  const Rest rest = ifog::find_rest(axes, 1e-3);
+  EXPECT_GT(rest.turned, 5000U);
+  EXPECT_THROW(ifog::require_rest(rest, 1e-3, 0.0), std::invalid_argument);
+  ifog::Record record;
+  record.name = "hand-turned";
+  record.time_s = capture.time_s;
+  record.rate_radps = capture.rate_radps[0];
+  try {
+    (void)ifog::diagnose({record}, {});
+    FAIL() << "diagnosed a turned sensor";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("turned"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace

@@ -1,0 +1,29 @@
+// --from and --to: a part of a capture, by its own time.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "drivers/capture/capture.h"
+
+namespace CLI {
+class App;
+}
+
+namespace ifog::tools {
+
+struct TimePart {
+  double from_s = -std::numeric_limits<double>::infinity();
+  double to_s = std::numeric_limits<double>::infinity();  // from this time on left out
+
+  // Adds the two options to a command.
+  void add_to(CLI::App& command);
+
+  // Rows outside are gone. Returns how many were before. name: for messages. Throws std::runtime_error with
+  // one line when no row is inside.
+  std::size_t cut(Table& table, const std::string& name) const;
+  std::size_t cut(Capture& capture, const std::string& name) const;
+};
+
+}  // namespace ifog::tools

@@ -1,0 +1,93 @@
+#include "tools/report/coefficients.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "filters/units/field_units.h"
+
+namespace ifog::report {
+namespace {
+
+// Pads by characters, not bytes: ° and √ take two or three.
+std::string padded(std::string s, std::size_t width) {
+  std::size_t characters = 0;
+  for (const char c : s) characters += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  if (characters < width) s.append(width - characters, ' ');
+  return s;
+}
+
+std::string with_error(double value, double error) {
+  // As many digits as the error has to say: two of its own.
+  const int digits =
+      error > 0.0 && value > 0.0
+          ? std::clamp(static_cast<int>(std::floor(std::log10(value)) - std::floor(std::log10(error))) + 2, 2,
+                       8)
+          : 3;
+  std::array<char, 96> line{};
+  std::snprintf(line.data(), line.size(), "%.*g ± %.2g", digits, value, error);
+  return line.data();
+}
+
+}  // namespace
+
+const std::vector<NamedCoefficient>& named_coefficients() {
+  static const std::vector<NamedCoefficient> kNamed{
+      {"Q", "quantisation", "rad", "arcsec", 1.0 / kArcsecond, &NoiseCoefficients::Q},
+      {"N", "angle random walk", "rad/s/√Hz", "°/√h", 1.0 / kDegreePerRootHour, &NoiseCoefficients::N},
+      {"B", "bias instability", "rad/s", "°/h", 1.0 / kDegreePerHour, &NoiseCoefficients::B},
+      {"K", "rate random walk", "rad/s²/√Hz", "°/h/√h", 1.0 / kDegreePerHourPerRootHour,
+       &NoiseCoefficients::K},
+      {"R", "rate ramp", "rad/s²", "°/h/h", 1.0 / kDegreePerHourPerHour, &NoiseCoefficients::R}};
+  return kNamed;
+}
+
+std::string bound_text(double upper) {
+  std::array<char, 32> text{};
+  // The digits by the library's own rounding, then one more in the last place if that fell short.
+  std::snprintf(text.data(), text.size(), "%.2g", upper);
+  if (upper > 0.0 && std::strtod(text.data(), nullptr) < upper) {
+    const double last = std::pow(10.0, std::floor(std::log10(upper)) - 1.0);
+    std::snprintf(text.data(), text.size(), "%.2g", std::strtod(text.data(), nullptr) + last);
+  }
+  return text.data();
+}
+
+std::string coefficient_lines(const NoiseCoefficients& found) {
+  std::string lines;
+  std::array<char, 192> line{};
+  for (const NamedCoefficient& named : named_coefficients()) {
+    const NoiseCoefficient& c = found.*named.member;
+    const std::string meaning = padded(named.meaning, 18);
+    if (c.present)
+      std::snprintf(line.data(), line.size(), "  %s  %s %s %s  (%.4g ± %.2g %s)\n", named.letter,
+                    meaning.c_str(),
+                    padded(with_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
+                    padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit);
+    else
+      std::snprintf(line.data(), line.size(), "  %s  %s not seen; below %s %s\n", named.letter,
+                    meaning.c_str(), bound_text(c.upper * named.factor).c_str(), named.unit);
+    lines += line.data();
+  }
+  return lines;
+}
+
+nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
+  const auto finite = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
+  auto out = nlohmann::ordered_json::object();
+  for (const NamedCoefficient& named : named_coefficients()) {
+    const NoiseCoefficient& c = found.*named.member;
+    out[named.letter] = {{"value", c.value},
+                         {"std_error", finite(c.std_error)},
+                         {"upper", finite(c.upper)},
+                         {"unit", named.si_unit},
+                         {"present", c.present}};
+  }
+  return out;
+}
+
+}  // namespace ifog::report
