@@ -58,12 +58,41 @@ SerialSettings read_serial(TableReader& in) {
   return out;
 }
 
+// What concerns more keys than one is found by the transport itself; a key that is wrong by itself was told.
+void check_network(TableReader& in, const std::string& complaint, std::size_t told, const Context& context) {
+  if (complaint.empty() || context.errors.size() != told) return;
+  const std::string key = complaint.substr(0, complaint.find_first_of(" :"));
+  in.complain(key, complaint.substr(key.size()));
+}
+
+UdpSettings read_udp(TableReader& in, const Context& context) {
+  const std::size_t told = context.errors.size();
+  UdpSettings out;
+  take(in.required_integer("port", 1, 65535), out.port);
+  take(in.text("bind"), out.bind);
+  take(in.text("group"), out.group);
+  take(in.text("interface"), out.interface);
+  take(in.text("host"), out.host);
+  check_network(in, udp_complaint(out), told, context);
+  return out;
+}
+
+TcpSettings read_tcp(TableReader& in, const Context& context) {
+  const std::size_t told = context.errors.size();
+  TcpSettings out;
+  out.host = in.required_text("host", "the sensor's numeric address, \"192.168.1.20\"");
+  take(in.required_integer("port", 1, 65535), out.port);
+  check_network(in, tcp_complaint(out), told, context);
+  return out;
+}
+
 TransportConfig read_transport(const toml::table& table, const std::string& where, Context& context) {
   TableReader in(table, where, context.file, context.errors);
   TransportConfig out;
-  const auto type = in.choice("type", {"serial", "can", "file"});
+  const auto type = in.choice("type", {"serial", "can", "udp", "tcp", "file"});
   if (!type) {
-    if (!in.has("type")) in.complain("type", ": missing; expected \"serial\" | \"can\" | \"file\"");
+    if (!in.has("type"))
+      in.complain("type", ": missing; expected \"serial\" | \"can\" | \"udp\" | \"tcp\" | \"file\"");
     return out;
   }
   if (*type == "serial") {
@@ -72,6 +101,12 @@ TransportConfig read_transport(const toml::table& table, const std::string& wher
   } else if (*type == "can") {
     out.kind = TransportConfig::Kind::can;
     out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
+  } else if (*type == "udp") {
+    out.kind = TransportConfig::Kind::udp;
+    out.udp = read_udp(in, context);
+  } else if (*type == "tcp") {
+    out.kind = TransportConfig::Kind::tcp;
+    out.tcp = read_tcp(in, context);
   } else {
     out.kind = TransportConfig::Kind::file;
     out.path = context.absolute(in.required_text("path", "a file or FIFO, \"-\" for the standard input"));

@@ -9,18 +9,22 @@
 #include <vector>
 
 #include "drivers/transport/serial_port.h"
+#include "drivers/transport/tcp.h"
+#include "drivers/transport/udp.h"
 #include "filters/chain/reading.h"
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
 
 struct TransportConfig {
-  enum class Kind { serial, can, file };
+  enum class Kind { serial, can, udp, tcp, file };
   Kind kind = Kind::file;
   // serial; its baud 0: what the driver says
   SerialSettings serial;
   // can
   std::string interface;  // "can0"; file: of a candump log's frames, empty for all
+  UdpSettings udp;
+  TcpSettings tcp;
   // file
   std::string path;       // "-" is the standard input
   bool candump = false;   // else raw bytes

@@ -120,6 +120,15 @@ std::optional<std::int64_t> TableReader::integer(std::string_view key, std::int6
   return std::nullopt;
 }
 
+std::optional<std::int64_t> TableReader::required_integer(std::string_view key, std::int64_t least,
+                                                          std::int64_t most) {
+  if (has(key)) return integer(key, least, most);
+  asked_.emplace(key);
+  complain(key,
+           ": missing; expected a whole number " + std::to_string(least) + " ... " + std::to_string(most));
+  return std::nullopt;
+}
+
 std::optional<bool> TableReader::boolean(std::string_view key) {
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;

@@ -34,8 +34,9 @@ class TableReader {
   // One row of the table of filter settings, into `choice` where the key is there.
   void filter_setting(const FilterSetting& setting, FilterChoice& choice);
   std::optional<std::vector<int>> integers(std::string_view key, int least, int most);
-  // As text() and number(), and an error when it is not there.
+  // As text() and integer(), and an error when it is not there.
   std::string required_text(std::string_view key, const char* expected);
+  std::optional<std::int64_t> required_integer(std::string_view key, std::int64_t least, std::int64_t most);
 
   // A table under `key`; null when there is none or it is something else (an error).
   const toml::table* table(std::string_view key);

@@ -8,6 +8,8 @@
 #include "drivers/transport/can.h"
 #include "drivers/transport/file.h"
 #include "drivers/transport/serial.h"
+#include "drivers/transport/tcp.h"
+#include "drivers/transport/udp.h"
 
 namespace ifog {
 namespace {
@@ -77,6 +79,12 @@ std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, con
       return make_serial_transport(sensor_serial_settings(sensor, driver));
     case TransportConfig::Kind::can:
       return can_transport(sensor, driver);
+    case TransportConfig::Kind::udp:
+      require(driver.takes_bytes(), sensor, "udp", "CAN frames");
+      return make_udp_transport(sensor.transport.udp);
+    case TransportConfig::Kind::tcp:
+      require(driver.takes_bytes(), sensor, "tcp", "CAN frames");
+      return make_tcp_transport(sensor.transport.tcp);
     case TransportConfig::Kind::file:
       break;
   }

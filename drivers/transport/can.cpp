@@ -1,17 +1,14 @@
 #include "drivers/transport/can.h"
 #include "drivers/transport/clock.h"
 
-#include <linux/errqueue.h>
-#include <linux/net_tstamp.h>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <cerrno>
-#include <system_error>
 
-#include "drivers/transport/can_control.h"
 #include "drivers/transport/can_socket.h"
+#include "drivers/transport/receiving_socket.h"
 
 namespace ifog {
 namespace {
@@ -30,17 +27,9 @@ class CanTransport final : public Transport {
   }
 
  private:
-  void connect(std::string& warning) override;
+  bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
-  void ask_for_room(std::string& warning) const;
-  void ask_for_times(std::string& warning) const;
   std::span<const ifog_can_frame> accept(std::size_t received) noexcept;
-
-  // Room for a time stamp of either kind and the drop counter.
-  struct Control {
-    alignas(cmsghdr) unsigned char bytes[CMSG_SPACE(sizeof(scm_timestamping)) + CMSG_SPACE(sizeof(timespec)) +
-                                         CMSG_SPACE(sizeof(std::uint32_t))];
-  };
 
   CanSettings settings_;
   CanSocket socket_;
@@ -48,22 +37,12 @@ class CanTransport final : public Transport {
   KernelStamps stamps_;
   std::array<canfd_frame, kBatch> raw_{};
   std::array<iovec, kBatch> vectors_{};
-  std::array<Control, kBatch> control_{};
+  std::array<ControlRoom, kBatch> control_{};
   std::array<mmsghdr, kBatch> messages_{};
   std::array<ifog_can_frame, kBatch> frames_{};
 };
 
-bool set(int fd, int option, int value) {
-  return setsockopt(fd, SOL_SOCKET, option, &value, sizeof value) == 0;
-}
-
-std::string because() { return " (" + std::generic_category().message(errno) + ")"; }
-
-void warn(std::string& warning, const std::string& interface, const std::string& what) {
-  warning += (warning.empty() ? interface + ": " : "; ") + what;
-}
-
-void CanTransport::connect(std::string& warning) {
+bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   if (!opening().empty())
     throw OpenError(name(), "cannot send the driver's opening bytes", EOPNOTSUPP,
                     "a driver without them on CAN");
@@ -73,36 +52,17 @@ void CanTransport::connect(std::string& warning) {
   socket_ = std::move(fresh);
   drops_ = 0;
   stamps_.begin(realtime_ns(), arrival_clock_ns());
-  set(socket_.fd(), SO_RXQ_OVFL, 1);
-  ask_for_room(warning);
-  ask_for_times(warning);
-}
-
-void CanTransport::ask_for_room(std::string& warning) const {
-  const auto wanted = static_cast<int>(settings_.receive_buffer_bytes);
-  if (wanted == 0 || set(socket_.fd(), SO_RCVBUFFORCE, wanted)) return;
-  set(socket_.fd(), SO_RCVBUF, wanted);
-  int got = 0;
-  socklen_t size = sizeof got;
-  // The kernel doubles what it is asked for.
-  if (getsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &got, &size) != 0 || got / 2 < wanted)
-    warn(warning, name(),
-         "receive buffer of " + std::to_string(got / 2) + " bytes instead of " + std::to_string(wanted) +
-             " (net.core.rmem_max)");
-}
-
-void CanTransport::ask_for_times(std::string& warning) const {
-  if (set(socket_.fd(), SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE)) return;
-  if (set(socket_.fd(), SO_TIMESTAMPNS, 1)) return;
-  warn(warning, name(),
-       "no time stamps from the kernel" + because() + ": arrival times are those of the reading");
+  ask_for_drops(socket_.fd());
+  ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
+  ask_for_times(socket_.fd(), name(), warning);
+  return true;
 }
 
 Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
   short happened = 0;
   if (wait(socket_.fd(), POLLIN, until_ns, happened) != Wake::ready) return {};
   for (mmsghdr& message : messages_) {
-    message.msg_hdr.msg_controllen = sizeof(Control);
+    message.msg_hdr.msg_controllen = sizeof(ControlRoom);
     message.msg_hdr.msg_flags = 0;
   }
   const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
@@ -123,7 +83,7 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexc
   const std::int64_t read_at = arrival_clock_ns();
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < received; ++i) {
-    const CanControl said = can_control(messages_[i].msg_hdr);
+    const ReceiveControl said = receive_control(messages_[i].msg_hdr);
     if (said.has_drops) {
       kernel_drops_.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
       drops_ = said.drops;

@@ -34,7 +34,10 @@ class FileTransport : public Transport {
   }
 
  protected:
-  void connect(std::string& warning) override;
+  bool connect(std::string& /*warning*/, std::int64_t /*until_ns*/) override {
+    reopen();
+    return true;
+  }
   Delivery receive(std::int64_t until_ns) noexcept override;
 
   [[nodiscard]] const FileSettings& settings() const { return settings_; }
@@ -55,6 +58,7 @@ class FileTransport : public Transport {
   virtual Delivery take(std::int64_t until_ns) noexcept = 0;
 
  private:
+  void reopen();
   void finish() noexcept;
 
   FileSettings settings_;
@@ -65,7 +69,7 @@ class FileTransport : public Transport {
 };
 
 // Nobody listens at the other end of a recording: opening() is not sent.
-void FileTransport::connect(std::string& /*warning*/) {
+void FileTransport::reopen() {
   file_.open(settings_.path);
   at_end_ = false;
   pace_ = Pace(settings_.speed);
@@ -86,9 +90,8 @@ void FileTransport::finish() noexcept {
     return;
   }
   // The old descriptor would report its hang-up for ever: the next writer is awaited on a new one.
-  std::string warning;
   try {
-    connect(warning);
+    reopen();
     left();
   } catch (const OpenError& error) {
     file_.close();

@@ -22,7 +22,7 @@ class SerialTransport final : public Transport {
       : Transport(settings.device), settings_(settings), open_port_(std::move(open_port)) {}
 
  private:
-  void connect(std::string& warning) override;
+  bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   [[nodiscard]] bool more_waits() noexcept override {
     pollfd port{port_ ? port_->fd() : -1, POLLIN, 0};
@@ -40,12 +40,13 @@ class SerialTransport final : public Transport {
   std::array<std::uint8_t, 16384> buffer_{};
 };
 
-void SerialTransport::connect(std::string& warning) {
+bool SerialTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   port_.reset();
   port_ = open_port_(settings_, warning);
   send_opening();
   errors_known_ = ioctl(port_->fd(), TIOCGICOUNT, &errors_) == 0;
   next_errors_ns_ = monotonic_ns() + kErrorPeriod_ns;
+  return true;
 }
 
 void SerialTransport::send_opening() {

@@ -13,6 +13,13 @@
 #include "drivers/transport/clock.h"
 
 namespace ifog {
+namespace {
+
+// How long open() waits for the other end's answer.
+constexpr std::int64_t kOpenLimit_ns = 1'000'000'000;
+
+}  // namespace
+
 OpenError::OpenError(const std::string& device, const std::string& what, int error,
                      const std::string& expected)
     : std::runtime_error(device + ": " + what + ": " + std::generic_category().message(error) +
@@ -40,7 +47,8 @@ void Transport::open(std::span<const std::uint8_t> opening) {
   opening_.assign(opening.begin(), opening.end());
   std::string warning;
   try {
-    connect(warning);
+    if (!connect(warning, monotonic_ns() + kOpenLimit_ns))
+      throw OpenError(name_, "cannot open", ETIMEDOUT, "an answer within a second");
   } catch (const OpenError& error) {
     enter(TransportState::gone, error.reason);
     backoff_.failed(monotonic_ns());
@@ -48,6 +56,7 @@ void Transport::open(std::span<const std::uint8_t> opening) {
   }
   keep_warning(std::move(warning));
   connected_ = once_ = true;
+  connected_ns_ = monotonic_ns();
   enter(TransportState::open, 0);
 }
 
@@ -69,7 +78,7 @@ Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
   if (!connected_ && !regain(until)) return {};
   Delivery delivery = receive(until);
   if (!times_are_recorded() && backlog_.read(entered_ns, arrival_clock_ns(), timeout.count())) {
-    delivery.arrival_ns = 0;
+    if (!delivery.stamped) delivery.arrival_ns = 0;
     if (backlog_.may_be_over() && !more_waits()) backlog_.over();
   }
   if (delivery.empty()) return {};
@@ -91,7 +100,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     if (attempt < backoff_.next_ns()) return false;
     try {
       std::string warning;
-      connect(warning);
+      if (!connect(warning, until_ns)) return false;
       keep_warning(std::move(warning));
     } catch (const std::exception& error) {
       const auto* refused = dynamic_cast<const OpenError*>(&error);
@@ -100,6 +109,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
       continue;
     }
     connected_ = true;
+    connected_ns_ = monotonic_ns();
     enter(TransportState::open, 0);
     if (std::exchange(once_, true)) {
       returning_ = true;
@@ -112,7 +122,13 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
 void Transport::lost(int reason) noexcept {
   connected_ = false;
   enter(TransportState::gone, reason);
-  backoff_.restart(monotonic_ns());
+  const std::int64_t now = monotonic_ns();
+  // One that opens and at once goes away again (a server that is taken, a line that only errs) is not tried
+  // without a pause.
+  if (now - connected_ns_ > Backoff::kLongest_ns)
+    backoff_.restart(now);
+  else
+    backoff_.failed(now);
 }
 
 void Transport::left() noexcept {

@@ -1,4 +1,5 @@
-// What a sensor's reader thread reads from: a serial line, a CAN interface or a file, behind one interface.
+// What a sensor's reader thread reads from: a serial line, a CAN interface, the network or a file, behind one
+// interface.
 //
 // Threads: open() and read() belong to the reader thread. stop(), stopped(), state(), reason(), counters(),
 // fault() and take_warning() may be called from any thread, stop() also from a signal handler.
@@ -27,6 +28,7 @@ struct Delivery {
   // Of the last of `bytes`, arrival clock; 0: not known, because this process was held up and read late what
   // may have come at any time since.
   std::int64_t arrival_ns = 0;
+  bool stamped = false;                    // by the kernel: arrival_ns is right however late it was read
   std::span<const ifog_can_frame> frames;  // a CAN transport; each frame has its own time
   bool restarted = false;  // the first since the device was opened again: forget half-read frames
 
@@ -55,13 +57,14 @@ enum class TransportState {
 struct TransportCounters {
   std::uint64_t bytes = 0;         // delivered
   std::uint64_t frames = 0;        // delivered, CAN
-  std::uint64_t kernel_drops = 0;  // frames or bytes the kernel had no room for
+  std::uint64_t kernel_drops = 0;  // frames, datagrams or bytes the kernel had no room for
   std::uint64_t error_frames = 0;  // CAN error frames; serial framing, parity and overrun errors
   std::uint64_t reopened = 0;      // times the device came back
-  std::uint64_t malformed = 0;  // lines of a log that are no frame, a file cut off in the middle; see fault()
+  std::uint64_t malformed = 0;  // lines of a log that are no frame, a file cut off in the middle, datagrams
+                                // from somebody else; see fault()
 };
 
-// The latest fault in a file's content, for one line in the log: "PATH:LINE: WHAT".
+// The latest fault in what was read, for one line in the log: "PATH:LINE: WHAT".
 struct TransportFault {
   const char* what = nullptr;  // static text; nullptr: none so far
   std::uint64_t line = 0;      // 0: not a matter of lines
@@ -106,8 +109,9 @@ class Transport {
   [[nodiscard]] std::string take_warning();
 
  protected:
-  // Opens the device, again if need be, and sends opening(). Throws OpenError.
-  virtual void connect(std::string& warning) = 0;
+  // Opens the device, again if need be, and sends opening(). False: the other end has not answered when
+  // `until_ns` of CLOCK_MONOTONIC came or stop() was called; the next call waits on. Throws OpenError.
+  virtual bool connect(std::string& warning, std::int64_t until_ns) = 0;
   // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
   // is no more.
   virtual Delivery receive(std::int64_t until_ns) noexcept = 0;
@@ -141,6 +145,7 @@ class Transport {
   std::string warning_;
   bool new_warning_ = false;
   Backoff backoff_;
+  std::int64_t connected_ns_ = 0;  // since when, of CLOCK_MONOTONIC
   bool connected_ = false, once_ = false;
   bool returning_ = false;  // the next delivery is the first since the device came back
   Backlog backlog_;

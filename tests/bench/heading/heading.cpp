@@ -77,7 +77,7 @@ Block make_block() {
 class DayTransport final : public Transport {
  public:
   DayTransport(const Block& block, std::uint64_t frames) : Transport("day"), block_(block), frames_(frames) {}
-  void connect(std::string&) override {}
+  bool connect(std::string&, std::int64_t) override { return true; }
   Delivery receive(std::int64_t) noexcept override {
     if (given_ >= frames_) {
       end(0);

@@ -86,7 +86,7 @@ class FaultyTransport final : public Transport {
   FaultyTransport(const std::vector<std::uint8_t>& bytes, std::vector<std::size_t> cuts, unsigned seed,
                   bool holds_back)
       : Transport("faulty"), bytes_(bytes), cuts_(std::move(cuts)), random_(seed), holds_back_(holds_back) {}
-  void connect(std::string&) override {}
+  bool connect(std::string&, std::int64_t) override { return true; }
   Delivery receive(std::int64_t) noexcept override {
     Delivery out;
     if (at_ == bytes_.size()) {

@@ -225,7 +225,7 @@ TEST(ChannelSources, AFileIsReadAgainAndAgain) {
 class FakeBus final : public Transport {
  public:
   explicit FakeBus(std::vector<ifog_can_frame> frames) : Transport("fake0"), frames_(std::move(frames)) {}
-  void connect(std::string&) override {}
+  bool connect(std::string&, std::int64_t) override { return true; }
   Delivery receive(std::int64_t until_ns) noexcept override {
     Delivery out;
     out.frames = std::exchange(given_, true) ? std::span<const ifog_can_frame>() : frames_;

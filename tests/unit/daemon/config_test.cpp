@@ -149,6 +149,50 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
   for (const Wrong& wrong : cases) EXPECT_EQ(complaint(std::string(kGood) + wrong.extra), wrong.line);
 }
 
+std::string network(const std::string& transport) {
+  return "[[sensor]]\nname = \"nose\"\ndriver = \"x\"\n[sensor.transport]\n" + transport;
+}
+
+TEST(Config, ReadsANetworkSensor) {
+  const Config udp = parse_config(network("type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\ninterface = "
+                                          "\"eth0\"\nhost = \"192.168.1.20\"\n"),
+                                  "f.toml");
+  EXPECT_EQ(udp.sensors[0].transport.kind, TransportConfig::Kind::udp);
+  EXPECT_EQ(
+      udp.sensors[0].transport.udp,
+      (UdpSettings{
+          .port = 5000, .bind = "", .group = "239.1.2.3", .interface = "eth0", .host = "192.168.1.20"}));
+  const Config tcp =
+      parse_config(network("type = \"tcp\"\nhost = \"fe80::20%eth0\"\nport = 4001\n"), "f.toml");
+  EXPECT_EQ(tcp.sensors[0].transport.kind, TransportConfig::Kind::tcp);
+  EXPECT_EQ(tcp.sensors[0].transport.tcp, (TcpSettings{.host = "fe80::20%eth0", .port = 4001}));
+  EXPECT_EQ(udp.sensors[0].restart_for(tcp.sensors[0]), "transport");
+}
+
+TEST(Config, SaysWhatIsWrongWithANetworkSensor) {
+  for (const auto& [transport, line] :
+       {std::pair{"type = \"udp\"\n",
+                  "f.toml:4: sensor.transport.port: missing; expected a whole number 1 ... 65535"},
+        {"type = \"udp\"\nport = 70000\n",
+         "f.toml:6: sensor.transport.port = 70000: expected a whole number 1 ... 65535"},
+        {"type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\n",
+         "f.toml:4: sensor.transport.interface: missing; expected the interface on which the group is "
+         "joined, "
+         "\"eth0\""},
+        {"type = \"udp\"\nport = 5000\nbind = \"::1\"\nhost = \"10.0.0.1\"\n",
+         "f.toml:8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, "
+         "as "
+         "::1"},
+        {"type = \"tcp\"\nport = 4001\n",
+         "f.toml:4: sensor.transport.host: missing; expected the sensor's numeric address, \"192.168.1.20\""},
+        {"type = \"tcp\"\nhost = \"gyro.local\"\nport = 4001\n",
+         "f.toml:6: sensor.transport.host = 'gyro.local': expected a numeric address, \"192.168.1.20\", "
+         "\"fd00::20\" or \"fe80::20%eth0\"; names are not looked up"},
+        {"type = \"tcp\"\nhost = \"10.0.0.1\"\nport = 4001\nbaud = 9600\n",
+         "f.toml:8: sensor.transport.baud: unknown key; known here: host, port, type"}})
+    EXPECT_EQ(complaint(network(transport)), line);
+}
+
 TEST(Config, GathersAllErrors) {
   const std::string all = complaint("[[sensor]]\nname = \"a b\"\nmodle = \"x\"\n");
   EXPECT_EQ(all,

@@ -28,7 +28,7 @@ class MemoryTransport final : public Transport {
  public:
   MemoryTransport(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back)
       : Transport("memory"), bytes_to_give_(std::move(bytes)), portion_(portion), holds_back_(holds_back) {}
-  void connect(std::string&) override {}
+  bool connect(std::string&, std::int64_t) override { return true; }
   Delivery receive(std::int64_t) noexcept override {
     Delivery out;
     const bool all_given = at_ >= bytes_to_give_.size();

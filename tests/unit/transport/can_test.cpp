@@ -13,8 +13,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "drivers/transport/can_control.h"
 #include "drivers/transport/can_socket.h"
+#include "drivers/transport/receiving_socket.h"
 
 namespace {
 
@@ -77,7 +77,7 @@ TEST(CanFrame, GoesIntoTheSocketsForm) {
   }
 }
 
-TEST(CanControl, ReadsTimeAndDropsAsLaidOutBySocket7) {
+TEST(ReceiveControl, ReadsTimeAndDropsAsLaidOutBySocket7) {
   alignas(cmsghdr) unsigned char control[256]{};
   msghdr message{};
   message.msg_control = control;
@@ -97,18 +97,18 @@ TEST(CanControl, ReadsTimeAndDropsAsLaidOutBySocket7) {
   stamps.ts[2] = {5, 0};
   std::memcpy(CMSG_DATA(c), &stamps, sizeof stamps);
   message.msg_controllen = CMSG_SPACE(4) + CMSG_SPACE(sizeof(scm_timestamping));
-  const ifog::CanControl said = ifog::can_control(message);
+  const ifog::ReceiveControl said = ifog::receive_control(message);
   EXPECT_EQ(said.arrival_ns, 1'700'000'000'123'456'789);
   EXPECT_TRUE(said.has_drops);
   EXPECT_EQ(said.drops, drops);
 
   message.msg_controllen = 0;
-  EXPECT_EQ(ifog::can_control(message).arrival_ns, 0);
-  EXPECT_FALSE(ifog::can_control(message).has_drops);
+  EXPECT_EQ(ifog::receive_control(message).arrival_ns, 0);
+  EXPECT_FALSE(ifog::receive_control(message).has_drops);
 }
 
 // The kernel's own control messages, of a datagram socket that every kernel has.
-TEST(CanControl, ReadsTheKernelsTime) {
+TEST(ReceiveControl, ReadsTheKernelsTime) {
   int fds[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_DGRAM, 0, fds), 0);
   const int on = 1;
@@ -127,7 +127,7 @@ TEST(CanControl, ReadsTheKernelsTime) {
   const std::int64_t after = ifog::realtime_ns();
   close(fds[0]);
   close(fds[1]);
-  const std::int64_t arrival = ifog::can_control(message).arrival_ns;
+  const std::int64_t arrival = ifog::receive_control(message).arrival_ns;
   if (arrival == 0) GTEST_SKIP() << "this kernel stamps no datagrams of AF_UNIX; any Linux of its own does";
   EXPECT_GE(arrival, before);
   EXPECT_LE(arrival, after);

@@ -183,7 +183,9 @@ void add_replay(CLI::App& app) {
   command->add_option("capture", source.path, "candump log, raw bytes or CSV capture")->required();
   command
       ->add_option("--to", settings->to,
-                   "can:INTERFACE, serial:DEVICE, file:PATH, fifo:PATH or - (standard output)")
+                   "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
+                   "fifo:PATH or - "
+                   "(standard output)")
       ->required()
       ->check(names_a_target);
   command->add_option("--format", source.format, "of the recording")

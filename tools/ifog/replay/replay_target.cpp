@@ -1,12 +1,16 @@
 #include "tools/ifog/replay/replay_target.h"
 
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -16,12 +20,14 @@
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can_socket.h"
+#include "drivers/transport/ip_socket.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
+constexpr int kPatience_ms = 100;         // between two looks at whether the user wants to stop
 constexpr std::size_t kHeld = 1U << 16U;  // bytes collected when nothing is due at a time of its own
 
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
@@ -61,6 +67,10 @@ class ByteTarget final : public ReplayTarget {
       : ByteTarget(name, port->fd(), timeline, hold) {
     port_ = std::move(port);
   }
+  ByteTarget(IpSocket socket, const std::string& name, const ReplayTimeline& timeline, bool hold)
+      : ByteTarget(name, socket.fd(), timeline, hold) {
+    socket_ = std::move(socket);
+  }
   ByteTarget(std::unique_ptr<OutputFile> file, const std::string& name, const ReplayTimeline& timeline,
              bool hold)
       : ByteTarget(name, file->descriptor(), timeline, hold) {
@@ -98,9 +108,25 @@ class ByteTarget final : public ReplayTarget {
 
   const ReplayTimeline& timeline_;
   bool hold_;
-  std::unique_ptr<SerialPort> port_;  // one of the two
+  std::unique_ptr<SerialPort> port_;  // one of the three
+  IpSocket socket_;
   std::unique_ptr<OutputFile> file_;
   std::vector<std::uint8_t> held_;
+};
+
+class UdpTarget final : public ReplayTarget {
+ public:
+  UdpTarget(IpSocket socket, const std::string& name, const ReplayTimeline& timeline)
+      : ReplayTarget(name, socket.fd()), timeline_(timeline), socket_(std::move(socket)) {}
+
+  bool send(std::size_t i) override {
+    const std::size_t begin = i == 0 ? 0 : timeline_.blocks[i - 1].end;
+    return outlet_.send_datagram(timeline_.bytes.data() + begin, timeline_.blocks[i].end - begin);
+  }
+
+ private:
+  const ReplayTimeline& timeline_;
+  IpSocket socket_;
 };
 
 // The wait for a FIFO's reader can be interrupted: null.
@@ -118,18 +144,91 @@ std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   }
 }
 
+struct HostAndPort {
+  IpAddress host;
+  std::uint16_t port = 0;
+};
+
+// "127.0.0.1:4001" or "[::1]:4001".
+HostAndPort read_host_and_port(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  std::string host = text.substr(0, colon);
+  const bool bracketed = host.starts_with('[') && host.ends_with(']');
+  if (bracketed) host = host.substr(1, host.size() - 2);
+  const auto address = IpAddress::parse(host);
+  unsigned port = 0;
+  const char* const end = text.data() + text.size();
+  const bool whole = colon != std::string::npos &&
+                     std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
+                     port <= 65535;
+  if (!whole || !address || address->is_v6() != bracketed)
+    throw std::runtime_error("--to is " + in_quotes(text) +
+                             ", expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001");
+  return {*address, static_cast<std::uint16_t>(port)};
+}
+
+sockaddr_storage socket_address(const HostAndPort& at, const std::string& name, socklen_t& size) {
+  const auto address = at.host.at_port(at.port, "", size);
+  if (!address) fail(name, "no interface " + at.host.interface(), ENODEV);
+  return *address;
+}
+
+IpSocket connected_udp(const std::string& name) {
+  const HostAndPort to = read_host_and_port(name);
+  socklen_t size = 0;
+  const sockaddr_storage address = socket_address(to, name, size);
+  IpSocket socket(to.host.family(), SOCK_DGRAM, name);
+  if (const int error = socket.connect(address, size); error != 0) fail(name, "cannot send there", error);
+  return socket;
+}
+
+// As a sensor or a serial server does: listens there and serves the first that connects. Not open when
+// interrupted meanwhile.
+IpSocket served_tcp(const std::string& name) {
+  const HostAndPort at = read_host_and_port(name);
+  socklen_t size = 0;
+  const sockaddr_storage address = socket_address(at, name, size);
+  IpSocket listener(at.host.family(), SOCK_STREAM, name);
+  if (const int error = listener.set(SOL_SOCKET, SO_REUSEADDR, 1); error != 0)
+    fail(name, "cannot listen", error);
+  if (const int error = listener.bind(address, size); error != 0) fail(name, "cannot listen", error);
+  if (listen(listener.fd(), 1) != 0) fail(name, "cannot listen", errno);
+  warn("%s: waiting for a connection\n", name.c_str());
+  for (;;) {
+    IpSocket served = IpSocket::accepted(listener);
+    if (served.is_open()) {
+      // Each item at its time.
+      if (const int error = served.set(IPPROTO_TCP, TCP_NODELAY, 1); error != 0)
+        fail(name, "cannot serve", error);
+      return served;
+    }
+    const int error = errno;
+    if (interrupted()) return served;
+    if (error != EAGAIN && error != EINTR && error != ECONNABORTED) fail(name, "cannot serve", error);
+    pollfd ask{listener.fd(), POLLIN, 0};
+    poll(&ask, 1, kPatience_ms);
+  }
+}
+
 }  // namespace
 
 ReplayDestination ReplayDestination::parse(const std::string& text) {
   if (text == "-") return {Kind::standard_output, "standard output"};
   for (const auto& [prefix, kind] : {std::pair{"can:", Kind::can},
                                      {"serial:", Kind::serial},
+                                     {"udp:", Kind::udp},
+                                     {"tcp:", Kind::tcp},
                                      {"file:", Kind::file},
                                      {"fifo:", Kind::fifo}})
-    if (text.starts_with(prefix) && text.size() > std::string(prefix).size())
-      return {kind, text.substr(std::string(prefix).size())};
-  throw std::runtime_error("--to is " + in_quotes(text) +
-                           ", expected can:INTERFACE, serial:DEVICE, file:PATH, fifo:PATH or -");
+    if (text.starts_with(prefix) && text.size() > std::string(prefix).size()) {
+      ReplayDestination out{kind, text.substr(std::string(prefix).size())};
+      if (kind == Kind::udp || kind == Kind::tcp) read_host_and_port(out.name);
+      return out;
+    }
+  throw std::runtime_error(
+      "--to is " + in_quotes(text) +
+      ", expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, file:PATH, "
+      "fifo:PATH or -");
 }
 
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,
@@ -149,6 +248,18 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
     if (line.baud == 0) throw std::runtime_error(to.name + ": no speed known, expected --baud");
     std::string warning;
     return std::make_unique<ByteTarget>(open_serial_port(line, warning), to.name, timeline, hold);
+  }
+  if (to.kind == Kind::udp) {
+    if (timeline.is_can())
+      throw std::runtime_error(to.name + ": CAN frames cannot go over UDP, expected bytes");
+    return std::make_unique<UdpTarget>(connected_udp(to.name), to.name, timeline);
+  }
+  if (to.kind == Kind::tcp) {
+    if (timeline.is_can())
+      throw std::runtime_error(to.name + ": CAN frames cannot go over TCP, expected bytes");
+    IpSocket socket = served_tcp(to.name);
+    if (!socket.is_open()) return nullptr;
+    return std::make_unique<ByteTarget>(std::move(socket), to.name, timeline, hold);
   }
   std::unique_ptr<OutputFile> file =
       to.kind == Kind::fifo ? open_fifo(to.name)

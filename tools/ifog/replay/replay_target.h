@@ -29,19 +29,21 @@ class ReplayTarget {
 };
 
 struct ReplayDestination {
-  enum class Kind { can, serial, file, fifo, standard_output };
+  enum class Kind { can, serial, udp, tcp, file, fifo, standard_output };
   Kind kind = Kind::file;
-  std::string name;  // interface, device or path
+  std::string name;  // interface, device, HOST:PORT or path
 
-  // "can:vcan0", "serial:/dev/ttyS0", "file:PATH", "fifo:PATH" or "-". Throws std::runtime_error.
+  // "can:vcan0", "serial:/dev/ttyS0", "udp:127.0.0.1:5000", "tcp:[::1]:4001", "file:PATH", "fifo:PATH" or
+  // "-". Throws std::runtime_error.
   static ReplayDestination parse(const std::string& text);
   [[nodiscard]] bool is_can() const { return kind == Kind::can; }
 };
 
-// Opens it; a FIFO waits for its reader, null when interrupted meanwhile. `line` is for a serial device, its
-// `device` is set here. `hold` collects bytes before they are written, for sending as fast as possible. CAN
-// frames go into a file as a candump log. Keeps a reference to the timeline. Throws std::runtime_error: one
-// line.
+// Opens it; a FIFO waits for its reader and a TCP port, on which this end listens as a sensor does, for its
+// client; null when interrupted meanwhile. Over UDP each item is a datagram. `line` is for a serial device,
+// its `device` is set here. `hold` collects bytes before they are written, for sending as fast as possible.
+// CAN frames go into a file as a candump log. Keeps a reference to the timeline. Throws std::runtime_error:
+// one line.
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& destination,
                                           const ReplayTimeline& timeline, SerialSettings line, bool hold);
 

@@ -1,0 +1,260 @@
+#include "drivers/transport/udp.h"
+#include "drivers/transport/clock.h"
+
+#include <net/if.h>
+#include <netinet/in.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/ip_socket.h"
+#include "drivers/transport/receiving_socket.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kBatch = 16;           // datagrams a system call
+constexpr std::size_t kLongest = 1U << 16U;  // no UDP payload is longer
+constexpr std::int64_t kInterfacePeriod_ns = 500'000'000;
+
+struct Addresses {
+  IpAddress local;  // listened on: an address or a group
+  std::optional<IpAddress> host;
+};
+
+// "" and the addresses, or what is wrong.
+std::string resolve(const UdpSettings& settings, Addresses& out) {
+  const auto wrong = [](const char* key, const std::string& value, const std::string& expected) {
+    return std::string(key) + " = " + in_quotes(value) + ": expected " + expected;
+  };
+  if (settings.port == 0) return "port = 0: expected 1 ... 65535";
+  if (!settings.host.empty()) {
+    out.host = IpAddress::parse(settings.host);
+    if (!out.host || out.host->is_multicast())
+      return wrong("host", settings.host, "the sensor's numeric address, \"192.168.1.20\" or \"fd00::20\"");
+  }
+  const bool joined = !settings.group.empty();
+  if (joined && !settings.bind.empty())
+    return wrong("bind", settings.bind, "no address beside group: what the group gets is listened to");
+  if (joined && settings.interface.empty())
+    return "interface: missing; expected the interface on which the group is joined, \"eth0\"";
+  if (settings.interface.size() >= IFNAMSIZ)
+    return wrong("interface", settings.interface, "an interface's name, 1 to 15 letters");
+  if (!joined && !settings.interface.empty())
+    return wrong("interface", settings.interface, "none without group; bind says what is listened on");
+  const std::string any = out.host && out.host->is_v6() ? "::" : "0.0.0.0";
+  const std::string& text = joined ? settings.group : settings.bind.empty() ? any : settings.bind;
+  const auto local = IpAddress::parse(text);
+  if (!local || local->is_multicast() != joined)
+    return joined ? wrong("group", text, "a multicast address, \"239.1.2.3\" or \"ff02::1:2\"")
+                  : wrong("bind", text, "a numeric address of this computer, \"192.168.1.1\" or \"fd00::1\"");
+  if (out.host && out.host->is_v6() != local->is_v6())
+    return wrong("host", settings.host, "an address of the same kind, IPv4 or IPv6, as " + text);
+  out.local = *local;
+  return "";
+}
+
+class UdpTransport final : public Transport {
+ public:
+  UdpTransport(const UdpSettings& settings, Addresses addresses);
+
+ private:
+  struct Arrival {
+    std::int64_t ns;
+    bool stamped;
+  };
+
+  bool connect(std::string& warning, std::int64_t until_ns) override;
+  Delivery receive(std::int64_t until_ns) noexcept override;
+  [[nodiscard]] bool more_waits() noexcept override {
+    pollfd socket{socket_.fd(), POLLIN, 0};
+    return next_ < count_ || ::poll(&socket, 1, 0) > 0;
+  }
+  void join(const IpSocket& socket) const;
+  void send_opening(const IpSocket& socket) const;
+  void look_at_interface() noexcept;
+  void fill() noexcept;
+  Delivery next() noexcept;
+
+  UdpSettings settings_;
+  Addresses addresses_;
+  IpSocket socket_;
+  unsigned interface_index_ = 0;
+  std::int64_t next_look_ns_ = 0;
+  std::uint32_t drops_ = 0;
+  KernelStamps stamps_;
+  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kBatch * kLongest);
+  std::array<iovec, kBatch> vectors_{};
+  std::array<sockaddr_storage, kBatch> senders_{};
+  std::array<ControlRoom, kBatch> control_{};
+  std::array<mmsghdr, kBatch> messages_{};
+  std::array<Arrival, kBatch> arrivals_{};
+  std::size_t count_ = 0, next_ = 0;  // read, and handed on of these
+};
+
+UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
+    : Transport("udp:" + host_and_port(!settings.group.empty() ? settings.group
+                                       : !settings.bind.empty()
+                                           ? settings.bind
+                                           : (addresses.local.is_v6() ? "::" : "0.0.0.0"),
+                                       settings.port)),
+      settings_(settings),
+      addresses_(std::move(addresses)) {
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    vectors_[i] = {&bytes_[i * kLongest], kLongest};
+    msghdr& header = messages_[i].msg_hdr;
+    header.msg_iov = &vectors_[i];
+    header.msg_iovlen = 1;
+    header.msg_control = control_[i].bytes;
+    header.msg_name = &senders_[i];
+  }
+}
+
+bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
+  socket_.close();
+  count_ = next_ = 0;
+  drops_ = 0;
+  IpSocket fresh(addresses_.local.family(), SOCK_DGRAM, name());
+  const auto require = [this](int error, const char* what, const char* expected) {
+    if (error != 0) throw OpenError(name(), what, error, expected);
+  };
+  if (addresses_.local.is_v6())
+    require(fresh.set(IPPROTO_IPV6, IPV6_V6ONLY, 1), "cannot keep to IPv6", "a kernel with IPv6");
+  // Several programs may listen to a group. Without one a second listener would take the first one's
+  // datagrams.
+  if (!settings_.group.empty())
+    require(fresh.set(SOL_SOCKET, SO_REUSEADDR, 1), "cannot share the port", "a kernel that allows it");
+  socklen_t size = 0;
+  const auto address = addresses_.local.at_port(settings_.port, settings_.interface, size);
+  require(address ? 0 : ENODEV, "cannot listen", "an interface that is there");
+  require(fresh.bind(*address, size), "cannot listen", "an address of this computer and a port that is free");
+  if (!settings_.group.empty()) join(fresh);
+  interface_index_ = settings_.interface.empty() ? 0 : if_nametoindex(settings_.interface.c_str());
+  ask_for_drops(fresh.fd());
+  ask_for_room(fresh.fd(), settings_.receive_buffer_bytes, name(), warning);
+  ask_for_times(fresh.fd(), name(), warning);
+  stamps_.begin(realtime_ns(), arrival_clock_ns());
+  send_opening(fresh);
+  socket_ = std::move(fresh);
+  return true;
+}
+
+void UdpTransport::join(const IpSocket& socket) const {
+  socklen_t size = 0;
+  group_req request{};
+  request.gr_interface = if_nametoindex(settings_.interface.c_str());
+  const auto group = addresses_.local.at_port(settings_.port, settings_.interface, size);
+  if (request.gr_interface == 0 || !group)
+    throw OpenError(name(), "cannot join the group", ENODEV, "an interface " + settings_.interface);
+  std::memcpy(&request.gr_group, &*group, size);
+  const int level = addresses_.local.is_v6() ? IPPROTO_IPV6 : IPPROTO_IP;
+  if (setsockopt(socket.fd(), level, MCAST_JOIN_GROUP, &request, sizeof request) != 0)
+    throw OpenError(name(), "cannot join the group", errno,
+                    "an interface " + settings_.interface + " that is up and has an address");
+}
+
+void UdpTransport::send_opening(const IpSocket& socket) const {
+  if (opening().empty()) return;
+  socklen_t size = 0;
+  const auto to =
+      addresses_.host ? addresses_.host->at_port(settings_.port, settings_.interface, size) : std::nullopt;
+  if (!to)
+    throw OpenError(name(), "cannot send the driver's opening bytes", EDESTADDRREQ,
+                    "host, the sensor's address");
+  if (sendto(socket.fd(), opening().data(), opening().size(), MSG_NOSIGNAL,
+             reinterpret_cast<const sockaddr*>(&*to), size) < 0)
+    throw OpenError(name(), "cannot send the driver's opening bytes", errno, "a way to " + settings_.host);
+}
+
+Delivery UdpTransport::receive(std::int64_t until_ns) noexcept {
+  if (const Delivery waiting = next(); !waiting.empty()) return waiting;
+  short happened = 0;
+  const Wake wake = wait(socket_.fd(), POLLIN, until_ns, happened);
+  if (wake == Wake::timeout) look_at_interface();
+  if (wake != Wake::ready) return {};
+  fill();
+  return next();
+}
+
+// A group is left for good, and without a word, when its interface goes: one of the same name that comes back
+// has to be joined again.
+void UdpTransport::look_at_interface() noexcept {
+  const std::int64_t now = monotonic_ns();
+  if (interface_index_ == 0 || now < next_look_ns_) return;
+  next_look_ns_ = now + kInterfacePeriod_ns;
+  if (if_nametoindex(settings_.interface.c_str()) == interface_index_) return;
+  socket_.close();
+  lost(ENODEV);
+}
+
+void UdpTransport::fill() noexcept {
+  count_ = next_ = 0;
+  for (mmsghdr& message : messages_) {
+    message.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+    message.msg_hdr.msg_controllen = sizeof(ControlRoom);
+    message.msg_hdr.msg_flags = 0;
+  }
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
+  if (n <= 0) {
+    const int error = n < 0 ? errno : EAGAIN;
+    // An answer to the opening bytes that nobody listens yet: the sensor may still wake up.
+    if (error == EINTR || error == EAGAIN || error == ECONNREFUSED) return;
+    socket_.close();
+    lost(error);
+    return;
+  }
+  count_ = static_cast<std::size_t>(n);
+  const std::int64_t read_at = arrival_clock_ns();
+  stamps_.begin(realtime_ns(), read_at);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const ReceiveControl said = receive_control(messages_[i].msg_hdr);
+    if (said.has_drops) {
+      kernel_drops_.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
+      drops_ = said.drops;
+    }
+    const bool stamped = said.arrival_ns != 0;
+    arrivals_[i] = {stamped ? stamps_.on_arrival_clock(said.arrival_ns) : read_at, stamped};
+  }
+}
+
+Delivery UdpTransport::next() noexcept {
+  for (; next_ < count_; ++next_) {
+    const std::size_t i = next_, length = messages_[i].msg_len;
+    if (addresses_.host && !addresses_.host->is_host_of(senders_[i])) {
+      report("datagrams from another host, which are left out", 0);
+      continue;
+    }
+    if (length == 0) continue;
+    ++next_;
+    Delivery delivery;
+    delivery.bytes = {&bytes_[i * kLongest], length};
+    delivery.arrival_ns = arrivals_[i].ns;
+    delivery.stamped = arrivals_[i].stamped;
+    return delivery;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string udp_complaint(const UdpSettings& settings) {
+  Addresses addresses;
+  return resolve(settings, addresses);
+}
+
+std::unique_ptr<Transport> make_udp_transport(const UdpSettings& settings) {
+  Addresses addresses;
+  if (const std::string wrong = resolve(settings, addresses); !wrong.empty())
+    throw std::runtime_error("udp transport: " + wrong);
+  return std::make_unique<UdpTransport>(settings, std::move(addresses));
+}
+
+}  // namespace ifog

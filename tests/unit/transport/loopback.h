@@ -1,0 +1,88 @@
+// The sensor's end of a network line, on this computer's loopback.
+#pragma once
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace ifog {
+
+// A socket bound to a port of the loopback that the system picks, IPv4 or IPv6.
+class LoopbackSocket {
+ public:
+  LoopbackSocket(int family, int type) : family_(family), fd_(socket(family, type | SOCK_CLOEXEC, 0)) {}
+  ~LoopbackSocket() {
+    if (fd_ >= 0) close(fd_);
+  }
+  LoopbackSocket(const LoopbackSocket&) = delete;
+  LoopbackSocket& operator=(const LoopbackSocket&) = delete;
+
+  [[nodiscard]] int fd() const { return fd_; }
+  // Port 0: any free one.
+  bool bind(std::uint16_t port, const char* v4 = "127.0.0.1") {
+    const int on = 1;
+    setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    socklen_t size = 0;
+    const sockaddr_storage address = at(port, v4, size);
+    return ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), size) == 0;
+  }
+  [[nodiscard]] std::uint16_t port() const {
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
+    in_port_t port = 0;  // at the same place in both kinds of address
+    std::memcpy(&port, reinterpret_cast<const char*>(&address) + offsetof(sockaddr_in, sin_port),
+                sizeof port);
+    return ntohs(port);
+  }
+  void send_to(std::uint16_t port, const std::string& datagram, const char* v4 = "127.0.0.1") const {
+    socklen_t size = 0;
+    const sockaddr_storage address = at(port, v4, size);
+    ASSERT_EQ(
+        sendto(fd_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&address), size),
+        static_cast<ssize_t>(datagram.size()));
+  }
+
+ private:
+  [[nodiscard]] sockaddr_storage at(std::uint16_t port, const char* v4, socklen_t& size) const {
+    sockaddr_storage out{};
+    if (family_ == AF_INET) {
+      sockaddr_in address{};
+      address.sin_family = AF_INET;
+      address.sin_port = htons(port);
+      inet_pton(AF_INET, v4, &address.sin_addr);
+      size = sizeof address;
+      std::memcpy(&out, &address, size);
+    } else {
+      sockaddr_in6 address{};
+      address.sin6_family = AF_INET6;
+      address.sin6_port = htons(port);
+      address.sin6_addr = in6addr_loopback;
+      size = sizeof address;
+      std::memcpy(&out, &address, size);
+    }
+    return out;
+  }
+
+  int family_, fd_;
+};
+
+inline bool loopback_has_v6() {
+  LoopbackSocket probe(AF_INET6, SOCK_DGRAM);
+  return probe.fd() >= 0 && probe.bind(0);
+}
+
+// A port that was free a moment ago.
+inline std::uint16_t free_port(int family, int type) {
+  LoopbackSocket probe(family, type);
+  EXPECT_TRUE(probe.bind(0));
+  return probe.port();
+}
+
+}  // namespace ifog

@@ -1,0 +1,233 @@
+// The UDP transport on the loopback.
+#include "drivers/transport/udp.h"
+#include "drivers/transport/clock.h"
+#include "drivers/transport/ip_address.h"
+
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+
+#include "tests/unit/transport/loopback.h"
+
+namespace ifog {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kForever = 60s;
+
+std::string text_of(const Delivery& d) { return {d.bytes.begin(), d.bytes.end()}; }
+
+TEST(IpAddress, IsReadAsRfc4291WritesIt) {
+  EXPECT_TRUE(IpAddress::parse("192.168.1.20"));
+  EXPECT_FALSE(IpAddress::parse("192.168.1.20")->is_v6());
+  EXPECT_TRUE(IpAddress::parse("::1")->is_v6());
+  EXPECT_TRUE(IpAddress::parse("fe80::1%eth0")->is_link_local_v6());
+  EXPECT_EQ(IpAddress::parse("fe80::1%eth0")->interface(), "eth0");
+  EXPECT_TRUE(IpAddress::parse("239.1.2.3")->is_multicast());
+  EXPECT_TRUE(IpAddress::parse("ff02::1:2")->is_multicast());
+  EXPECT_FALSE(IpAddress::parse("223.255.255.255")->is_multicast());
+  for (const char* none : {"", "gyro.local", "192.168.1", "192.168.1.256", "1.2.3.4:5", "[::1]", "fe80::1%",
+                           "fe80::1%an-interface-too-long", "::1 "})
+    EXPECT_FALSE(IpAddress::parse(none)) << none;
+  EXPECT_EQ(host_and_port("10.0.0.1", 80), "10.0.0.1:80");
+  EXPECT_EQ(host_and_port("::1", 80), "[::1]:80");
+}
+
+class Udp : public testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == AF_INET6 && !loopback_has_v6())
+      GTEST_SKIP() << "the loopback has no IPv6 here; sysctl net.ipv6.conf.lo.disable_ipv6=0 gives it one";
+    settings_.port = free_port(GetParam(), SOCK_DGRAM);
+    settings_.bind = GetParam() == AF_INET ? "127.0.0.1" : "::1";
+  }
+  UdpSettings settings_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Families, Udp, testing::Values(AF_INET, AF_INET6),
+                         [](const auto& family) { return family.param == AF_INET ? "IPv4" : "IPv6"; });
+
+TEST_P(Udp, EachDeliveryIsADatagramWithTheKernelsTimeOfIt) {
+  const auto transport = make_udp_transport(settings_);
+  transport->open({});
+  EXPECT_EQ(transport->state(), TransportState::open);
+  EXPECT_FALSE(transport->holds_back());
+  LoopbackSocket gyro(GetParam(), SOCK_DGRAM);
+  gyro.send_to(settings_.port, "warm up");  // the first one of a system may come before it stamps
+  EXPECT_EQ(text_of(transport->read(kForever)), "warm up");
+  const std::int64_t before = arrival_clock_ns();
+  gyro.send_to(settings_.port, "first");
+  const std::int64_t between = arrival_clock_ns();
+  std::this_thread::sleep_for(20ms);  // both are read together, long after they came
+  const std::string longest(65507 - 40, 'x');
+  gyro.send_to(settings_.port, longest);
+  const Delivery first = transport->read(kForever);
+  EXPECT_EQ(text_of(first), "first");
+  EXPECT_TRUE(first.stamped);
+  EXPECT_GE(first.arrival_ns, before - 1'000'000);
+  EXPECT_LT(first.arrival_ns, between + 10'000'000);
+  const Delivery second = transport->read(kForever);
+  EXPECT_EQ(text_of(second), longest);
+  EXPECT_GT(second.arrival_ns, between + 10'000'000);
+  EXPECT_EQ(transport->counters().bytes, 7U + 5U + longest.size());
+}
+
+// A reader that was held up finds datagrams of long ago, each with its own time.
+TEST_P(Udp, ADatagramReadLateHasTheTimeItCame) {
+  const auto transport = make_udp_transport(settings_);
+  transport->open({});
+  LoopbackSocket gyro(GetParam(), SOCK_DGRAM);
+  gyro.send_to(settings_.port, "warm up");
+  transport->read(kForever);
+  gyro.send_to(settings_.port, "a");
+  std::this_thread::sleep_for(120ms);
+  const Delivery late = transport->read(kForever);
+  EXPECT_EQ(text_of(late), "a");
+  EXPECT_LT(late.arrival_ns, arrival_clock_ns() - 100'000'000);
+  EXPECT_NE(late.arrival_ns, 0);
+}
+
+TEST_P(Udp, WhatTheKernelDroppedIsCounted) {
+  settings_.receive_buffer_bytes = 4096;
+  const auto transport = make_udp_transport(settings_);
+  transport->open({});
+  LoopbackSocket gyro(GetParam(), SOCK_DGRAM);
+  constexpr std::size_t kSent = 500;
+  for (std::size_t i = 0; i < kSent; ++i) gyro.send_to(settings_.port, std::string(100, 'x'));
+  std::size_t got = 0;
+  while (!transport->read(0s).empty()) ++got;
+  gyro.send_to(settings_.port, "after");  // the kernel says how many were dropped beside the next
+  EXPECT_EQ(text_of(transport->read(kForever)), "after");
+  EXPECT_LT(got, kSent);
+  EXPECT_EQ(transport->counters().kernel_drops, kSent - got);
+}
+
+TEST(UdpTransport, DatagramsFromElsewhereAreLeftOutAndCounted) {
+  UdpSettings settings{
+      .port = free_port(AF_INET, SOCK_DGRAM), .bind = "", .group = "", .interface = "", .host = "127.0.0.2"};
+  const auto transport = make_udp_transport(settings);
+  transport->open({});
+  LoopbackSocket gyro(AF_INET, SOCK_DGRAM), other(AF_INET, SOCK_DGRAM);
+  ASSERT_TRUE(gyro.bind(0, "127.0.0.2"));
+  ASSERT_TRUE(other.bind(0, "127.0.0.3"));
+  other.send_to(settings.port, "no");
+  gyro.send_to(settings.port, "yes");
+  std::string seen;
+  while (seen.empty()) seen = text_of(transport->read(kForever));
+  EXPECT_EQ(seen, "yes");
+  EXPECT_EQ(transport->counters().malformed, 1U);
+  EXPECT_STREQ(transport->fault().what, "datagrams from another host, which are left out");
+}
+
+// Whoever floods the port with datagrams of his own cannot keep read() from returning at its time.
+TEST(UdpTransport, AReadThatFindsOnlyForeignDatagramsReturns) {
+  UdpSettings settings{
+      .port = free_port(AF_INET, SOCK_DGRAM), .bind = "", .group = "", .interface = "", .host = "127.0.0.2"};
+  const auto transport = make_udp_transport(settings);
+  transport->open({});
+  LoopbackSocket other(AF_INET, SOCK_DGRAM);
+  for (int i = 0; i < 40; ++i) other.send_to(settings.port, "no");
+  EXPECT_TRUE(transport->read(kForever).empty());
+}
+
+TEST(UdpTransport, TheOpeningGoesToTheHost) {
+  UdpSettings settings{.port = free_port(AF_INET, SOCK_DGRAM),
+                       .bind = "127.0.0.1",
+                       .group = "",
+                       .interface = "",
+                       .host = "127.0.0.2"};
+  LoopbackSocket gyro(AF_INET, SOCK_DGRAM);
+  ASSERT_TRUE(gyro.bind(settings.port, "127.0.0.2"));
+  const std::string opening = "ZZR";
+  make_udp_transport(settings)->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+  char got[16];
+  EXPECT_EQ(recv(gyro.fd(), got, sizeof got, 0), 3);
+  EXPECT_EQ(std::string(got, 3), opening);
+  settings.host = "";
+  settings.bind = "127.0.0.1";
+  try {
+    make_udp_transport(settings)->open(
+        {reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+    FAIL();
+  } catch (const OpenError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected host, the sensor's address"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(UdpTransport, APortThatIsTakenIsAwaited) {
+  UdpSettings settings{.port = 0, .bind = "127.0.0.1", .group = "", .interface = "", .host = ""};
+  auto squatter = std::make_unique<LoopbackSocket>(AF_INET, SOCK_DGRAM);
+  ASSERT_TRUE(squatter->bind(0));
+  settings.port = squatter->port();
+  const auto transport = make_udp_transport(settings);
+  EXPECT_THROW(transport->open({}), OpenError);
+  EXPECT_EQ(transport->reason(), EADDRINUSE);
+  EXPECT_EQ(transport->state(), TransportState::gone);
+  squatter.reset();
+  LoopbackSocket gyro(AF_INET, SOCK_DGRAM);
+  std::string seen;
+  for (int i = 0; i < 600 && seen.empty(); ++i) {
+    gyro.send_to(settings.port, "back");
+    seen = text_of(transport->read(100ms));
+  }
+  EXPECT_EQ(seen, "back");
+}
+
+TEST(UdpTransport, AGroupIsJoinedOnItsInterface) {
+  UdpSettings settings{.port = free_port(AF_INET, SOCK_DGRAM),
+                       .bind = "",
+                       .group = "239.255.12.34",
+                       .interface = "lo",
+                       .host = ""};
+  const auto transport = make_udp_transport(settings);
+  transport->open({});
+  LoopbackSocket gyro(AF_INET, SOCK_DGRAM);
+  in_addr lo{};
+  lo.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(setsockopt(gyro.fd(), IPPROTO_IP, IP_MULTICAST_IF, &lo, sizeof lo), 0);
+  unsigned char ttl = 0;
+  ASSERT_EQ(setsockopt(gyro.fd(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl), 0);
+  gyro.send_to(settings.port, "not for the group");  // to the port, but not to the group
+  gyro.send_to(settings.port, "to all", "239.255.12.34");
+  EXPECT_EQ(text_of(transport->read(kForever)), "to all");
+}
+
+TEST(UdpTransport, StopEndsAWaitingRead) {
+  UdpSettings settings{
+      .port = free_port(AF_INET, SOCK_DGRAM), .bind = "127.0.0.1", .group = "", .interface = "", .host = ""};
+  const auto transport = make_udp_transport(settings);
+  transport->open({});
+  std::thread stopper([&] { transport->stop(); });
+  EXPECT_TRUE(transport->read(kForever).empty());
+  stopper.join();
+}
+
+TEST(UdpTransport, SaysWhichSettingIsWrong) {
+  const auto complaint = [](std::uint16_t port, const char* bind, const char* group, const char* interface,
+                            const char* host) {
+    return udp_complaint({.port = port, .bind = bind, .group = group, .interface = interface, .host = host});
+  };
+  EXPECT_EQ(complaint(5000, "", "", "", ""), "");
+  EXPECT_EQ(complaint(5000, "", "ff02::1:2", "eth0", "fe80::1"), "");
+  EXPECT_EQ(complaint(0, "", "", "", ""), "port = 0: expected 1 ... 65535");
+  EXPECT_EQ(complaint(5000, "here", "", "", ""),
+            "bind = 'here': expected a numeric address of this computer, \"192.168.1.1\" or \"fd00::1\"");
+  EXPECT_EQ(complaint(5000, "239.1.2.3", "", "", "").substr(0, 18), "bind = '239.1.2.3'");
+  EXPECT_EQ(complaint(5000, "", "10.1.2.3", "eth0", ""),
+            "group = '10.1.2.3': expected a multicast address, \"239.1.2.3\" or \"ff02::1:2\"");
+  EXPECT_EQ(complaint(5000, "", "239.1.2.3", "", "").substr(0, 19), "interface: missing;");
+  EXPECT_EQ(complaint(5000, "10.0.0.1", "239.1.2.3", "eth0", "").substr(0, 17), "bind = '10.0.0.1'");
+  EXPECT_EQ(complaint(5000, "", "", "eth0", "").substr(0, 18), "interface = 'eth0'");
+  EXPECT_EQ(complaint(5000, "", "", "", "gyro").substr(0, 13), "host = 'gyro'");
+  EXPECT_EQ(complaint(5000, "10.0.0.1", "", "", "::1"),
+            "host = '::1': expected an address of the same kind, IPv4 or IPv6, as 10.0.0.1");
+}
+
+}  // namespace
+}  // namespace ifog
