@@ -11,6 +11,9 @@
 #include <numbers>
 #include <optional>
 
+#include "drivers/plugins/framing/channels.h"
+#include "drivers/plugins/framing/device_clock.h"
+#include "drivers/plugins/framing/fields.h"
 #include "drivers/plugins/kvh1750/frame.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
 #include "ifog/byte_driver.h"
@@ -20,7 +23,6 @@
 namespace ifog::kvh {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStandardGravity = 9.80665;  // m/s² per g
 constexpr double kMicroteslaPerGauss = 100.0;
 
@@ -105,49 +107,10 @@ SetUp read_set_up(const plugin::Options& options) {
   return s;
 }
 
-// Format B's stamp, carried on over its wraps. A pause longer than one wrap is bridged by the arrival times.
-class Unwrapped {
- public:
-  std::int64_t next_ns(std::uint32_t stamp_us, std::int64_t arrival_ns, std::int64_t modulus_us) noexcept {
-    if (started_) {
-      std::int64_t step_us = static_cast<std::int64_t>(stamp_us) - last_us_;
-      if (step_us < 0) step_us += modulus_us;
-      time_us_ += step_us;
-      if (arrival_ns > 0 && known_arrival_ns_ > 0) {
-        // Against the latest arrival that is known: between two of them stamps alone count.
-        const double missing_us = static_cast<double>(arrival_ns - known_arrival_ns_) * 1e-3 -
-                                  static_cast<double>(time_us_ - known_time_us_);
-        const double wraps = std::round(missing_us / static_cast<double>(modulus_us));
-        if (wraps >= 1.0 && wraps < 1e6) time_us_ += static_cast<std::int64_t>(wraps) * modulus_us;
-      }
-    } else {
-      time_us_ = stamp_us;
-    }
-    started_ = true;
-    last_us_ = stamp_us;
-    if (arrival_ns > 0) {
-      known_arrival_ns_ = arrival_ns;
-      known_time_us_ = time_us_;
-    }
-    return time_us_ * 1000;
-  }
-  // The device may have been switched off in between: the next stamp starts anew.
-  void restart() noexcept {
-    started_ = false;
-    known_arrival_ns_ = 0;
-  }
-
- private:
-  bool started_ = false;
-  std::int64_t last_us_ = 0;
-  std::int64_t time_us_ = 0;
-  std::int64_t known_arrival_ns_ = 0, known_time_us_ = 0;  // at the latest stamp whose arrival is known
-};
-
 class Driver {
  public:
   explicit Driver(const plugin::Options& options) : Driver(read_set_up(options)) {}
-  explicit Driver(const SetUp& set_up) : set_up_(set_up) { environment_.fill(kMissing); }
+  explicit Driver(const SetUp& set_up) : set_up_(set_up) {}
 
   void describe(ifog_description& out) const {
     out = {};
@@ -169,7 +132,8 @@ class Driver {
 
   void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
               void* sink) noexcept {
-    finder_.feed(bytes, [&](const Frame& frame) {
+    finder_.feed(bytes, [&](std::span<const std::uint8_t> found) {
+      const Frame frame = unpack_found(found);
       if (set_up_.format && frame.format != *set_up_.format) {
         ++other_format_;
         return;
@@ -185,10 +149,10 @@ class Driver {
   }
 
   void counters(ifog_driver_counters& out) const {
-    const FrameFinder::Counters& found = finder_.counters();
+    const framing::FrameCounters& found = finder_.counters();
     out = {};
     out.frames_good = found.intact - other_format_;
-    out.frames_crc = found.crc_failed;
+    out.frames_crc = found.checksum_failed;
     out.frames_format = other_format_;
     out.bytes_skipped = found.bytes_skipped;
     out.bytes_framed = found.bytes_framed;
@@ -204,12 +168,6 @@ class Driver {
   }
 
  private:
-  void set(ifog_sample& sample, std::size_t channel, double value) noexcept {
-    if (!std::isfinite(value)) return;
-    environment_[channel] = value;
-    sample.environment_fresh |= 1U << channel;
-  }
-
   ifog_sample sample_of(const Frame& frame, std::int64_t arrival_ns) noexcept {
     ifog_sample sample{};
     sample.arrival_ns = arrival_ns;
@@ -225,18 +183,18 @@ class Driver {
       sample.value[axis] = value;
       if ((frame.status & kGyroValid << axis) != 0 && std::isfinite(value)) sample.valid_axes |= 1U << axis;
       if ((frame.status & kAccelerometerValid << axis) != 0)
-        set(sample, kAcceleration + axis,
-            static_cast<double>(frame.accelerometer[axis]) * set_up_.acceleration_scale());
+        channels_.set(sample, kAcceleration + axis,
+                      static_cast<double>(frame.accelerometer[axis]) * set_up_.acceleration_scale());
     }
     if (frame.format != Format::kC) {
-      set(sample, kTemperature, set_up_.celsius(frame.temperature));
+      channels_.set(sample, kTemperature, set_up_.celsius(frame.temperature));
     } else if (const std::size_t quantity = slow_quantity(frame.sequence); quantity == 0) {
-      set(sample, kTemperature, set_up_.celsius(static_cast<double>(frame.slow)));
+      channels_.set(sample, kTemperature, set_up_.celsius(static_cast<double>(frame.slow)));
     } else {
-      set(sample, kMagneticField + quantity - 1, static_cast<double>(frame.slow) * kMicroteslaPerGauss);
+      channels_.set(sample, kMagneticField + quantity - 1,
+                    static_cast<double>(frame.slow) * kMicroteslaPerGauss);
     }
-    std::copy(environment_.begin(), environment_.end(), sample.environment);
-    std::fill(sample.environment + kEnvironments, std::end(sample.environment), kMissing);
+    channels_.copy_to(sample);
     return sample;
   }
 
@@ -247,20 +205,19 @@ class Driver {
         ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 ? sample.sequence : sent_) % kSequenceModulus);
     sent_ = frame.sequence + 1U;
     for (unsigned axis = 0; axis < 3; ++axis) {
-      frame.gyro[axis] = as_float(sample.value[axis] / set_up_.rad_per_unit, "gyro value");
+      frame.gyro[axis] = framing::float_of(sample.value[axis] / set_up_.rad_per_unit, "gyro value");
       if ((sample.valid_axes & 1U << axis) != 0)
         frame.status = static_cast<std::uint8_t>(frame.status | kGyroValid << axis);
       const double acceleration = sample.environment[kAcceleration + axis];
       if (!std::isfinite(acceleration)) continue;
-      frame.accelerometer[axis] = as_float(acceleration / set_up_.acceleration_scale(), "acceleration");
+      frame.accelerometer[axis] =
+          framing::float_of(acceleration / set_up_.acceleration_scale(), "acceleration");
       frame.status = static_cast<std::uint8_t>(frame.status | kAccelerometerValid << axis);
     }
     if (frame.format == Format::kB) {
       if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) == 0)
         throw std::invalid_argument("format b needs the device's time, and the sample has none");
-      // The remainder taken upwards, so that times before the origin stay in order.
-      const std::int64_t us = floored(sample.device_time_ns, 1000) % set_up_.stamp_modulus_us;
-      frame.time_stamp_us = static_cast<std::uint32_t>(us < 0 ? us + set_up_.stamp_modulus_us : us);
+      frame.time_stamp_us = time_.stamp_at(sample.device_time_ns, set_up_.stamp_modulus_us);
     }
     encode_slow(sample, frame);
     return frame;
@@ -270,9 +227,10 @@ class Driver {
     const double temperature = sample.environment[kTemperature];
     if (frame.format == Format::kC) {
       const std::size_t quantity = slow_quantity(frame.sequence);
-      frame.slow = quantity == 0
-                       ? as_float(set_up_.as_sent(temperature), "temperature")
-                       : as_float(sample.environment[kMagneticField + quantity - 1] / kMicroteslaPerGauss,
+      frame.slow =
+          quantity == 0
+              ? framing::float_of(set_up_.as_sent(temperature), "temperature")
+              : framing::float_of(sample.environment[kMagneticField + quantity - 1] / kMicroteslaPerGauss,
                                   "magnetic field");
       return;
     }
@@ -285,22 +243,11 @@ class Driver {
     frame.temperature = static_cast<std::int16_t>(counts);
   }
 
-  static std::int64_t floored(std::int64_t value, std::int64_t by) {
-    return value / by - (value % by < 0 ? 1 : 0);
-  }
-
-  static float as_float(double value, const char* what) {
-    if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
-      throw std::invalid_argument(std::string(what) + " is " + std::to_string(value) +
-                                  ", expected what a 32-bit float holds");
-    return static_cast<float>(value);
-  }
-
   SetUp set_up_;
   FrameFinder finder_;
-  Unwrapped time_;
+  framing::DeviceClock time_{1000};
   std::uint64_t other_format_ = 0;
-  std::array<double, kEnvironments> environment_{};
+  framing::Channels channels_;
   std::uint32_t sent_ = 0;
 };
 

@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
-#include "drivers/plugins/kvh1750/crc32_mpeg2.h"
+#include "drivers/plugins/framing/crc32_mpeg2.h"
 #include "drivers/plugins/kvh1750/frame.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
+#include "tests/unit/drivers/hex_bytes.h"
 
 namespace {
 
-using ifog::kvh::crc32_mpeg2;
+using ifog::framing::crc32_mpeg2;
 using ifog::kvh::Frame;
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
@@ -57,21 +58,7 @@ TEST(Crc32Mpeg2, EqualsLongDivision) {
 // Frames packed by hand from the tables of the maker's manual; the CRCs at their ends come from long division
 // done outside this program.
 
-std::vector<std::uint8_t> hex(std::string_view text) {
-  std::vector<std::uint8_t> bytes;
-  int high = -1;
-  for (const char c : text) {
-    if (c == ' ') continue;
-    const int digit = c <= '9' ? c - '0' : c - 'A' + 10;
-    if (high < 0) {
-      high = digit;
-    } else {
-      bytes.push_back(static_cast<std::uint8_t>(high * 16 + digit));
-      high = -1;
-    }
-  }
-  return bytes;
-}
+std::vector<std::uint8_t> hex(std::string_view text) { return ifog::hex_bytes(text); }
 
 //                                 header    gyro 1, -2, 0.5             accelerometer 0, 1, -1      st sq 25
 //                                 CRC
@@ -330,7 +317,8 @@ TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStreamWithItsLastByte) {
     std::vector<Placed> found;
     std::size_t good_bytes = 0;
     for (std::size_t i = 0; i < stream.bytes.size(); ++i)
-      finder.feed({&stream.bytes[i], 1}, [&](const Frame& frame) {
+      finder.feed({&stream.bytes[i], 1}, [&](std::span<const std::uint8_t> seen) {
+        const Frame frame = ifog::kvh::unpack_found(seen);
         std::array<std::uint8_t, ifog::kvh::kLongestFrame> packed{};
         const std::size_t length = pack(frame, packed);
         good_bytes += length;
@@ -359,7 +347,7 @@ TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStreamWithItsLastByte) {
     for (std::size_t i = 0; i < stream.bytes.size();) {
       const std::size_t n =
           std::min<std::size_t>(1 + random() % (seed % 2 == 0 ? 50 : 9000), stream.bytes.size() - i);
-      portions.feed({&stream.bytes[i], n}, [&](const Frame&) { ++count; });
+      portions.feed({&stream.bytes[i], n}, [&](std::span<const std::uint8_t>) { ++count; });
       i += n;
     }
     EXPECT_EQ(count, found.size()) << "seed " << seed;

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-namespace ifog::kvh {
+namespace ifog::framing {
 
 [[nodiscard]] inline std::uint32_t crc32_mpeg2(std::span<const std::uint8_t> bytes) noexcept {
   boost::crc_optimal<32, 0x04C11DB7U, 0xFFFFFFFFU, 0U, false, false> crc;
@@ -18,4 +18,4 @@ namespace ifog::kvh {
   return crc.checksum();
 }
 
-}  // namespace ifog::kvh
+}  // namespace ifog::framing

@@ -1,0 +1,74 @@
+// Walks through the fields of a frame, of either byte order; and numbers made to fit into one.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace ifog::framing {
+
+// Reads from bytes that have been checked to be enough.
+template <std::endian kOrder>
+class FieldReader {
+ public:
+  explicit FieldReader(const std::uint8_t* at) : at_(at) {}
+  // An unsigned number of so many bytes, at most four.
+  std::uint32_t number(unsigned bytes) {
+    std::uint32_t out = 0;
+    for (unsigned i = 0; i < bytes; ++i)
+      out |= std::uint32_t{at_[i]} << 8U * (kOrder == std::endian::big ? bytes - 1 - i : i);
+    at_ += bytes;
+    return out;
+  }
+  // The same in two's complement.
+  std::int32_t whole(unsigned bytes) {
+    const unsigned unused = 32U - 8U * bytes;
+    return std::bit_cast<std::int32_t>(number(bytes) << unused) >> unused;
+  }
+  float real() { return std::bit_cast<float>(number(4)); }
+  void skip(std::size_t bytes) { at_ += bytes; }
+
+ private:
+  const std::uint8_t* at_;
+};
+
+// Writes where there is room.
+template <std::endian kOrder>
+class FieldWriter {
+ public:
+  explicit FieldWriter(std::uint8_t* at) : at_(at) {}
+  // The lowest bytes of it.
+  void number(std::uint32_t value, unsigned bytes) {
+    for (unsigned i = 0; i < bytes; ++i)
+      *at_++ = static_cast<std::uint8_t>(value >> 8U * (kOrder == std::endian::big ? bytes - 1 - i : i));
+  }
+  void whole(std::int32_t value, unsigned bytes) { number(std::bit_cast<std::uint32_t>(value), bytes); }
+  void real(float value) { number(std::bit_cast<std::uint32_t>(value), 4); }
+
+ private:
+  std::uint8_t* at_;
+};
+
+// The nearest count in two's complement of so many bits. Throws std::invalid_argument beyond them.
+inline std::int32_t count_of(double value, unsigned bits, const std::string& what) {
+  const double most = std::ldexp(1.0, static_cast<int>(bits) - 1);
+  const double count = std::round(value);
+  if (!(count >= -most && count < most))
+    throw std::invalid_argument(what + " is " + std::to_string(value) + " counts, expected what " +
+                                std::to_string(bits) + " bits hold");
+  return static_cast<std::int32_t>(count);
+}
+
+// Throws std::invalid_argument for a number too large; what is not finite stays so.
+inline float float_of(double value, const std::string& what) {
+  if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
+    throw std::invalid_argument(what + " is " + std::to_string(value) +
+                                ", expected what a 32-bit float holds");
+  return static_cast<float>(value);
+}
+
+}  // namespace ifog::framing

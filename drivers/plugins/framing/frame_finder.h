@@ -1,0 +1,131 @@
+// Finds the intact frames in a byte stream, whatever is between, before or inside them.
+//
+// At each position that holds a header the frame's bytes are awaited and its checksum is tried. A frame that
+// fails is passed over by ONE byte, not by its length: so a frame whose header lies inside a damaged one is
+// found. While a frame is not yet whole the positions behind its header are tried too: a header that damage
+// or chance has made, and that announces bytes which never come, holds back nothing. So an intact frame comes
+// out with its own last byte, never later. The price is that a whole frame, checksum and all, inside another
+// one's payload would be taken for itself; no device sends that.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace ifog::framing {
+
+struct FrameCounters {
+  std::uint64_t intact = 0;
+  std::uint64_t checksum_failed = 0;  // a header, but the checksum of what follows does not fit
+  std::uint64_t bytes_skipped = 0;    // bytes that are part of no intact frame
+  std::uint64_t bytes_framed = 0;     // bytes of intact frames
+};
+
+// What a header says.
+struct Announced {
+  enum class Is { none, unknown_yet, frame };
+  Is is = Is::none;        // unknown_yet: the bytes so far may begin a header
+  std::size_t length = 0;  // of the whole frame
+};
+
+// A Protocol has
+//   static constexpr std::size_t kLongest;                                  of a frame, bytes
+//   Announced at(std::span<const std::uint8_t>) const noexcept;             of the header there; at least a
+//   byte bool intact(std::span<const std::uint8_t>) const noexcept;              checksum of a whole frame
+template <typename Protocol>
+class FrameFinder {
+ public:
+  explicit FrameFinder(Protocol protocol = {}) : protocol_(protocol) {}
+
+  // Calls found(std::span<const std::uint8_t>) for each intact frame, in order. No allocation.
+  template <typename Found>
+  void feed(std::span<const std::uint8_t> bytes, Found&& found) noexcept {
+    while (!bytes.empty()) {
+      bytes = bytes.subspan(take(bytes));
+      while (const std::optional<Place> place = next()) {
+        found(std::span<const std::uint8_t>(buffer_.data() + place->at, place->length));
+        begin_ = place->at + place->length;
+      }
+    }
+  }
+
+  // Forgets what is half read; the bytes count as skipped.
+  void reset() noexcept {
+    counters_.bytes_skipped += waiting();
+    begin_ = end_ = 0;
+    failed_.reset();
+  }
+
+  [[nodiscard]] const FrameCounters& counters() const { return counters_; }
+  [[nodiscard]] std::size_t waiting() const { return end_ - begin_; }  // bytes that may yet begin a frame
+
+ private:
+  struct Place {
+    std::size_t at, length;
+  };
+
+  std::size_t take(std::span<const std::uint8_t> bytes) noexcept {
+    // next() leaves less than a frame behind, so there is always room after this.
+    if (kBuffer - end_ < bytes.size() && begin_ != 0) {
+      std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+      failed_ >>= begin_;
+      end_ -= begin_;
+      begin_ = 0;
+    }
+    const std::size_t n = std::min(kBuffer - end_, bytes.size());
+    std::memcpy(buffer_.data() + end_, bytes.data(), n);
+    end_ += n;
+    return n;
+  }
+
+  // The next intact frame; without one, what can begin none any more is passed over.
+  std::optional<Place> next() noexcept {
+    std::size_t keep = end_;  // the first position that may yet begin a frame
+    for (std::size_t at = begin_; at < end_; ++at) {
+      if (failed_.test(at)) continue;
+      const std::span<const std::uint8_t> rest(buffer_.data() + at, end_ - at);
+      const Announced announced = protocol_.at(rest);
+      if (announced.is == Announced::Is::frame && rest.size() >= announced.length) {
+        if (protocol_.intact(rest.first(announced.length))) {
+          accept(at, announced.length);
+          return Place{at, announced.length};
+        }
+        ++counters_.checksum_failed;
+        failed_.set(at);  // the sum of a frame is tried once, however the stream comes in portions
+      } else if (announced.is == Announced::Is::none) {
+        failed_.set(at);
+      } else {
+        keep = std::min(keep, at);
+      }
+    }
+    counters_.bytes_skipped += keep - begin_;
+    begin_ = keep;
+    if (begin_ == end_) {
+      begin_ = end_ = 0;
+      failed_.reset();
+    }
+    return std::nullopt;
+  }
+
+  void accept(std::size_t at, std::size_t length) noexcept {
+    counters_.bytes_skipped += at - begin_;
+    counters_.bytes_framed += length;
+    ++counters_.intact;
+  }
+
+  // Large against a frame, so that the remainder is moved to the front seldom.
+  static constexpr std::size_t kBuffer = 2 * Protocol::kLongest + 4096;
+  Protocol protocol_;
+  std::array<std::uint8_t, kBuffer> buffer_{};
+  std::bitset<kBuffer> failed_;  // positions known to begin no frame
+  std::size_t begin_ = 0, end_ = 0;
+  FrameCounters counters_;
+};
+
+}  // namespace ifog::framing

@@ -1,0 +1,219 @@
+// sbgECom frames packed by hand from SBG Systems' description of the protocol; the CRCs at their ends come
+// from the bit-serial definition, outside this program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+#include "drivers/plugins/framing/frame_finder.h"
+#include "drivers/plugins/sbgecom/message.h"
+#include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/hex_bytes.h"
+
+namespace ifog {
+namespace {
+
+const char* const kShort =
+    "FF5A 2C 00 2000"             // sync, IMU_SHORT (44), class 0, 32 bytes of data
+    "001BB700 FF03"               // 12 s; every status bit but the one of the high scale
+    "00001000 0000E0FF 00000800"  // 1, −2, 0.5 m/s²
+    "00000004 000000FE 00000001"  // 1, −0.5, 0.25 rad/s
+    "8019 2112 33";               // 25.5 °C; CRC, end
+const char* const kData =
+    "FF5A 03 00 3A00"             // IMU_DATA (3), 58 bytes
+    "001BB700 BF03"               // 12 s; gyro y (bit 6) has failed its test
+    "0000803F 00000040 00004040"  // accelerations and rates of the moment: 1, 2, 3 …
+    "0000803F 00000040 00004040"  //
+    "0000CC41"                    // 25.5 °C
+    "0000003F 000080BF 00001C41"  // velocity increments by the interval: 0.5, −1, 9.75 m/s²
+    "0000003E 000080BE 0000003F"  // angle increments by the interval: 0.125, −0.25, 0.5 rad/s
+    "5BF1 33";
+const char* const kHighScale =
+    "FF5A 2C 00 2000 00000000 FF07 00000000 00000000 00000000 2EBFBB00 00000000 00000000 0000 AADE 33";
+
+std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes, std::int64_t arrival_ns = 42) {
+  std::vector<ifog_sample> samples;
+  driver.decode_bytes(bytes, arrival_ns, [&](const ifog_sample& sample) { samples.push_back(sample); });
+  return samples;
+}
+
+// As the protocol's description gives it: polynomial 0x8408, from 0, lowest bit first.
+std::uint16_t by_bits(std::span<const std::uint8_t> bytes) {
+  unsigned crc = 0;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? crc >> 1U ^ 0x8408U : crc >> 1U;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+TEST(SbgEcom, TheCrcHasTheCatalogueCheckValue) {
+  const Bytes digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(sbgecom::crc16(digits), 0x2189);  // CRC-16/KERMIT
+}
+
+TEST(SbgEcom, ImuShortPackedByHand) {
+  DriverInstance driver = make_driver("sbgecom", {});
+  const auto samples = decode(driver, hex_bytes(kShort));
+  ASSERT_EQ(samples.size(), 1U);
+  const ifog_sample& s = samples[0];
+  EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_DEVICE_TIME});
+  EXPECT_EQ(s.device_time_ns, 12'000'000'000);
+  EXPECT_EQ(s.status, 0x3FFU);
+  EXPECT_EQ(s.valid_axes, 7U);
+  EXPECT_EQ(s.value[0], 1.0);
+  EXPECT_EQ(s.value[1], -0.5);
+  EXPECT_EQ(s.value[2], 0.25);
+  EXPECT_EQ(s.environment_fresh, 0b1111U);
+  EXPECT_EQ(s.environment[0], 1.0);
+  EXPECT_EQ(s.environment[1], -2.0);
+  EXPECT_EQ(s.environment[2], 0.5);
+  EXPECT_EQ(s.environment[3], 25.5);
+}
+
+TEST(SbgEcom, ImuDataPackedByHandGivesTheIncrements) {
+  DriverInstance driver = make_driver("sbgecom", {});
+  const auto samples = decode(driver, hex_bytes(kData));
+  ASSERT_EQ(samples.size(), 1U);
+  const ifog_sample& s = samples[0];
+  EXPECT_EQ(s.valid_axes, 0b101U);
+  EXPECT_EQ(s.value[0], 0.125);
+  EXPECT_EQ(s.value[1], -0.25);
+  EXPECT_EQ(s.value[2], 0.5);
+  EXPECT_EQ(s.environment[0], 0.5);
+  EXPECT_EQ(s.environment[1], -1.0);
+  EXPECT_EQ(s.environment[2], 9.75);
+  EXPECT_EQ(s.environment[3], 25.5);
+}
+
+TEST(SbgEcom, TheHighScaleIsTheStatusBits) {
+  DriverInstance driver = make_driver("sbgecom", {});
+  EXPECT_EQ(decode(driver, hex_bytes(kHighScale)).at(0).value[0], 1.0);
+  // 40 rad/s do not fit into the standard scale: the encoder goes over to the high one.
+  ifog_sample sample{};
+  sample.flags = IFOG_SAMPLE_DEVICE_TIME;
+  sample.valid_axes = 7;
+  sample.value[1] = -40.0;
+  Bytes bytes;
+  driver.encode_bytes(sample, bytes);
+  const auto back = decode(driver, bytes);
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0].status & 0x400U, 0x400U);
+  EXPECT_NEAR(back[0].value[1], -40.0, 1.0 / 12304174.0);
+  sample.value[1] = 200.0;
+  EXPECT_THROW(driver.encode_bytes(sample, bytes), std::runtime_error);
+}
+
+TEST(SbgEcom, StatusBitsInvalidate) {
+  DriverInstance driver = make_driver("sbgecom", {});
+  for (const auto& [status, valid, fresh] : {std::tuple{0x3FE, 0U, 0U},    // no communication with the IMU
+                                             {0x1FF, 0U, 0b1111U},         // a gyro out of range
+                                             {0x2FF, 7U, 0b1000U},         // an accelerometer out of range
+                                             {0x3DF, 0b110U, 0b1111U}}) {  // gyro x
+    Bytes frame = hex_bytes(kShort);
+    frame[10] = static_cast<std::uint8_t>(status & 0xFF);
+    frame[11] = static_cast<std::uint8_t>(status >> 8);
+    const std::uint16_t crc = by_bits(std::span(frame).subspan(2, 36));
+    frame[38] = static_cast<std::uint8_t>(crc & 0xFFU);
+    frame[39] = static_cast<std::uint8_t>(crc >> 8U);
+    const auto samples = decode(driver, frame);
+    ASSERT_EQ(samples.size(), 1U);
+    EXPECT_EQ(samples[0].valid_axes, valid) << status;
+    EXPECT_EQ(samples[0].environment_fresh, fresh) << status;
+  }
+}
+
+TEST(SbgEcom, OneOfTwoLogsIsChosen) {
+  Bytes both = hex_bytes(kShort);
+  const Bytes data = hex_bytes(kData);
+  both.insert(both.end(), data.begin(), data.end());
+  DriverInstance brief = make_driver("sbgecom", {{"message", "imu_short"}});
+  EXPECT_EQ(decode(brief, both).size(), 1U);
+  EXPECT_EQ(brief.counters().frames_good, 2U);
+  EXPECT_EQ(brief.counters().bytes_skipped, 0U);
+}
+
+TEST(SbgEcom, TheStampRunsOnOverItsWrap) {
+  DriverInstance driver = make_driver("sbgecom", {});
+  ifog_sample sample{};
+  sample.flags = IFOG_SAMPLE_DEVICE_TIME;
+  sample.valid_axes = 7;
+  Bytes bytes;
+  const std::int64_t wrap_ns = (std::int64_t{1} << 32U) * 1000;
+  for (const std::int64_t time_ns : {wrap_ns - 5'000'000, wrap_ns, wrap_ns + 5'000'000}) {
+    sample.device_time_ns = time_ns;
+    driver.encode_bytes(sample, bytes);
+  }
+  const auto samples = decode(driver, bytes, 0);
+  ASSERT_EQ(samples.size(), 3U);
+  EXPECT_EQ(samples[1].device_time_ns - samples[0].device_time_ns, 5'000'000);
+  EXPECT_EQ(samples[2].device_time_ns - samples[0].device_time_ns, 10'000'000);
+}
+
+TEST(SbgEcom, EncodesTheHandPackedFrameAgain) {
+  DriverInstance driver = make_driver("sbgecom", {});
+  const Bytes bytes = hex_bytes(kShort);
+  Bytes again;
+  driver.encode_bytes(decode(driver, bytes).at(0), again);
+  EXPECT_EQ(again, bytes);
+}
+
+Bytes framed(std::uint8_t message, std::uint8_t kind, const Bytes& data) {
+  Bytes out{0xFF,
+            0x5A,
+            message,
+            kind,
+            static_cast<std::uint8_t>(data.size() & 0xFFU),
+            static_cast<std::uint8_t>(data.size() >> 8U)};
+  out.insert(out.end(), data.begin(), data.end());
+  const std::uint16_t crc = by_bits(std::span(out).subspan(2));
+  out.insert(out.end(), {static_cast<std::uint8_t>(crc & 0xFFU), static_cast<std::uint8_t>(crc >> 8U), 0x33});
+  return out;
+}
+
+// Headers that announce up to 4086 bytes which never come hold nothing back.
+TEST(SbgEcom, EveryIntactFrameComesOutOfADamagedStream) {
+  constexpr std::uint8_t kClasses[] = {0, 1, 2, 3, 4, 5, 0x10, 0x90};
+  const auto good = [](unsigned message, unsigned kind, std::size_t length) {
+    const unsigned plain = kind & 0x7FU;
+    if ((plain > 5 && plain != 0x10) || length > 4086) return false;
+    return kind != 0 || ((message != 44 || length == 32) && (message != 3 || length == 58));
+  };
+  Frames frames;
+  frames.header = [&](Random& random) {
+    return Bytes{0xFF,
+                 0x5A,
+                 static_cast<std::uint8_t>(random()),
+                 kClasses[random() % 8],
+                 static_cast<std::uint8_t>(random()),
+                 static_cast<std::uint8_t>(random() % 20)};
+  };
+  frames.frame = [&](Random& random) {
+    const auto which = random() % 3;
+    const std::uint8_t message = which == 0   ? 44
+                                 : which == 1 ? 3
+                                              : static_cast<std::uint8_t>(4 + random() % 36);
+    const std::uint8_t kind = which < 2 ? std::uint8_t{0} : kClasses[random() % 8];
+    Bytes data;
+    const std::size_t length = which == 0 ? 32 : which == 1 ? 58 : random() % 200;
+    while (data.size() < length) {
+      data.push_back(static_cast<std::uint8_t>(random()));
+      if (random() % 64 == 0 && data.size() + 2 <= length) data.insert(data.end(), {0xFF, 0x5A});
+    }
+    return framed(message, kind, data);
+  };
+  frames.length = [&](std::span<const std::uint8_t> b) -> std::size_t {
+    if (b.size() < 9 || b[0] != 0xFF || b[1] != 0x5A) return 0;
+    const std::size_t length = b[4] + 256U * b[5];
+    if (!good(b[2], b[3], length) || b.size() < length + 9) return 0;
+    const unsigned crc = by_bits(b.subspan(2, 4 + length));
+    return b[6 + length] == (crc & 0xFFU) && b[7 + length] == crc >> 8U && b[8 + length] == 0x33 ? length + 9
+                                                                                                 : 0;
+  };
+  every_intact_frame_comes_out(frames, 100, [] { return framing::FrameFinder<sbgecom::Protocol>(); });
+}
+
+}  // namespace
+}  // namespace ifog

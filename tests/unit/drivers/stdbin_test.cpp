@@ -1,0 +1,218 @@
+// STDBIN telegrams packed by hand from iXblue's description of the protocol, their sums added up outside this
+// program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+#include "drivers/plugins/framing/frame_finder.h"
+#include "drivers/plugins/stdbin/telegram.h"
+#include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/hex_bytes.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+const char* const kVersion2 =
+    "4958 02"                     // 'I' 'X', version 2
+    "00000020 00000000"           // navigation block 5 (rotation rate); no external sensor
+    "0025 00000005 00000123"      // 37 bytes, 500 µs, counter 291
+    "40000000 BF800000 3F000000"  // 2, −1, 0.5 °/s
+    "000002CF";
+const char* const kVersion4 =
+    "4958 04"
+    "12004001 00000004 00000000"  // navigation blocks 0, 14, 25, 28; extended block 2; no external sensor
+    "0038 0057"                   // 56 bytes of navigation blocks, 87 bytes in all
+    "00012345 0001ABCD"           // 7.4565 s, counter 109517
+    "41200000 3F800000 BF800000"  // attitude: 10, 1, −1 °
+    "80000001 00000000"           // sensor status
+    "41C80000 41D00000 41D80000"  // gyros 25 °C, accelerometers 26 °C, board 27 °C
+    "3F800000 C0000000 411CE80A"  // 1, −2, 9.806650 m/s²
+    "3E800000 BE000000 3D800000"  // 0.25, −0.125, 0.0625 °/s, Earth's rotation included
+    "00000E87";
+
+std::uint32_t sum(std::span<const std::uint8_t> bytes) {
+  return std::accumulate(bytes.begin(), bytes.end(), 0U);
+}
+
+std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes, std::int64_t arrival_ns = 42) {
+  std::vector<ifog_sample> samples;
+  driver.decode_bytes(bytes, arrival_ns, [&](const ifog_sample& sample) { samples.push_back(sample); });
+  return samples;
+}
+
+TEST(StdBin, Version2PackedByHand) {
+  DriverInstance driver = make_driver("stdbin", {{"rate_block", "compensated"}});
+  const auto samples = decode(driver, hex_bytes(kVersion2));
+  ASSERT_EQ(samples.size(), 1U);
+  const ifog_sample& s = samples[0];
+  EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME});
+  EXPECT_EQ(s.sequence, 0x123U);
+  EXPECT_EQ(s.device_time_ns, 500'000);
+  EXPECT_EQ(s.valid_axes, 7U);
+  EXPECT_DOUBLE_EQ(s.value[0], 2.0 * kDegree);
+  EXPECT_DOUBLE_EQ(s.value[1], -1.0 * kDegree);
+  EXPECT_DOUBLE_EQ(s.value[2], 0.5 * kDegree);
+  EXPECT_EQ(s.environment_fresh, 0U);
+}
+
+TEST(StdBin, Version4PackedByHand) {
+  DriverInstance driver = make_driver("stdbin", {});
+  const auto samples = decode(driver, hex_bytes(kVersion4));
+  ASSERT_EQ(samples.size(), 1U);
+  const ifog_sample& s = samples[0];
+  EXPECT_EQ(s.sequence, 0xABCDU);  // of 0x1ABCD
+  EXPECT_EQ(s.device_time_ns, 7'456'500'000);
+  EXPECT_EQ(s.status, 0x80000001U);
+  EXPECT_DOUBLE_EQ(s.value[0], 0.25 * kDegree);
+  EXPECT_DOUBLE_EQ(s.value[1], -0.125 * kDegree);
+  EXPECT_DOUBLE_EQ(s.value[2], 0.0625 * kDegree);
+  EXPECT_EQ(s.environment_fresh, 0b111111U);
+  EXPECT_EQ(s.environment[0], 1.0);
+  EXPECT_EQ(s.environment[1], -2.0);
+  EXPECT_NEAR(s.environment[2], 9.80665, 1e-6);
+  EXPECT_EQ(s.environment[3], 25.0);
+  EXPECT_EQ(s.environment[4], 26.0);
+  EXPECT_EQ(s.environment[5], 27.0);
+}
+
+TEST(StdBin, ATelegramWithoutTheWantedRateIsCounted) {
+  DriverInstance driver = make_driver("stdbin", {{"rate_block", "raw"}});
+  EXPECT_TRUE(decode(driver, hex_bytes(kVersion2)).empty());
+  EXPECT_EQ(driver.counters().frames_format, 1U);
+  EXPECT_EQ(driver.counters().frames_good, 0U);
+  EXPECT_EQ(driver.counters().bytes_framed, 37U);
+}
+
+// Masks and lengths that contradict each other are no header, whatever the sum says.
+TEST(StdBin, AWrongLengthIsNoTelegram) {
+  DriverInstance driver = make_driver("stdbin", {{"rate_block", "compensated"}});
+  Bytes telegram = hex_bytes(kVersion2);
+  telegram[6] = 0x21;  // and block 0
+  telegram[36] = static_cast<std::uint8_t>(telegram[36] + 1);
+  EXPECT_EQ(sum(std::span(telegram).first(33)), 0x2D0U);
+  EXPECT_TRUE(decode(driver, telegram).empty());
+}
+
+TEST(StdBin, TheTimeOfDayRunsOnOverMidnight) {
+  DriverInstance driver = make_driver("stdbin", {});
+  ifog_sample sample{};
+  sample.flags = IFOG_SAMPLE_DEVICE_TIME;
+  sample.valid_axes = 7;
+  Bytes bytes;
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  for (const std::int64_t time_ns : {kDay_ns - 10'000'000, kDay_ns, kDay_ns + 10'000'000}) {
+    sample.device_time_ns = time_ns;
+    driver.encode_bytes(sample, bytes);
+  }
+  const auto samples = decode(driver, bytes, 0);
+  ASSERT_EQ(samples.size(), 3U);
+  EXPECT_EQ(samples[1].device_time_ns - samples[0].device_time_ns, 10'000'000);
+  EXPECT_EQ(samples[2].device_time_ns - samples[1].device_time_ns, 10'000'000);
+}
+
+TEST(StdBin, EncodesEveryVersionSoThatItReadsBack) {
+  for (const char* version : {"2", "3", "4", "5"}) {
+    const std::string block = version[0] == '2' ? "compensated" : "raw";
+    DriverInstance driver = make_driver("stdbin", {{"version", version}, {"rate_block", block}});
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_DEVICE_TIME | IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = 77;
+    sample.device_time_ns = 1'234'500'000;
+    sample.valid_axes = 0b101;
+    sample.value[0] = 0.125;
+    sample.value[2] = -0.5;
+    for (double& each : sample.environment) each = std::nan("");
+    sample.environment[3] = 30.5;
+    Bytes bytes;
+    driver.encode_bytes(sample, bytes);
+    EXPECT_EQ(bytes[2], version[0] - '0');
+    const auto back = decode(driver, bytes);
+    ASSERT_EQ(back.size(), 1U) << version;
+    EXPECT_EQ(back[0].sequence, 77U);
+    EXPECT_EQ(back[0].device_time_ns, 1'234'500'000);
+    EXPECT_EQ(back[0].valid_axes, 0b101U);
+    EXPECT_NEAR(back[0].value[0], 0.125, 1e-8);
+    EXPECT_NEAR(back[0].value[2], -0.5, 1e-7);
+    EXPECT_EQ(back[0].environment_fresh, 0b1000U);
+    EXPECT_EQ(back[0].environment[3], 30.5);
+  }
+  EXPECT_THROW(make_driver("stdbin", {{"version", "2"}}), std::runtime_error);
+}
+
+// The blocks' lengths once more, by hand from the protocol's tables.
+constexpr unsigned kNavigation[] = {12, 12, 16, 8,  12, 12, 12, 21, 16, 12, 12, 8,  8,  4,  8, 16,
+                                    12, 4,  4,  12, 4,  12, 12, 12, 8,  12, 16, 12, 12, 12, 12};
+constexpr unsigned kExtended[] = {12, 12, 12, 12, 12, 21, 16};
+constexpr unsigned kExternal[] = {5,  46, 46, 46, 13, 13, 49, 49, 49, 12, 37, 33, 8,  8,
+                                  41, 41, 41, 41, 9,  9,  9,  37, 33, 0,  16, 17, 17, 12};
+
+template <std::size_t kCount>
+std::size_t length_of(std::uint32_t mask, const unsigned (&lengths)[kCount]) {
+  std::size_t out = 0;
+  for (std::size_t bit = 0; bit < kCount; ++bit) out += (mask >> bit & 1U) != 0 ? lengths[bit] : 0U;
+  return out;
+}
+
+void number(Bytes& out, std::size_t value, int bytes) {
+  for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8)
+    out.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+std::size_t number_at(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t count) {
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < count; ++i) out = out << 8U | bytes[at + i];
+  return out;
+}
+
+TEST(StdBin, EveryIntactTelegramComesOutOfADamagedStream) {
+  Frames frames;
+  frames.frame = [](Random& random) {
+    const unsigned version = 2 + random() % 4;
+    const std::uint32_t navigation = random() & random() & 0x7FFFFFFFU;
+    const std::uint32_t extended = version > 2 ? random() & 0x7FU : 0;
+    const std::uint32_t external = random() & random() & random() & 0x0F7FFFFFU;
+    const std::size_t inner = length_of(navigation, kNavigation) + length_of(extended, kExtended);
+    const std::size_t blocks = inner + length_of(external, kExternal);
+    Bytes out{'I', 'X', static_cast<std::uint8_t>(version)};
+    number(out, navigation, 4);
+    if (version > 2) number(out, extended, 4);
+    number(out, external, 4);
+    if (version > 3) number(out, inner, 2);
+    number(out, out.size() + 10 + blocks + 4, 2);
+    number(out, random(), 4);
+    number(out, random(), 4);
+    for (std::size_t i = 0; i < blocks; ++i)
+      out.push_back(static_cast<std::uint8_t>(random() % 8 == 0 ? 'I' + 15 * (random() % 2) : random()));
+    number(out, sum(out), 4);
+    return out;
+  };
+  frames.header = [&](Random& random) {
+    Bytes out = frames.frame(random);
+    out.resize(27);
+    return out;
+  };
+  frames.length = [](std::span<const std::uint8_t> b) -> std::size_t {
+    if (b.size() < 25 || b[0] != 'I' || b[1] != 'X' || b[2] < 2 || b[2] > 5) return 0;
+    const std::size_t header = b[2] == 2 ? 21 : b[2] == 3 ? 25 : 27;
+    if (b.size() < header + 4) return 0;
+    const auto navigation = static_cast<std::uint32_t>(number_at(b, 3, 4));
+    const auto extended = b[2] > 2 ? static_cast<std::uint32_t>(number_at(b, 7, 4)) : 0U;
+    const auto external = static_cast<std::uint32_t>(number_at(b, b[2] > 2 ? 11 : 7, 4));
+    if ((navigation & 0x80000000U) != 0 || extended > 0x7FU || (external & 0xF0800000U) != 0) return 0;
+    const std::size_t inner = length_of(navigation, kNavigation) + length_of(extended, kExtended);
+    const std::size_t whole = header + inner + length_of(external, kExternal) + 4;
+    if (b[2] > 3 && number_at(b, 15, 2) != inner) return 0;
+    if (number_at(b, header - 10, 2) != whole || b.size() < whole) return 0;
+    return number_at(b, whole - 4, 4) == sum(b.first(whole - 4)) ? whole : 0;
+  };
+  every_intact_frame_comes_out(frames, 100, [] { return framing::FrameFinder<stdbin::Protocol>(); });
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,238 @@
+// STIM300 datagrams packed by hand from the tables of the maker's datasheet (TS1524 rev. 31); the CRCs at
+// their ends come from long division done outside this program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+#include "drivers/plugins/framing/frame_finder.h"
+#include "drivers/plugins/stim300/datagram.h"
+#include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/hex_bytes.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+const char* const kA7 =
+    "A7"                       // rate, acceleration, inclination and temperature
+    "004000 FF6000 002000 00"  // gyro: 1, −2.5, 0.5 °/s; status
+    "080000 FC0000 000000 00"  // accelerometer of 10 g: 1, −0.5, 0 g; status
+    "400000 000000 C00000 00"  // inclinometer: 1, 0, −1 g; status
+    "1980 F5C0 0000 00"        // gyro temperatures: 25.5, −10.25, 0 °C; status
+    "1E00 1F00 2000 00"        // accelerometer temperatures: 30, 31, 32 °C; status
+    "1400 1500 1600 00"        // inclinometer temperatures: 20, 21, 22 °C; status
+    "0A 0204 6E6DE96F";        // counter 10, latency 516 µs, CRC (with one dummy byte)
+const char* const k90 = "90 200000 E00000 000001 14 FE 0010 E9BEC564";  // rates alone, two dummy bytes
+const char* const kF1 =
+    "F1 004000 000000 000000 00 080000 080000 080000 00"
+    "000264 00 04 0100 DF9CF924";  // PPS 612 µs and its status; counter 4, latency 256; no dummy byte
+
+std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes) {
+  std::vector<ifog_sample> samples;
+  driver.decode_bytes(bytes, 42, [&](const ifog_sample& sample) { samples.push_back(sample); });
+  return samples;
+}
+
+// As the datasheet's section 5.5.7 reads: long division over the bytes and the dummy bytes.
+std::uint32_t long_division(Bytes bytes) {
+  while (bytes.size() % 4 != 0) bytes.push_back(0);
+  std::uint32_t remainder = 0xFFFFFFFFU;
+  for (const std::uint8_t byte : bytes)
+    for (int bit = 7; bit >= 0; --bit) {
+      const bool in = ((byte >> bit) & 1) != 0, out = (remainder >> 31U) != 0;
+      remainder <<= 1U;
+      if (in != out) remainder ^= 0x04C11DB7U;
+    }
+  return remainder;
+}
+
+void append_crc(Bytes& bytes) {
+  const std::uint32_t crc = long_division(bytes);
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(crc >> shift));
+}
+
+TEST(Stim300, ADatagramPackedByHand) {
+  DriverInstance driver = make_driver("stim300", {{"rate_hz", "1000"}});
+  const auto samples = decode(driver, hex_bytes(kA7));
+  ASSERT_EQ(samples.size(), 1U);
+  const ifog_sample& s = samples[0];
+  EXPECT_EQ(s.arrival_ns, 42);
+  EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE});
+  EXPECT_EQ(s.sequence, 5U);  // two internal samples each
+  EXPECT_EQ(driver.description().sequence_modulus, 128U);
+  EXPECT_EQ(s.valid_axes, 7U);
+  EXPECT_DOUBLE_EQ(s.value[0], 1.0 * kDegree);
+  EXPECT_DOUBLE_EQ(s.value[1], -2.5 * kDegree);
+  EXPECT_DOUBLE_EQ(s.value[2], 0.5 * kDegree);
+  const double environment[14] = {9.80665, -4.903325, 0.0,  9.80665, 0.0,  -9.80665, 25.5,
+                                  -10.25,  0.0,       30.0, 31.0,    32.0, 21.0,     516.0};
+  for (int i = 0; i < 14; ++i) EXPECT_DOUBLE_EQ(s.environment[i], environment[i]) << i;
+  EXPECT_TRUE(std::isnan(s.environment[14]));
+  EXPECT_TRUE(std::isnan(s.environment[15]));
+  EXPECT_EQ(s.environment_fresh, 0x3FFFU);
+  EXPECT_NEAR(driver.description().full_scale[0], 400 * kDegree, 1e-12);
+}
+
+// The datasheet's example of an error (figure 9-2): overload of the z-channel, bits 4 and 2.
+TEST(Stim300, AnOverloadInvalidatesItsAxisOnly) {
+  DriverInstance driver = make_driver("stim300", {});
+  const auto samples = decode(driver, hex_bytes(k90));
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].valid_axes, 0b011U);
+  EXPECT_EQ(samples[0].status, 0x14U);
+  EXPECT_DOUBLE_EQ(samples[0].value[0], 128 * kDegree);
+  EXPECT_DOUBLE_EQ(samples[0].value[1], -128 * kDegree);
+  EXPECT_DOUBLE_EQ(samples[0].value[2], kDegree / 16384);
+  EXPECT_EQ(samples[0].sequence, 254U);
+}
+
+TEST(Stim300, StatusBitsInvalidate) {
+  DriverInstance driver = make_driver("stim300", {});
+  for (const auto& [status, valid] :
+       {std::pair{0x80, 0U}, {0x40, 0U}, {0x20, 7U}, {0x0A, 0b101U}, {0x08, 0U}, {0x0F, 0U}}) {
+    Bytes datagram = hex_bytes(k90);
+    datagram.resize(datagram.size() - 4);
+    datagram[10] = static_cast<std::uint8_t>(status);
+    append_crc(datagram);
+    const auto samples = decode(driver, datagram);
+    ASSERT_EQ(samples.size(), 1U);
+    EXPECT_EQ(samples[0].valid_axes, valid) << status;
+  }
+}
+
+TEST(Stim300, PpsAndLatency) {
+  DriverInstance driver = make_driver("stim300", {{"datagram", "0xF1"}, {"rate_hz", "500"}});
+  const auto samples = decode(driver, hex_bytes(kF1));
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].environment[14], 612.0);
+  EXPECT_EQ(samples[0].environment[13], 256.0);
+  EXPECT_EQ(samples[0].sequence, 1U);
+}
+
+TEST(Stim300, IncrementalAndIntegratedAngles) {
+  DriverInstance increments = make_driver("stim300", {{"output", "incremental_angle"}});
+  EXPECT_EQ(increments.description().kind, unsigned{IFOG_DELTA_ANGLE});
+  EXPECT_DOUBLE_EQ(decode(increments, hex_bytes(k90)).at(0).value[0], kDegree);  // 2^21 counts
+  DriverInstance angle = make_driver("stim300", {{"output", "integrated_angle"}});
+  EXPECT_EQ(angle.description().kind, unsigned{IFOG_ANGLE});
+  EXPECT_DOUBLE_EQ(angle.description().angle_wrap_rad, 8 * kDegree);
+  // An angle of 5° is sent as −3°.
+  ifog_sample sample{};
+  sample.valid_axes = 7;
+  sample.value[0] = 5 * kDegree;
+  Bytes bytes;
+  angle.encode_bytes(sample, bytes);
+  EXPECT_NEAR(decode(angle, bytes).at(0).value[0], -3 * kDegree, 1e-8);
+}
+
+TEST(Stim300, VelocityIncrementsBecomeSpecificForce) {
+  DriverInstance driver = make_driver(
+      "stim300", {{"acceleration", "delta_velocity"}, {"acceleration_range", "30"}, {"rate_hz", "250"}});
+  // Equation 4 for 30 g: 2^21 counts are 1 m/s; 2^19 of them in 4 ms are 62.5 m/s².
+  EXPECT_DOUBLE_EQ(decode(driver, hex_bytes(kA7)).at(0).environment[0], 62.5);
+  // Equation 6: 2^25 counts are 1 m/s.
+  EXPECT_DOUBLE_EQ(decode(driver, hex_bytes(kA7)).at(0).environment[3], 31.25);
+}
+
+TEST(Stim300, AnotherDatagramThanConfiguredIsCountedNotTaken) {
+  DriverInstance driver = make_driver("stim300", {{"datagram", "0xA7"}});
+  EXPECT_TRUE(decode(driver, hex_bytes(k90)).empty());
+  EXPECT_EQ(decode(driver, hex_bytes(kA7)).size(), 1U);
+  EXPECT_EQ(driver.counters().frames_format, 1U);
+  EXPECT_EQ(driver.counters().frames_good, 1U);
+}
+
+TEST(Stim300, TheTerminationBelongsToTheDatagram) {
+  DriverInstance driver = make_driver("stim300", {{"termination", "crlf"}});
+  Bytes bytes = hex_bytes(kA7);
+  const std::size_t length = bytes.size();
+  bytes.insert(bytes.end(), {'\r', '\n'});
+  EXPECT_EQ(decode(driver, bytes).size(), 1U);
+  EXPECT_EQ(driver.counters().bytes_framed, length + 2);
+  EXPECT_EQ(driver.counters().bytes_skipped + driver.counters().bytes_pending, 0U);
+}
+
+TEST(Stim300, EncodesTheHandPackedDatagramsAgain) {
+  for (const auto& [datagram, text] : {std::pair{"0xA7", kA7}, {"0xF1", kF1}}) {
+    DriverInstance driver = make_driver("stim300", {{"datagram", datagram}, {"rate_hz", "1000"}});
+    const Bytes bytes = hex_bytes(text);
+    Bytes again;
+    ifog_sample sample = decode(driver, bytes).at(0);
+    driver.encode_bytes(sample, again);
+    // Three temperatures of the inclinometer are passed on as their mean.
+    if (bytes[0] == 0xA7) {
+      EXPECT_EQ(hex_bytes("1500 1500 1500"), Bytes(again.begin() + 45, again.begin() + 51));
+      again = Bytes(again.begin(), again.begin() + 45);
+      EXPECT_EQ(again, Bytes(bytes.begin(), bytes.begin() + 45));
+    } else {
+      EXPECT_EQ(again, bytes);
+    }
+  }
+}
+
+TEST(Stim300, RefusesInOneLine) {
+  const auto complaint = [](const DriverSettings& settings) -> std::string {
+    try {
+      make_driver("stim300", settings);
+      return "accepted";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(complaint({{"datagram", "0xBC"}}).find("datagram is '0xBC', expected auto or the identifier"),
+            std::string::npos)
+      << complaint({{"datagram", "0xBC"}});
+  EXPECT_NE(complaint({{"rate_hz", "300"}}).find("rate_hz is '300'"), std::string::npos);
+  DriverInstance driver = make_driver("stim300", {});
+  ifog_sample sample{};
+  sample.valid_axes = 1;
+  sample.value[0] = 600 * kDegree;
+  Bytes bytes;
+  EXPECT_THROW(driver.encode_bytes(sample, bytes), std::runtime_error);
+  EXPECT_TRUE(bytes.empty());
+}
+
+// Identifier, and bytes before the CRC: tables 5-20 and 5-21 added up by hand.
+constexpr std::pair<int, std::size_t> kLengths[] = {
+    {0x90, 14}, {0x91, 24}, {0x92, 24}, {0x93, 34}, {0x94, 21}, {0xA5, 38}, {0xA6, 38}, {0xA7, 55},
+    {0xF0, 18}, {0xF1, 28}, {0xF2, 28}, {0xF3, 38}, {0xF4, 25}, {0xF5, 42}, {0xF6, 42}, {0xF7, 59},
+    {0x98, 18}, {0x99, 28}, {0x9A, 28}, {0x9B, 38}, {0x9C, 25}, {0xAD, 42}, {0xAE, 42}, {0xAF, 59}};
+
+TEST(Stim300, EveryIntactDatagramComesOutOfADamagedStream) {
+  for (const bool terminated : {false, true}) {
+    Frames frames;
+    frames.header = [](Random& random) {
+      return Bytes{static_cast<std::uint8_t>(kLengths[random() % 24].first)};
+    };
+    frames.frame = [terminated](Random& random) {
+      const auto& [id, covered] = kLengths[random() % 24];
+      Bytes out{static_cast<std::uint8_t>(id)};
+      while (out.size() < covered) out.push_back(static_cast<std::uint8_t>(random() % 256));
+      append_crc(out);
+      if (terminated) out.insert(out.end(), {'\r', '\n'});
+      return out;
+    };
+    frames.length = [terminated](std::span<const std::uint8_t> bytes) -> std::size_t {
+      for (const auto& [id, covered] : kLengths) {
+        const std::size_t length = covered + 4 + (terminated ? 2U : 0U);
+        if (bytes[0] != id || bytes.size() < length) continue;
+        Bytes again(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(covered));
+        append_crc(again);
+        if (terminated) again.insert(again.end(), {'\r', '\n'});
+        if (std::equal(again.begin(), again.end(), bytes.begin())) return length;
+      }
+      return 0;
+    };
+    every_intact_frame_comes_out(frames, 100, [terminated] {
+      return framing::FrameFinder<stim300::Protocol>(stim300::Protocol{terminated});
+    });
+  }
+}
+
+}  // namespace
+}  // namespace ifog
