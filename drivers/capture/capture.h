@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/capture/csv_layout.h"
+
 namespace ifog {
 
 struct CaptureColumn {
@@ -22,6 +24,7 @@ struct Capture {
   std::vector<std::vector<double>> rate_radps;            // by axis
   std::vector<std::vector<double>> reference_rate_radps;  // by axis, an empty vector where there is none
   std::vector<CaptureColumn> channels;                    // every other column
+  std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
@@ -34,6 +37,7 @@ struct Table {
   std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
   std::size_t header_line = 0;         // 0: not read from a text
   std::vector<std::size_t> skipped;    // for each comment or blank line behind the header, the rows before it
+  std::vector<std::string> notices;    // of the reading: what may be meant otherwise
 };
 
 // Refuses what read_capture refuses, but needs no rate column.
@@ -47,9 +51,10 @@ std::size_t line_of_row(const Table& table, std::size_t row);
 // with another number of cells, a .gz that ends early.
 Capture read_capture(const std::string& path);
 
-// The same of a text already at hand; `path` stands for the file in messages.
-Table parse_table(std::string_view text, const std::string& path);
-Capture parse_capture(std::string_view text, const std::string& path);
+// The same of a text already at hand; `path` stands for the file in messages. `layout` says what a file means
+// that is no capture by its header; where a header is nearly one, the message has the options to type.
+Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout = {});
+Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 
 // Shortest text that reads back as the same double. Writes beside the target, fsyncs, renames.
 void write_capture(const Capture& capture, const std::string& path);

@@ -23,11 +23,11 @@ struct Convert {
 void Convert::run() const {
   will_write("TO", to);
   InputFile file(from);
-  const bool from_csv = file_kind(file) == FileKind::capture;
+  const bool from_csv = input.has_layout() || file_kind(file) == FileKind::capture;
   // Standard output has no ending: it takes what the capture is not.
   const bool to_csv =
       file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_csv && input.has_driver()));
-  if (from_csv && !to_csv) return write_recording(parse_capture(file.text(), from), from, to, input, axis);
+  if (from_csv && !to_csv) return write_recording(input.parse(file.text(), from), from, to, input, axis);
   if (!to_csv)
     throw CLI::ValidationError(to, "expected a .csv or .csv.gz file, or a capture in .csv to convert from");
   const Capture capture = input.read(file);

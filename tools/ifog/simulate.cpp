@@ -63,7 +63,7 @@ void add_simulate(CLI::App& app) {
       "--truth", state->truth,
       "Write what the capture does not tell: .json the parameters, .csv the true rate and each effect");
   CLI::Option* seed = command->add_option("--seed", state->seed, "Instead of the scenario's");
-  state->encoding.add_to(*command);
+  state->encoding.add_driver_to(*command);
   command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
       ->type_name("NAME");
   command->footer("Example:\n  ifog simulate rest.toml --output rest.csv.gz --truth rest.truth.json");

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/plugins/dbc/units.h"
+#include "drivers/units/units.h"
 
 namespace ifog::dbc {
 namespace {

@@ -114,6 +114,27 @@ class Checks:
             worst = max(abs(a - b) for a, b in zip(rate, found))
             assert worst <= 1.2e-7 * max(map(abs, rate)) + half_a_count, f"{name}: differs by {worst}"
 
+    def check_any_csv(self):
+        """Another maker's file: other names, units, separator, decimal commas, byte-order mark; and the same in the end."""
+        theirs, ours = self.folder / "theirs.txt", self.folder / "ours.csv"
+        rows = [(20 * i, math.sin(0.1 * i), 68 + 0.1 * i) for i in range(500)]
+        cells = "".join(f"{t};{rate};{degf:.1f};ok\n".replace(".", ",") for t, rate, degf in rows)
+        theirs.write_text("\ufefft;GyroX;T;state\n" + cells, encoding="utf-8")
+        chosen = ["--separator", ";", "--time", "t:ms", "--column", "rate_x_radps=GyroX:deg/s", "--column", "temperature_degC=T:degF"]
+        ifog("convert", theirs, ours, *chosen)
+        found = columns(ours)
+        assert list(found) == ["time_s", "rate_x_radps", "temperature_degC"], list(found)
+        for time, rate, degc, (t, dps, degf) in zip(*found.values(), rows):
+            near(time, t / 1000, 1e-12, "time")
+            near(rate, math.radians(dps), 1e-15, "rate")
+            near(degc, (degf - 32) / 1.8, 1e-9, "temperature")
+        direct, converted = (self.json("allan", path, *options, "--tau", "1")["axes"][0]
+                             for path, options in ((theirs, chosen), (ours, ["--axis", "x"])))
+        for key in ("axis", "adev_radps", "coefficients"):
+            assert direct[key] == converted[key], key
+        refused = subprocess.run([IFOG, "allan", theirs, "--separator", ";", "--column", "temperature_degC=T:V"], capture_output=True, text=True)
+        assert refused.returncode == 2 and "degC, degF, K" in refused.stderr, refused
+
     def check_allan(self):
         """White noise alone: sigma(tau) = N / sqrt(tau), and no other term."""
         (self.folder / "white.toml").write_text(SCENARIO.split("[[channel]]")[0])

@@ -34,7 +34,8 @@ Table as_table(Capture capture) {
 
 Table table_of(const Arguments& a, const std::string& path) {
   InputFile file(path);
-  if (a.input.kind(file) == FileKind::capture && !a.input.has_driver()) return parse_table(file.text(), path);
+  if (a.input.kind(file) == FileKind::capture && !a.input.has_driver())
+    return a.input.parse_columns(file.text(), path);
   return as_table(a.input.read(file));
 }
 

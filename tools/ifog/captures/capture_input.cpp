@@ -12,7 +12,59 @@
 
 namespace ifog::tools {
 
+namespace {
+
+// A wrong option is a matter of usage.
+template <typename Parse>
+auto parsed(const char* option, const std::string& text, Parse&& parse) {
+  try {
+    return parse(text);
+  } catch (const std::runtime_error& error) {
+    throw CLI::ValidationError(option, std::string("is ") + error.what());
+  }
+}
+
+}  // namespace
+
 void CaptureInput::add_to(CLI::App& command) {
+  add_driver_to(command);
+  command
+      .add_option(
+          "--column", columns,
+          "Column of a CSV file with another header: rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes "
+          "its differences the rate. May stand several times; columns not named are passed over")
+      ->type_name("NAME=HEADER[:UNIT]");
+  command.add_option("--time", time, "Its time column: t:ms")->type_name("HEADER[:UNIT]");
+  command.add_option("--separator", separator, "What stands between its cells: ';' or tab")->type_name("C");
+}
+
+CsvLayout CaptureInput::layout() const {
+  CsvLayout out;
+  for (const std::string& column : columns) {
+    out.columns.push_back(parsed("--column", column, CsvColumn::parse));
+    const std::string& name = out.columns.back().name;
+    for (std::size_t i = 0; i + 1 < out.columns.size(); ++i)
+      if (out.columns[i].name == name)
+        throw CLI::ValidationError("--column", "gives " + in_quotes(name) + " twice");
+  }
+  if (!time.empty()) out.time = parsed("--time", time, CsvTime::parse);
+  if (!separator.empty()) out.separator = parsed("--separator", separator, CsvLayout::parse_separator);
+  return out;
+}
+
+Capture CaptureInput::parse(std::string_view text, const std::string& path) const {
+  Capture capture = parse_capture(text, path, layout());
+  for (const std::string& notice : capture.notices) warn("%s\n", notice.c_str());
+  return capture;
+}
+
+Table CaptureInput::parse_columns(std::string_view text, const std::string& path) const {
+  Table table = parse_table(text, path, layout());
+  for (const std::string& notice : table.notices) warn("%s\n", notice.c_str());
+  return table;
+}
+
+void CaptureInput::add_driver_to(CLI::App& command) {
   command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
       ->type_name("NAME");
   command.add_option("--option", options, "Option of the driver; may stand several times")
@@ -46,6 +98,7 @@ DriverInstance CaptureInput::make_driver() const {
 }
 
 FileKind CaptureInput::kind(const InputFile& file) const {
+  if (has_layout()) return FileKind::capture;
   const FileKind found = file_kind(file);
   if (found != FileKind::unknown) return found;
   return has_driver() ? FileKind::bytes : FileKind::capture;
@@ -76,7 +129,7 @@ Capture CaptureInput::read(InputFile& file) const {
   if (found == FileKind::capture) {
     if (has_driver())
       throw std::runtime_error(path + ": is a CSV capture, expected none of --driver and --dbc with it");
-    return parse_capture(file.text(), path);
+    return parse(file.text(), path);
   }
   if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
   if (!has_driver())

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/capture/capture.h"
@@ -22,8 +23,15 @@ struct CaptureInput {
   std::string dbc;                   // --dbc F: the driver option `dbc`
   std::string channel;  // --channel C: of a candump log the CAN interface, of an LCM log the channel
 
-  // Adds the four options to a command.
+  // Of a CSV file that is no capture by its header, see csv_layout.h.
+  std::vector<std::string> columns;  // --column NAME=HEADER:UNIT
+  std::string time;                  // --time HEADER:UNIT
+  std::string separator;             // --separator C
+
+  // Adds the options to a command that reads.
   void add_to(CLI::App& command);
+  // Only those of a driver, to a command that writes its frames.
+  void add_driver_to(CLI::App& command);
 
   [[nodiscard]] bool has_driver() const { return !driver.empty() || !dbc.empty(); }
 
@@ -32,10 +40,18 @@ struct CaptureInput {
   [[nodiscard]] std::string driver_name() const;
   [[nodiscard]] DriverSettings settings() const;
 
+  // Likewise of the options of a CSV file.
+  [[nodiscard]] CsvLayout layout() const;
+  [[nodiscard]] bool has_layout() const { return !columns.empty() || !time.empty() || !separator.empty(); }
+  // A CSV text by them; what may be meant otherwise is told on standard error.
+  [[nodiscard]] Capture parse(std::string_view text, const std::string& path) const;
+  [[nodiscard]] Table parse_columns(std::string_view text, const std::string& path) const;
+
   // Throws std::runtime_error with one line.
   [[nodiscard]] DriverInstance make_driver() const;
 
-  // As it will be read: where neither name nor first bytes tell, CSV without a driver and bytes with one.
+  // As it will be read: CSV where its columns are given; where neither name nor first bytes tell, CSV without
+  // a driver and bytes with one.
   [[nodiscard]] FileKind kind(const InputFile& file) const;
 
   // The recorded samples as the driver delivers them, bit for bit those that the daemon gets.

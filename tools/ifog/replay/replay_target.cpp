@@ -231,41 +231,69 @@ ReplayDestination ReplayDestination::parse(const std::string& text) {
       "fifo:PATH or -");
 }
 
+namespace {
+
+void expect_bytes(const std::string& name, const ReplayTimeline& timeline, const char* where) {
+  if (timeline.is_can())
+    throw std::runtime_error(name + ": CAN frames cannot go " + where + ", expected bytes");
+}
+
+std::unique_ptr<ReplayTarget> can_target(const std::string& name, const ReplayTimeline& timeline) {
+  if (!timeline.is_can())
+    throw std::runtime_error(name +
+                             ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
+  return std::make_unique<CanTarget>(name, timeline);
+}
+
+std::unique_ptr<ReplayTarget> serial_target(const std::string& name, const ReplayTimeline& timeline,
+                                            SerialSettings line, bool hold) {
+  expect_bytes(name, timeline, "onto a serial line");
+  line.device = name;
+  if (line.baud == 0) line.baud = timeline.baud;
+  if (line.baud == 0) throw std::runtime_error(name + ": no speed known, expected --baud");
+  std::string warning;
+  return std::make_unique<ByteTarget>(open_serial_port(line, warning), name, timeline, hold);
+}
+
+std::unique_ptr<ReplayTarget> udp_target(const std::string& name, const ReplayTimeline& timeline) {
+  expect_bytes(name, timeline, "over UDP");
+  return std::make_unique<UdpTarget>(connected_udp(name), name, timeline);
+}
+
+std::unique_ptr<ReplayTarget> tcp_target(const std::string& name, const ReplayTimeline& timeline, bool hold) {
+  expect_bytes(name, timeline, "over TCP");
+  IpSocket socket = served_tcp(name);
+  if (!socket.is_open()) return nullptr;
+  return std::make_unique<ByteTarget>(std::move(socket), name, timeline, hold);
+}
+
+std::unique_ptr<ReplayTarget> file_target(const std::string& name, std::unique_ptr<OutputFile> file,
+                                          const ReplayTimeline& timeline, bool hold) {
+  if (file == nullptr) return nullptr;
+  return std::make_unique<ByteTarget>(std::move(file), name, timeline, hold);
+}
+
+}  // namespace
+
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,
                                           SerialSettings line, bool hold) {
-  using Kind = ReplayDestination::Kind;
-  if (to.kind == Kind::can) {
-    if (!timeline.is_can())
-      throw std::runtime_error(
-          to.name + ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
-    return std::make_unique<CanTarget>(to.name, timeline);
+  switch (to.kind) {
+    case ReplayDestination::Kind::can:
+      return can_target(to.name, timeline);
+    case ReplayDestination::Kind::serial:
+      return serial_target(to.name, timeline, std::move(line), hold);
+    case ReplayDestination::Kind::udp:
+      return udp_target(to.name, timeline);
+    case ReplayDestination::Kind::tcp:
+      return tcp_target(to.name, timeline, hold);
+    case ReplayDestination::Kind::fifo:
+      return file_target(to.name, open_fifo(to.name), timeline, hold);
+    case ReplayDestination::Kind::standard_output:
+      return file_target(to.name, std::make_unique<OutputFile>("-"), timeline, hold);
+    case ReplayDestination::Kind::file:
+      break;
   }
-  if (to.kind == Kind::serial) {
-    if (timeline.is_can())
-      throw std::runtime_error(to.name + ": CAN frames cannot go onto a serial line, expected bytes");
-    line.device = to.name;
-    if (line.baud == 0) line.baud = timeline.baud;
-    if (line.baud == 0) throw std::runtime_error(to.name + ": no speed known, expected --baud");
-    std::string warning;
-    return std::make_unique<ByteTarget>(open_serial_port(line, warning), to.name, timeline, hold);
-  }
-  if (to.kind == Kind::udp) {
-    if (timeline.is_can())
-      throw std::runtime_error(to.name + ": CAN frames cannot go over UDP, expected bytes");
-    return std::make_unique<UdpTarget>(connected_udp(to.name), to.name, timeline);
-  }
-  if (to.kind == Kind::tcp) {
-    if (timeline.is_can())
-      throw std::runtime_error(to.name + ": CAN frames cannot go over TCP, expected bytes");
-    IpSocket socket = served_tcp(to.name);
-    if (!socket.is_open()) return nullptr;
-    return std::make_unique<ByteTarget>(std::move(socket), to.name, timeline, hold);
-  }
-  std::unique_ptr<OutputFile> file =
-      to.kind == Kind::fifo ? open_fifo(to.name)
-                            : std::make_unique<OutputFile>(to.kind == Kind::standard_output ? "-" : to.name);
-  if (file == nullptr) return nullptr;
-  return std::make_unique<ByteTarget>(std::move(file), to.name, timeline, hold);
+  return file_target(to.name, std::make_unique<OutputFile>(to.name), timeline, hold);
 }
 
 }  // namespace ifog::tools

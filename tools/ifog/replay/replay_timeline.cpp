@@ -21,7 +21,7 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
   if (source.format == "candump") return FileKind::candump;
   if (source.format == "bytes") return FileKind::bytes;
   if (source.format == "csv") return FileKind::capture;
-  return file_kind(file);
+  return source.input.has_layout() ? FileKind::capture : file_kind(file);
 }
 
 ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
@@ -88,7 +88,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   if (!source.input.has_driver())
     throw std::runtime_error(source.path +
                              ": a CSV capture needs --driver NAME, whose frames its rows become");
-  const Capture capture = parse_capture(file.text(), source.path);
+  const Capture capture = source.input.parse(file.text(), source.path);
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate_of(capture, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, source.axis);

@@ -1,13 +1,14 @@
 // Units as DBC files spell them, against factors worked out by hand.
-#include "drivers/plugins/dbc/units.h"
+#include "drivers/units/units.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace {
 
-using ifog::dbc::angle_unit;
+using ifog::angle_unit;
 
 constexpr double kDegree = 0.017453292519943295;  // π / 180
 constexpr double kTurn = 6.283185307179586;       // 2 π
@@ -17,7 +18,7 @@ struct Case {
   double rad_per_s;
 };
 
-TEST(DbcUnits, RatesAsTheyAreSpelled) {
+TEST(Units, RatesAsTheyAreSpelled) {
   const Case cases[] = {{"rad/s", 1.0},
                         {"rad/sec", 1.0},
                         {"RAD/S", 1.0},
@@ -105,7 +106,7 @@ TEST(DbcUnits, RatesAsTheyAreSpelled) {
   }
 }
 
-TEST(DbcUnits, WhatIsNoRateOrTwoIsRefused) {
+TEST(Units, WhatIsNoRateOrTwoIsRefused) {
   for (const char* text : {"",
                            " ",
                            "deg",
@@ -154,17 +155,40 @@ TEST(DbcUnits, WhatIsNoRateOrTwoIsRefused) {
     EXPECT_FALSE(angle_unit(text, true, false)) << text;
 }
 
-TEST(DbcUnits, AngleAndTime) {
+TEST(Units, AngleAndTime) {
   EXPECT_NEAR(*angle_unit("\xB0", false, false), kDegree, 1e-15);
   EXPECT_NEAR(*angle_unit("Degrees", false, false), kDegree, 1e-15);
   EXPECT_NEAR(*angle_unit("Grad", false, false), kDegree, 1e-15);
   EXPECT_FALSE(angle_unit("deg/s", false, false));
   EXPECT_NEAR(*angle_unit("deg", true, true), kDegree, 1e-15);
   EXPECT_NEAR(*angle_unit("deg/h", true, true), kDegree / 3600.0, 1e-18);
-  EXPECT_EQ(ifog::dbc::time_unit("us"), 1e-6);
-  EXPECT_EQ(ifog::dbc::time_unit("\xC2\xB5s"), 1e-6);
-  EXPECT_EQ(ifog::dbc::time_unit("Sec"), 1.0);
-  EXPECT_FALSE(ifog::dbc::time_unit("deg"));
+  EXPECT_EQ(ifog::time_unit("us"), 1e-6);
+  EXPECT_EQ(ifog::time_unit("\xC2\xB5s"), 1e-6);
+  EXPECT_EQ(ifog::time_unit("Sec"), 1.0);
+  EXPECT_FALSE(ifog::time_unit("deg"));
+}
+
+TEST(Units, ChannelsAreConverted) {
+  struct Row {
+    const char *from, *to;
+    double value, becomes;
+  };
+  for (const Row& row :
+       {Row{"degF", "degC", 212.0, 100.0}, Row{"K", "degC", 273.15, 0.0},
+        Row{"\xC2\xB0\x43", "degC", 25.0, 25.0}, Row{"degC", "K", -273.15, 0.0},
+        Row{"mg", "mps2", 1000.0, 9.80665}, Row{"mV", "V", 1500.0, 1.5}, Row{"gauss", "uT", 0.5, 50.0},
+        Row{"hPa", "Pa", 1013.25, 101325.0}, Row{"deg/s", "radps", 180.0, kTurn / 2},
+        Row{"ms", "s", 5.0, 0.005}, Row{"counts", "counts", 7.0, 7.0}}) {
+    const auto conversion = ifog::convert_unit(row.from, row.to);
+    ASSERT_TRUE(conversion) << row.from << " to " << row.to;
+    EXPECT_NEAR(row.value * conversion->scale + conversion->offset, row.becomes,
+                1e-9 * std::abs(row.value) + 1e-12)
+        << row.from << " to " << row.to;
+  }
+  EXPECT_FALSE(ifog::convert_unit("G", "uT"));  // a gauss to some, 9.8 m/s² to others
+  EXPECT_FALSE(ifog::convert_unit("V", "degC"));
+  EXPECT_FALSE(ifog::convert_unit("furlong", "mps2"));
+  EXPECT_FALSE(ifog::convert_unit("V", "counts"));
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
-#include "drivers/plugins/dbc/units.h"
+#include "drivers/units/units.h"
 
 #include <array>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
-namespace ifog::dbc {
+namespace ifog {
 namespace {
 
 using Unit = std::pair<std::string_view, double>;
@@ -163,4 +164,84 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
   return *angle / *time;
 }
 
-}  // namespace ifog::dbc
+namespace {
+
+// SI value = value * scale + offset, within a quantity. In lower case, where `plain` leaves no other.
+struct QuantityUnit {
+  std::string_view name;
+  double scale, offset = 0.0;
+};
+
+struct Quantity {
+  std::string_view shown;  // for a message
+  std::span<const QuantityUnit> units;
+};
+
+constexpr double kGravity = 9.80665, kZeroCelsius_K = 273.15, kFahrenheit = 5.0 / 9.0;
+constexpr double kZeroFahrenheit_K = kZeroCelsius_K - 32.0 * kFahrenheit;
+
+constexpr std::array kTemperatures{QuantityUnit{"degc", 1.0, kZeroCelsius_K},
+                                   QuantityUnit{"c", 1.0, kZeroCelsius_K},
+                                   QuantityUnit{"celsius", 1.0, kZeroCelsius_K},
+                                   QuantityUnit{"degf", kFahrenheit, kZeroFahrenheit_K},
+                                   QuantityUnit{"f", kFahrenheit, kZeroFahrenheit_K},
+                                   QuantityUnit{"fahrenheit", kFahrenheit, kZeroFahrenheit_K},
+                                   QuantityUnit{"k", 1.0},
+                                   QuantityUnit{"kelvin", 1.0}};
+constexpr std::array kAccelerations{QuantityUnit{"mps2", 1.0},           QuantityUnit{"m/s2", 1.0},
+                                    QuantityUnit{"m/s^2", 1.0},          QuantityUnit{"m/s\xC2\xB2", 1.0},
+                                    QuantityUnit{"m/s/s", 1.0},          QuantityUnit{"g", kGravity},
+                                    QuantityUnit{"mg", kGravity * 1e-3}, QuantityUnit{"ug", kGravity * 1e-6},
+                                    QuantityUnit{"gal", 1e-2},           QuantityUnit{"mgal", 1e-5}};
+constexpr std::array kVoltages{QuantityUnit{"v", 1.0}, QuantityUnit{"mv", 1e-3}, QuantityUnit{"uv", 1e-6},
+                               QuantityUnit{"kv", 1e3}};
+constexpr std::array kCurrents{QuantityUnit{"a", 1.0}, QuantityUnit{"ma", 1e-3}, QuantityUnit{"ua", 1e-6}};
+constexpr std::array kFluxDensities{QuantityUnit{"t", 1.0},      QuantityUnit{"mt", 1e-3},
+                                    QuantityUnit{"ut", 1e-6},    QuantityUnit{"nt", 1e-9},
+                                    QuantityUnit{"gauss", 1e-4}, QuantityUnit{"mgauss", 1e-7}};
+constexpr std::array kPressures{QuantityUnit{"pa", 1.0}, QuantityUnit{"hpa", 1e2}, QuantityUnit{"kpa", 1e3},
+                                QuantityUnit{"mbar", 1e2}, QuantityUnit{"bar", 1e5}};
+
+constexpr std::array kQuantities{Quantity{"degC, degF, K", kTemperatures},
+                                 Quantity{"mps2, g, mg, Gal", kAccelerations},
+                                 Quantity{"V, mV, uV", kVoltages},
+                                 Quantity{"A, mA, uA", kCurrents},
+                                 Quantity{"uT, nT, mT, gauss", kFluxDensities},
+                                 Quantity{"Pa, hPa, kPa, mbar, bar", kPressures}};
+
+const QuantityUnit* find_in(const Quantity& quantity, std::string_view name) {
+  for (const QuantityUnit& unit : quantity.units)
+    if (unit.name == name) return &unit;
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<UnitConversion> convert_unit(std::string_view from, std::string_view wanted) {
+  if (from == wanted) return UnitConversion{};
+  const std::string a = plain(from), b = plain(wanted);
+  for (const Quantity& quantity : kQuantities) {
+    const QuantityUnit* const to = find_in(quantity, b);
+    if (to == nullptr) continue;
+    const QuantityUnit* const is = find_in(quantity, a);
+    if (is == nullptr) return std::nullopt;
+    return UnitConversion{is->scale / to->scale, (is->offset - to->offset) / to->scale};
+  }
+  if (const auto to = time_unit(wanted)) {
+    if (const auto is = time_unit(from)) return UnitConversion{*is / *to};
+    return std::nullopt;
+  }
+  const auto to = angle_unit(wanted, true, false), is = angle_unit(from, true, false);
+  if (to && is) return UnitConversion{*is / *to};
+  return std::nullopt;
+}
+
+std::string units_beside(std::string_view wanted) {
+  const std::string name = plain(wanted);
+  for (const Quantity& quantity : kQuantities)
+    if (find_in(quantity, name) != nullptr) return std::string(quantity.shown);
+  if (time_unit(wanted)) return "s, ms, us, ns, min, h";
+  return angle_unit(wanted, true, false) ? "rad/s, deg/s, deg/h, rpm" : "";
+}
+
+}  // namespace ifog

@@ -1,0 +1,89 @@
+#include "drivers/capture/chosen_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+
+#include "drivers/capture/column_names.h"
+#include "drivers/ifog/driver.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// The unit that the column's name ends in.
+std::string_view unit_of(const std::string& name) {
+  return std::string_view(name).substr(name.rfind('_') + 1);
+}
+
+// Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
+// is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
+// than half a turn.
+void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
+  const auto known = [](double value) { return !std::isnan(value); };
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const double angle : angle_rad) {
+    if (!known(angle)) continue;
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+  }
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const bool wraps = most - least <= kTurn * (1.0 + 1e-9);
+  double before = kMissing, since_s = 0.0;
+  for (std::size_t i = 0; i < angle_rad.size(); ++i) {
+    const double angle = angle_rad[i];
+    const double turned = wraps ? std::remainder(angle - before, kTurn) : angle - before;
+    angle_rad[i] = turned / (time_s[i] - since_s);
+    if (!known(angle)) continue;
+    before = angle;
+    since_s = time_s[i];
+  }
+}
+
+}  // namespace
+
+UnitConversion conversion_of(const CsvColumn& column) {
+  if (column.unit.empty()) return {};
+  if (column.is_angle()) return {angle_unit(column.unit, false, false).value_or(1.0)};
+  return convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
+}
+
+void as_chosen(Table& table, const CsvLayout& layout, const std::string& path) {
+  if (layout.time)
+    for (std::size_t row = 0; row < table.time_s.size(); ++row) {
+      table.time_s[row] *= layout.time->unit_s;
+      // Two numbers that differ by their last digit may be one in seconds.
+      if (row > 0 && table.time_s[row] <= table.time_s[row - 1])
+        fail_at(path, line_of_row(table, row),
+                printable(layout.time->header) + " is the same as in the row before, once it is in seconds");
+    }
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const CsvColumn& column = layout.columns[i];
+    const UnitConversion conversion = conversion_of(column);
+    std::vector<double>& values = table.columns[i].values;
+    for (double& value : values) value = value * conversion.scale + conversion.offset;
+    if (!column.is_angle()) continue;
+    differentiate(values, table.time_s);
+    for (std::size_t row = 0; row < values.size(); ++row)
+      if (std::abs(values[row]) > IFOG_MAX_RATE)
+        fail_at(path, line_of_row(table, row),
+                printable(column.header) + " has turned at " + shortest(values[row]) +
+                    " rad/s since the row before, which no sensor measures");
+  }
+}
+
+void notice_milliseconds(Table& table, const std::string& path) {
+  constexpr std::size_t kFew = 10;
+  const std::vector<double>& time = table.time_s;
+  if (time.size() < kFew) return;
+  if (!std::all_of(time.begin(), time.end(), [](double t) { return t == std::floor(t); })) return;
+  const double step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  table.notices.push_back(path + ": time_s is whole numbers, " + shortest(step) +
+                          " s apart in the mean; if these are milliseconds: --time time_s:ms");
+}
+
+}  // namespace ifog

@@ -1,0 +1,38 @@
+#include "drivers/capture/column_names.h"
+
+#include <array>
+#include <charconv>
+#include <stdexcept>
+
+#include "drivers/capture/csv_layout.h"
+
+namespace ifog {
+
+bool axis_of(const std::string& name, std::string_view prefix, std::string& axis) {
+  constexpr std::string_view kUnit = "_radps";
+  if (!name.starts_with(prefix) || !name.ends_with(kUnit)) return false;
+  if (name.size() == prefix.size() + kUnit.size()) {
+    axis.clear();
+    return true;
+  }
+  if (name.size() < prefix.size() + kUnit.size() + 2 || name[prefix.size()] != '_') return false;
+  axis = name.substr(prefix.size() + 1, name.size() - prefix.size() - kUnit.size() - 1);
+  return axis.find('_') == std::string::npos;  // rate_ramp_x_radps is somebody's channel, not an axis
+}
+
+std::string shortest(double value) {
+  std::array<char, 40> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+void fail_at(const std::string& path, std::size_t line, const std::string& what) {
+  throw std::runtime_error(path + ":" + std::to_string(line) + ": " + what);
+}
+
+void refuse_header(const std::string& path, std::size_t line_number, const std::string& what,
+                   const std::vector<std::string>& names) {
+  const std::string options = suggested_options(names);
+  fail_at(path, line_number, what + (options.empty() ? "" : "; to read it as it is: " + options));
+}
+
+}  // namespace ifog

@@ -1,0 +1,23 @@
+// The names of a capture's columns, and how their faults are told.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ifog {
+
+// The axis of a rate column: "rate_radps" is "", "rate_x_radps" is "x". False: not such a column.
+bool axis_of(const std::string& name, std::string_view prefix, std::string& axis);
+
+// Shortest text that reads back the same.
+std::string shortest(double value);
+
+// Throws std::runtime_error: "PATH:LINE: WHAT".
+[[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
+// The same of a header, with the options that read it as it is where its names tell them.
+[[noreturn]] void refuse_header(const std::string& path, std::size_t line, const std::string& what,
+                                const std::vector<std::string>& names);
+
+}  // namespace ifog

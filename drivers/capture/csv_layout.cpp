@@ -1,0 +1,182 @@
+#include "drivers/capture/csv_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <stdexcept>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "drivers/ifog/quoted.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::string_view kRateUnit = "radps";
+
+[[noreturn]] void refuse(const std::string& text, const std::string& expected) {
+  throw std::runtime_error(in_quotes(text) + ", expected " + expected);
+}
+
+std::string unit_of_name(const std::string& name) {
+  const std::size_t underscore = name.rfind('_');
+  return underscore == std::string::npos ? "" : name.substr(underscore + 1);
+}
+
+bool names_a_rate(const std::string& name) {
+  return unit_of_name(name) == kRateUnit &&
+         (name.starts_with("rate_") || name.starts_with("reference_rate_"));
+}
+
+// "HEADER:UNIT" or "HEADER". A header may hold colons itself where a unit follows.
+std::pair<std::string, std::string> header_and_unit(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return {text, ""};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// A header taken apart: "GyroX (deg/s)" is "gyrox" and "deg/s", "gyro_x_dps" is "gyro_x" and "dps".
+struct Parts {
+  std::string base, unit;
+};
+
+Parts parts_of(const std::string& header) {
+  for (const auto& [open, close] : {std::pair{'(', ')'}, {'[', ']'}}) {
+    const std::size_t at = header.find(open);
+    if (at == std::string::npos || header.back() != close) continue;
+    std::string base = header.substr(0, at);
+    while (!base.empty() && (base.back() == ' ' || base.back() == '_')) base.pop_back();
+    return {lower(base), header.substr(at + 1, header.size() - at - 2)};
+  }
+  const std::size_t underscore = header.rfind('_');
+  if (underscore == std::string::npos) return {lower(header), ""};
+  const std::string last = header.substr(underscore + 1);
+  const bool unit = angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty();
+  // A lone letter is an axis rather than coulombs.
+  if (!unit || (last.size() == 1 && last != "s")) return {lower(header), ""};
+  return {lower(header.substr(0, underscore)), last};
+}
+
+// The axis that a rate's header ends in, if its beginning speaks of a rate.
+std::optional<std::string> rate_axis(const std::string& base) {
+  constexpr std::array<std::string_view, 9> kWords{"gyroscope",       "gyro",   "gyr", "rate", "omega",
+                                                   "angularvelocity", "angvel", "w",   "g"};
+  std::string squeezed;
+  for (const char c : base)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) squeezed += c;
+  for (const std::string_view word : kWords) {
+    const std::size_t at = squeezed.find(word);
+    // The short ones are whole names: gx, wz.
+    if (at == std::string::npos || (word.size() == 1 && (at != 0 || squeezed.size() != 2))) continue;
+    if (word == "rate" && at != 0) continue;  // frame_rate
+    const std::string rest = squeezed.substr(at + word.size());
+    if (rest.empty()) return "";
+    for (const char axis : {'x', 'y', 'z'})
+      if (rest.front() == axis || rest.back() == axis) return std::string(1, axis);
+    if (word.size() > 1) return "";
+  }
+  return std::nullopt;
+}
+
+bool is_time(const std::string& base) {
+  constexpr std::array<std::string_view, 8> kNames{"t",        "time", "timestamp", "time_stamp",
+                                                   "utc_time", "zeit", "seconds",   "elapsed"};
+  return std::find(kNames.begin(), kNames.end(), base) != kNames.end();
+}
+
+// As a shell takes it.
+std::string typed(const std::string& text) {
+  const bool bare = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./:=%^").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  return bare ? text : in_quotes(text);
+}
+
+}  // namespace
+
+CsvColumn CsvColumn::parse(const std::string& text) {
+  const std::string form = "NAME=HEADER:UNIT, rate_x_radps=GyroX:deg/s";
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) refuse(text, form);
+  CsvColumn out;
+  out.name = text.substr(0, equals);
+  std::tie(out.header, out.unit) = header_and_unit(text.substr(equals + 1));
+  const std::string wanted = unit_of_name(out.name);
+  if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
+  if (wanted.empty() || out.header.empty()) refuse(text, form);
+  if (out.unit.empty() || out.is_angle() || convert_unit(out.unit, wanted)) return out;
+  const std::string known = units_beside(wanted);
+  refuse(text, known.empty() ? "the unit " + wanted + ", which is known by its name only"
+                             : "a unit that becomes " + wanted + ": " + known +
+                                   (out.is_rate() ? ", or deg, rad of an angle" : ""));
+}
+
+bool CsvColumn::is_rate() const { return names_a_rate(name); }
+
+bool CsvColumn::is_angle() const {
+  return is_rate() && !angle_unit(unit, true, false) && angle_unit(unit, false, false).has_value();
+}
+
+CsvTime CsvTime::parse(const std::string& text) {
+  const auto [header, unit] = header_and_unit(text);
+  CsvTime out;
+  out.header = header;
+  const auto seconds = unit.empty() ? std::optional(1.0) : time_unit(unit);
+  if (header.empty() || !seconds) refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, ns, min, h");
+  out.unit_s = *seconds;
+  return out;
+}
+
+char CsvLayout::parse_separator(const std::string& text) {
+  if (text == "tab" || text == "\\t") return '\t';
+  constexpr std::string_view kNever = "+-.\"'#_\n\r";
+  if (text.size() != 1 || std::isalnum(static_cast<unsigned char>(text[0])) != 0 ||
+      kNever.find(text[0]) != std::string_view::npos)
+    refuse(text, "one character that stands between cells, ';', or the word tab");
+  return text[0];
+}
+
+std::string suggested_options(const std::vector<std::string>& headers) {
+  std::string time, columns;
+  bool timed = false, renamed = false;
+  std::vector<std::string> taken;
+  for (const std::string& header : headers) {
+    if (header.empty()) continue;
+    const Parts parts = parts_of(header);
+    if (!timed && is_time(parts.base)) {
+      timed = true;
+      const bool known = time_unit(parts.unit).has_value();
+      if (header != "time_s") time = " --time " + typed(header + ":" + (known ? parts.unit : "UNIT"));
+      continue;
+    }
+    const auto axis = rate_axis(parts.base);
+    const bool fits = parts.unit.empty() || angle_unit(parts.unit, true, false);
+    if (!axis || !fits || std::find(taken.begin(), taken.end(), *axis) != taken.end()) continue;
+    taken.push_back(*axis);
+    const std::string name = axis->empty() ? "rate_radps" : "rate_" + *axis + "_radps";
+    renamed = renamed || name != header;
+    columns += " --column " + typed(name + "=" + header + ":" + (parts.unit.empty() ? "UNIT" : parts.unit));
+  }
+  // Half of it would only lead to the next message.
+  if (!timed || taken.empty()) return "";
+  const std::string all = time + (renamed ? columns : "");
+  return all.empty() ? "" : all.substr(1);
+}
+
+std::string suggested_separator(const std::string& header_line) {
+  if (header_line.find(',') != std::string::npos) return "";
+  for (const auto& [separator, text] : {std::pair{';', "';'"}, {'\t', "tab"}, {'|', "'|'"}})
+    if (header_line.find(separator) != std::string::npos) return std::string("--separator ") + text;
+  return "";
+}
+
+}  // namespace ifog

@@ -1,0 +1,48 @@
+// What a CSV file that is no capture by its header says under other names and in other units: which of its
+// columns are those of a capture.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ifog {
+
+struct CsvColumn {
+  std::string name;    // of the capture: rate_x_radps, temperature_degC, …
+  std::string header;  // in the file
+  std::string unit;    // of its values; "": that of `name`
+
+  // "rate_x_radps=GyroX:deg/s" or "supply_V=Supply". A rate in a unit of angle is an angle, whose differences
+  // become the rate. Throws std::runtime_error with one line: the text and what was expected.
+  static CsvColumn parse(const std::string& text);
+  [[nodiscard]] bool is_rate() const;
+  [[nodiscard]] bool is_angle() const;
+};
+
+struct CsvTime {
+  std::string header = "time_s";
+  double unit_s = 1.0;
+
+  // "t:ms" or "t", which is in seconds. Throws likewise.
+  static CsvTime parse(const std::string& text);
+};
+
+struct CsvLayout {
+  std::vector<CsvColumn> columns;  // empty: every column stands under its own name
+  std::optional<CsvTime> time;     // nullopt: the first column is time_s
+  char separator = ',';            // with another, numbers may have a decimal comma
+
+  // ";", "tab", … : one character, or that word. Throws likewise.
+  static char parse_separator(const std::string& text);
+  // Reads columns by choice: those that nobody chose are passed over, whatever is in them.
+  [[nodiscard]] bool chooses() const { return !columns.empty() || time.has_value(); }
+};
+
+// The options with which a file of these headers may be read, "" if nothing in them looks like a gyro's:
+// "--time Time:ms --column rate_x_radps=GyroX:deg/s". UNIT stands where the header names none.
+std::string suggested_options(const std::vector<std::string>& headers);
+// The separator that the line may have been meant with: "--separator ';'", "" for none.
+std::string suggested_separator(const std::string& header_line);
+
+}  // namespace ifog

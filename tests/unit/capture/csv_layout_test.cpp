@@ -1,0 +1,159 @@
+// CSV files of other makers: their columns, units, separators, and what a header that is nearly right is
+// told.
+#include "drivers/capture/csv_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/capture.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+CsvLayout layout(const std::vector<std::string>& columns, const std::string& time = "",
+                 char separator = ',') {
+  CsvLayout out;
+  for (const std::string& column : columns) out.columns.push_back(CsvColumn::parse(column));
+  if (!time.empty()) out.time = CsvTime::parse(time);
+  out.separator = separator;
+  return out;
+}
+
+template <typename Read>
+std::string refusal(Read&& read) {
+  try {
+    read();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CsvLayout, ReadsTheColumnsThatWereChosenInTheirUnits) {
+  const Capture c = parse_capture(
+      "\xEF\xBB\xBFsample;\"Gyro X\";T;t;mode\r\n1;-1,5;212;1000;auto\r\n2;0,5;32;1005;auto\r\n", "a.csv",
+      layout({"rate_x_radps=Gyro X:deg/s", "temperature_degC=T:degF"}, "t:ms", ';'));
+  EXPECT_EQ(c.axes, std::vector<std::string>{"x"});
+  ASSERT_EQ(c.size(), 2U);
+  EXPECT_DOUBLE_EQ(c.time_s[0], 1.0);
+  EXPECT_DOUBLE_EQ(c.time_s[1], 1.005);
+  EXPECT_DOUBLE_EQ(c.rate_radps[0][0], -1.5 * kDegree);
+  EXPECT_DOUBLE_EQ(c.rate_radps[0][1], 0.5 * kDegree);
+  ASSERT_EQ(c.channels.size(), 1U);
+  EXPECT_EQ(c.channels[0].name, "temperature_degC");
+  EXPECT_NEAR(c.channels[0].values[0], 100.0, 1e-12);
+  EXPECT_NEAR(c.channels[0].values[1], 0.0, 1e-12);
+}
+
+TEST(CsvLayout, ATimeAloneLeavesTheOtherColumnsTheirNames) {
+  const Capture c =
+      parse_capture("rate_radps,stamp,supply_V\n1,10,12\n2,20,13\n", "a.csv", layout({}, "stamp:us"));
+  EXPECT_DOUBLE_EQ(c.time_s[1], 20e-6);
+  EXPECT_EQ(c.rate_radps[0], (std::vector<double>{1, 2}));
+  EXPECT_EQ(c.channels.at(0).name, "supply_V");
+}
+
+TEST(CsvLayout, DifferencesOfAnAngleBecomeTheRate) {
+  // 10 °/s, one angle missing, and a heading that passes north.
+  const Capture wrapping = parse_capture("time_s,heading\n0,350\n1,\n2,10\n2.5,15\n", "a.csv",
+                                         layout({"rate_z_radps=heading:deg"}));
+  const std::vector<double>& rate = wrapping.rate_radps[0];
+  EXPECT_TRUE(std::isnan(rate[0]));
+  EXPECT_TRUE(std::isnan(rate[1]));
+  EXPECT_NEAR(rate[2], 10 * kDegree, 1e-12);
+  EXPECT_NEAR(rate[3], 10 * kDegree, 1e-12);
+  // An angle that goes on beyond a turn does not wrap: 300° in a second are 300 °/s.
+  const Capture counting =
+      parse_capture("time_s,a\n0,0\n1,300\n2,600\n", "a.csv", layout({"rate_radps=a:deg"}));
+  EXPECT_NEAR(counting.rate_radps[0][1], 300 * kDegree, 1e-12);
+}
+
+TEST(CsvLayout, SaysWhatIsWrongWithAnOption) {
+  const auto column = [](const std::string& text) { return refusal([&] { CsvColumn::parse(text); }); };
+  EXPECT_EQ(column("rate_x_radps"), "'rate_x_radps', expected NAME=HEADER:UNIT, rate_x_radps=GyroX:deg/s");
+  EXPECT_EQ(column("rate=GyroX"), "'rate=GyroX', expected NAME=HEADER:UNIT, rate_x_radps=GyroX:deg/s");
+  EXPECT_EQ(column("temperature_degC=T:V"),
+            "'temperature_degC=T:V', expected a unit that becomes degC: degC, degF, K");
+  EXPECT_EQ(column("ramp_counts=R:V"),
+            "'ramp_counts=R:V', expected the unit counts, which is known by its name only");
+  EXPECT_EQ(column("rate_radps=w:m/s").substr(0, 70),
+            "'rate_radps=w:m/s', expected a unit that becomes radps: rad/s, deg/s, ");
+  EXPECT_EQ(column("time_s=t"), "'time_s=t', expected another name; --time says which column is the time");
+  EXPECT_EQ(refusal([] { CsvTime::parse("t:m"); }),
+            "'t:m', expected HEADER:UNIT with a unit of time: s, ms, us, ns, min, h");
+  EXPECT_EQ(refusal([] { CsvLayout::parse_separator("::"); }),
+            "'::', expected one character that stands between cells, ';', or the word tab");
+  EXPECT_EQ(CsvLayout::parse_separator("tab"), '\t');
+}
+
+TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
+  const auto read = [](const char* text, const CsvLayout& by) {
+    return refusal([&] { parse_capture(text, "a.csv", by); });
+  };
+  const CsvLayout by = layout({"rate_radps=w:deg/s"}, "t:s");
+  EXPECT_EQ(read("t,g\n0,1\n", by), "a.csv:1: no column 'w', the header has 't', 'g'");
+  EXPECT_EQ(read("t,w,w\n0,1,1\n", by), "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
+  EXPECT_EQ(read("t,w\n0,1\n0,2\n", by), "a.csv:3: t is 0, expected more than in the row before");
+  EXPECT_EQ(read("t,w\n0,1,5\n", by), "a.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(read("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
+  EXPECT_EQ(read("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
+            "a.csv:4: w has turned");
+  EXPECT_EQ(read("\xFF\xFEt", {}), "a.csv: begins as UTF-16 does, expected UTF-8 or ASCII");
+}
+
+TEST(CsvLayout, AHeaderThatIsNearlyRightGetsTheOptionsToType) {
+  const auto told = [](const char* header) {
+    return refusal([&] { parse_capture(std::string(header) + "\n0,1,2,3\n", "a.csv"); });
+  };
+  EXPECT_EQ(told("time_ms,gyro_x_dps,gyro_y_dps,T"),
+            "a.csv:1: first column is 'time_ms', expected 'time_s'; to read it as it is: --time time_ms:ms "
+            "--column rate_x_radps=gyro_x_dps:dps --column rate_y_radps=gyro_y_dps:dps");
+  EXPECT_EQ(
+      told("Time [s],GyroX (deg/s),AccX (g),T"),
+      "a.csv:1: first column is 'Time [s]', expected 'time_s'; to read it as it is: --time 'Time [s]:s' "
+      "--column 'rate_x_radps=GyroX (deg/s):deg/s'");
+  EXPECT_EQ(
+      told("time_s,wx,wy,wz"),
+      "a.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …; to read it as it is: --column "
+      "rate_x_radps=wx:UNIT --column rate_y_radps=wy:UNIT --column rate_z_radps=wz:UNIT");
+  EXPECT_EQ(
+      told("timestamp,rate_radps,frame_rate_hz,T"),
+      "a.csv:1: first column is 'timestamp', expected 'time_s'; to read it as it is: --time timestamp:UNIT");
+  EXPECT_EQ(told("a,b,c,d"), "a.csv:1: first column is 'a', expected 'time_s'");
+  EXPECT_EQ(told("time_s;rate_radps"),
+            "a.csv:1: no comma in the header 'time_s;rate_radps'; expected commas, or --separator ';'");
+}
+
+// What is suggested is what reads the file.
+TEST(CsvLayout, TheSuggestionReadsTheFile) {
+  const CsvLayout by = layout({"rate_x_radps=GyroX (deg/s):deg/s"}, "Time [ms]:ms");
+  EXPECT_EQ(suggested_options({"Time [ms]", "GyroX (deg/s)"}),
+            "--time 'Time [ms]:ms' --column 'rate_x_radps=GyroX (deg/s):deg/s'");
+  EXPECT_DOUBLE_EQ(parse_capture("Time [ms],GyroX (deg/s)\n0,0\n5,1\n", "a.csv", by).rate_radps[0][1],
+                   kDegree);
+}
+
+TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {
+  std::string milliseconds = "time_s,rate_radps\n", seconds = milliseconds;
+  for (int i = 0; i < 20; ++i) {
+    milliseconds += std::to_string(5 * i) + ",0\n";
+    seconds += std::to_string(i / 200.0) + ",0\n";
+  }
+  const Capture c = parse_capture(milliseconds, "a.csv");
+  EXPECT_EQ(c.time_s.back(), 95.0);  // not changed
+  EXPECT_EQ(c.notices,
+            (std::vector<std::string>{"a.csv: time_s is whole numbers, 5 s apart in the mean; if these are "
+                                      "milliseconds: --time time_s:ms"}));
+  EXPECT_TRUE(parse_capture(seconds, "a.csv").notices.empty());
+  EXPECT_TRUE(parse_capture(milliseconds, "a.csv", layout({}, "time_s:ms")).notices.empty());
+}
+
+}  // namespace
+}  // namespace ifog
