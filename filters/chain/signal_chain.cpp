@@ -34,6 +34,7 @@ ChainParts::ChainParts(const ChainSettings& settings)
     use_effects(settings);
   }
   filter_ = settings_in_force(settings.filter, std::move(base));
+  learns_process_noise_ = filter_.process_noise <= 0.0 && filter_.state == "random-walk";
   if (filter_.process_noise > 0.0 && filter_.measurement_noise > 0.0) {
     estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
     return;
@@ -129,6 +130,28 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   collected_ = 0;
 }
 
+// The random walk shows itself slowly: what start-up data said of it, perhaps under way, is corrected
+// whenever the sensor has rested long enough to say more.
+void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept {
+  const bool rests = (out.estimate.flags & (kManoeuvre | kGated)) == 0;
+  rest_noise_.take(out.compensated_radps, in.valid_axes, rests && (in.flags & kGapBefore) == 0);
+  const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
+  if (!found) return;
+  filter_.process_noise = found->process_noise;
+  estimator_->retune(found->process_noise);
+}
+
+void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
+  out.flags |= kNoiseUnknown;
+  out.estimate = EstimatorOutput{};
+  out.estimate.denoised_radps = out.compensated_radps;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
+    out.estimate.variance_rad2ps2[i] =
+        first_samples_.variance(i, out.compensated_radps[i], (in.valid_axes >> i & 1U) != 0);
+    if (compensator_) out.estimate.variance_rad2ps2[i] += correction_.variance_rad2ps2[i];
+  }
+}
+
 void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   ChainParts& parts = *parts_;
   out.flags = 0;
@@ -138,10 +161,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
     out.angle_rad[i] = angle_[i].value();
   }
   if (parts.estimator_ == nullptr) {
-    out.flags |= kNoiseUnknown;
-    out.estimate = EstimatorOutput{};
-    out.estimate.denoised_radps = out.compensated_radps;
-    out.estimate.variance_rad2ps2.fill(std::nan(""));
+    parts.publish_raw(in, out);
     parts.learn(in, out);
     return;
   }
@@ -152,7 +172,10 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   input.rate_radps = out.compensated_radps;
   input.covered_s = in.covered_s;
   input.valid_axes = in.valid_axes;
+  // A mean over so many whole samples, merged or summed: timing jitter makes no noise quieter.
+  input.averaged_s = in.samples > 1 ? in.samples * parts.period_s_ : 0.0;
   parts.estimator_->step(input, out.estimate);
+  if (parts.learns_process_noise_) parts.learn_on(in, out);
   if (parts.compensator_)
     for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i)
       out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];

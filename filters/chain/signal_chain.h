@@ -16,6 +16,8 @@
 #include "filters/chain/reading.h"
 #include "filters/effects/compensator.h"
 #include "filters/estimator/estimator.h"
+#include "filters/estimator/first_samples.h"
+#include "filters/estimator/rest_noise.h"
 #include "filters/model_file/model.h"
 #include "filters/settings/filter_settings.h"
 
@@ -32,7 +34,7 @@ struct ChainSettings {
 };
 
 enum ChainFlags : std::uint32_t {
-  kNoiseUnknown = 1,    // start-up: denoised is the compensated rate
+  kNoiseUnknown = 1,    // start-up: denoised is the compensated rate, with the variance it has shown so far
   kFilterReset = 2,     // first sample of a new estimator
   kNotCompensated = 4,  // the model's correction was no plausible rate: the measured one stands
 };
@@ -80,6 +82,8 @@ class ChainParts {
   void compensate(const Increment& in, ChainOutput& out) noexcept;
   void refuse_impossible(const Increment& in, ChainOutput& out) noexcept;
   void learn(const Increment& in, const ChainOutput& out) noexcept;
+  void learn_on(const Increment& in, const ChainOutput& out) noexcept;
+  void publish_raw(const Increment& in, ChainOutput& out) noexcept;
 
   SensorFacts facts_;
   FilterSettings filter_;
@@ -94,6 +98,9 @@ class ChainParts {
   std::size_t start_up_size_ = 0;  // samples of an axis wanted
   std::size_t collected_ = 0;
   std::unique_ptr<Estimator> estimator_;
+  FirstSamples first_samples_;
+  bool learns_process_noise_ = false;
+  RestNoise rest_noise_;
   Axes owed_{};  // by the estimator before, until this one is there
   bool first_ = true;
 };

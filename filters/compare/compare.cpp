@@ -22,8 +22,9 @@ constexpr std::size_t kLeastAtRest = 40;     // what whiteness() asks for
 
 struct Series {
   std::vector<std::vector<double>> denoised;
-  std::vector<std::vector<double>> innovation, nis;  // missing in manoeuvres
-  std::size_t at_rest = 0;                           // samples
+  // Missing in manoeuvres and where a measurement was kept out.
+  std::vector<std::vector<double>> innovation, nis;
+  std::size_t at_rest = 0;  // samples
 };
 
 struct Steps {
@@ -67,7 +68,7 @@ Series run(const ComparisonInput& in, const Steps& steps, const FilterSettings& 
   for (std::size_t k = 0; k < n; ++k) {
     const EstimatorInput sample = input_at(in, steps, k, 0.0);
     estimator.step(sample, step);
-    const bool at_rest = (step.flags & kManoeuvre) == 0;
+    const bool at_rest = (step.flags & (kManoeuvre | kGated)) == 0;
     if (at_rest) ++out.at_rest;
     for (std::size_t a = 0; a < axes; ++a) {
       const bool there = at_rest && (sample.valid_axes & (1U << a)) != 0;

@@ -1,18 +1,18 @@
-// Keeps the angle: what the denoised rate has fallen short of the measured one, integrated, is paid back.
+// Keeps the angle: what the published rate has fallen short of the measured one, integrated, is paid back.
 //
-// A filter of fixed gain K loses nothing: the sum of (measured - denoised) is tau (y - y0), tau = T (1-K)/K,
-// and returns to zero with the rate. A gain that follows the innovations is not the same going into a turn as
-// coming out of it, and keeps a part for good. So the shortfall is booked:
-//   owed   = sum (measured - denoised) dt
-//   lag    = tau (y - y0), what a filter with the average gain would owe at this rate and get back by itself
-//   excess = owed - lag
-// and the excess goes into the output at a slow, fixed pace. While the gain is constant the excess is zero
-// and so is the payment: at rest the cost is only what the fluctuation of the gain makes. Debt of a manoeuvre
-// is booked apart and paid back quickly.
+// Two accounts. A settled filter of gain K owes tau (y - y0), tau = T (1-K)/K, and gets it back by itself
+// when the rate returns: that is the account at rest, and what it holds beyond that lag is paid, no faster
+// than a tenth of the filter's own uncertainty. y0 follows y slowly, so that a rate that does not return
+// leaves no debt either. What is owed since a change of rate is the account of the manoeuvre: paid quickly,
+// within half the samples that the followers of the motion look back on. Quickly for coning's sake: paid over
+// n samples, shortfalls of a tracker of memory M at the frequency w turn 2 (w M)^3 w n of a cone into drift.
+// A debt of long rest is never paid quickly, however sharp the manoeuvre that follows: it is not the
+// manoeuvre's.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "filters/settings/axes.h"
 
@@ -20,88 +20,79 @@ namespace ifog {
 
 class AngleLedger {
  public:
-  explicit AngleLedger(double period_s) : period_s_(period_s) {}
+  // follows: changes of rate are followed. Where they are not, all debts are the lag's, and have no limit.
+  AngleLedger(double period_s, bool follows) : period_s_(period_s), follows_(follows) {}
 
-  // Rate to be added to the output of this sample. lag_s: tau of the filter at rest.
-  [[nodiscard]] double payment(std::size_t axis, double lag_s) const noexcept {
-    const double slow_s = kSlowLags * lag_s + kSlowSamples * period_s_;
-    return excess_[axis] / slow_s + manoeuvre_[axis] / (kQuickSamples * period_s_);
-  }
-
-  // Books one sample: measured and published rate, payment included, over dt.
-  void book(std::size_t axis, double measured, double published, double dt_s, bool manoeuvre) noexcept {
-    const double short_by = (measured - published) * dt_s;
-    owed_[axis] += short_by;
-    const double paid = manoeuvre_[axis] * std::min(dt_s / (kQuickSamples * period_s_), 1.0);
-    if (manoeuvre) {
-      manoeuvre_[axis] += short_by;
-    } else {
-      manoeuvre_[axis] -= paid;
-    }
+  // Rates to be added to the output of this sample, for each account.
+  struct Payment {
+    double quick = 0.0, slow = 0.0;
+    [[nodiscard]] double rate() const noexcept { return quick + slow; }
+  };
+  // rest, variance: rate and variance of the filter at rest; dt_s: what the sample covers.
+  [[nodiscard]] Payment payment(std::size_t axis, double rest, double variance, double dt_s) const noexcept {
+    const double most = follows_ ? kSlowShare * std::sqrt(variance) : kNoLimit;
+    const double beyond = at_rest_[axis] - lag_s_ * (rest - reference_[axis]);
+    return {manoeuvre_[axis] / std::max(quick_s_, dt_s),
+            std::clamp(beyond / (kSlowLags * lag_s_ + kSlowSamples * period_s_), -most, most)};
   }
 
-  // After booking, at rest: what the filter at rest owes beyond its lag. rest: its rate without payments.
-  //
-  // The rate at which nothing is owed follows the output: quickly after a manoeuvre, whose last part may
-  // still be under way, and over a hundred lags at rest, which costs 0.25 % of RMSE (a second pole at r =
-  // 1/100 of the first costs r/4). While a filter starts up its gain is not yet one that could owe anything:
-  // nothing is booked for four lags.
-  void settle(std::size_t axis, double rest, double lag_s) noexcept {
-    const double lag_samples = lag_s / period_s_;
-    age_[axis] += 1.0;
-    if (starting_[axis]) {
-      begin(axis, rest, age_[axis]);
-      if (age_[axis] < kStartLags * lag_samples) return;
-      starting_[axis] = false;
-      age_[axis] = kOld;
-    }
-    const double samples =
-        std::min(kFirstSamples + kAgeShare * age_[axis], kReferenceLags * lag_samples + kQuickSamples);
-    const double moved = (rest - reference_[axis]) / samples;
-    reference_[axis] += moved;
-    manoeuvre_[axis] += lag_s * moved;
-    excess_[axis] = owed_[axis] - manoeuvre_[axis] - lag_s * (rest - reference_[axis]);
+  // Books one sample: what the filter's own output falls short of the measured rate, times dt, and what was
+  // paid with it. Gives what the account at rest has grown by.
+  double book(std::size_t axis, double short_by_rad, const Payment& paid, double dt_s, double rest,
+              bool manoeuvre) noexcept {
+    (manoeuvre ? manoeuvre_ : at_rest_)[axis] += short_by_rad;
+    manoeuvre_[axis] -= paid.quick * dt_s;
+    at_rest_[axis] -= paid.slow * dt_s;
+    if (manoeuvre) return -paid.slow * dt_s;
+    reference_[axis] +=
+        (rest - reference_[axis]) * dt_s / (kReturnLags * lag_s_ + kReturnSamples * period_s_);
+    return short_by_rad - paid.slow * dt_s;
   }
 
-  // From rest into a manoeuvre: everything owed is now to be paid quickly.
-  void begin_manoeuvre() noexcept {
-    manoeuvre_ = owed_;
-    excess_ = {};
+  // A change of rate was found: this angle, already booked at rest, belongs to the manoeuvre.
+  void move_to_manoeuvre(std::size_t axis, double angle_rad) noexcept {
+    at_rest_[axis] -= angle_rad;
+    manoeuvre_[axis] += angle_rad;
   }
-  // Back to rest at this rate, which from now on is the one without lag.
-  void end_manoeuvre(std::size_t axis, double rest) noexcept {
-    reference_[axis] = rest;
-    manoeuvre_[axis] = owed_[axis];
-    excess_[axis] = age_[axis] = 0.0;
-    starting_[axis] = false;
+  // Samples that were passed over as outliers turned out to be rotation.
+  void admit(std::size_t axis, double angle_rad) noexcept { manoeuvre_[axis] += angle_rad; }
+  // Samples that what follows the motion looks back on.
+  void pace(double samples) noexcept {
+    quick_s_ = std::max(kQuickSamples, kQuickShare * samples) * period_s_;
   }
-  // The first rate of an axis, `age` samples ago.
-  void begin(std::size_t axis, double rest, double age = 0.0) noexcept {
-    reference_[axis] = rest;
-    owed_[axis] = manoeuvre_[axis] = excess_[axis] = 0.0;
-    age_[axis] = age;
-    starting_[axis] = true;
+  // From this rate on the filter at rest owes by its lag what it moves by. What the account holds now no
+  // return of the rate pays back.
+  void refer(std::size_t axis, double rest) noexcept { reference_[axis] = rest; }
+  // Another lag of the filter at rest, s, at these rates of it. What it owed by the one before it still owes.
+  void set_lag(double lag_s, const Axes& rest) noexcept {
+    for (std::size_t a = 0; a < rest.size() && lag_s > 0.0; ++a)
+      reference_[a] = rest[a] - (rest[a] - reference_[a]) * lag_s_ / lag_s;
+    lag_s_ = lag_s;
   }
-  // A sample that was held back as an outlier turned out to be rotation.
-  void admit(std::size_t axis, double angle_rad) noexcept { owed_[axis] += angle_rad; }
 
-  [[nodiscard]] double owed(std::size_t axis) const noexcept { return owed_[axis]; }
-  // Takes over another ledger's debt; end_manoeuvre() at the first rate says where the lag is counted from.
-  void owe(std::size_t axis, double angle_rad) noexcept { owed_[axis] = angle_rad; }
+  [[nodiscard]] double owed(std::size_t axis) const noexcept { return at_rest_[axis] + manoeuvre_[axis]; }
+  // Takes over another ledger's debt, which its filter's lag no longer returns.
+  void owe(std::size_t axis, double angle_rad) noexcept {
+    manoeuvre_[axis] += angle_rad;
+    quick_s_ = std::max(quick_s_, kOwedSamples * period_s_);
+  }
 
  private:
+  static constexpr double kNoLimit = 1e300;
+  static constexpr double kSlowShare = 0.1;
   static constexpr double kSlowLags = 20.0;
   static constexpr double kSlowSamples = 100.0;
-  static constexpr double kQuickSamples = 64.0;
-  static constexpr double kFirstSamples = 16.0;
-  static constexpr double kAgeShare = 0.25;
-  static constexpr double kReferenceLags = 100.0;
-  static constexpr double kStartLags = 4.0;
-  static constexpr double kOld = 1e15;
+  static constexpr double kReturnLags = 50.0;
+  static constexpr double kReturnSamples = 1000.0;
+  static constexpr double kQuickShare = 0.5;
+  static constexpr double kQuickSamples = 16.0;
+  static constexpr double kOwedSamples = 1024.0;
 
   double period_s_;
-  Axes owed_{}, manoeuvre_{}, excess_{}, reference_{}, age_{};
-  std::array<bool, kMaxAxes> starting_{};
+  bool follows_;
+  double quick_s_ = kQuickSamples * period_s_;
+  double lag_s_ = 0.0;
+  Axes at_rest_{}, manoeuvre_{}, reference_{};
 };
 
 }  // namespace ifog

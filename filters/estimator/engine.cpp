@@ -1,21 +1,13 @@
 #include "filters/estimator/engine.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
 namespace ifog {
 namespace {
 
-// Samples without a new change and with the filter at rest the likeliest, after which the manoeuvre is over.
-constexpr int kQuiet = 64;
-// In coloured noise a tracker may for ever predict better than the filter at rest. A manoeuvre is also over
-// when for this many samples the filter at rest has explained the measurements as well as it does at rest.
-constexpr int kCalmSamples = 256;
-// P raised by a manoeuvre counts as settled when a measurement lowers it by less than this: it has then come
-// to its end, or is a hundredth of R. What it was before the manoeuvre is no measure: the rule may have taken
-// the beginning of the manoeuvre for noise, and must learn again to know better.
-constexpr double kSettled = 0.99;
 // Averages of the filter at rest, in samples.
 constexpr double kRestMemory = 64.0;
 constexpr double kHealthMemory = 512.0;
@@ -26,21 +18,26 @@ constexpr double kLost = 0.5;
 constexpr double kWell = 0.1;
 // Steps between refreshes of the settled filter's lag, a small linear solve.
 constexpr int kLagEvery = 256;
-// In a manoeuvre a measurement is held back only when the filter at rest, too, finds it this many sigmas
-// away.
-constexpr double kFar = 5.0;
-
-bool has(std::uint32_t set, std::size_t axis) noexcept { return (set >> axis & 1U) != 0; }
-
+// Samples: what was not tested at the beginning belongs to no manoeuvre that begins later.
+constexpr double kUntestedKept = 256.0;
+// So many lags after it was moved the filter at rest has settled. Of n measurements it takes the mean, with
+// gain 1 / n, until it has.
+constexpr double kSettledLags = 2.0;
 }  // namespace
 
-Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
+Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, SteadyGain* steady, int axes,
+               double period_s)
     : follow_manoeuvres_(settings.follow_manoeuvres),
       conserve_angle_(settings.conserve_angle),
+      guard_(settings.guard),
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
-      ledger_(period_s) {}
+      steady_(steady),
+      change_(rest_->rate_alone()),
+      ledger_(period_s, settings.follow_manoeuvres) {
+  noise_.fill(NoiseScale(settings.measurement_noise));
+}
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   out.flags = 0;
@@ -48,46 +45,55 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
                 screen(in, out),
                 in.dt_s > 0.0 ? in.dt_s : period_s_,
                 in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0,
-                {}};
+                {},
+                0};
   rest_->predict(m.dt_s);
   begin_axes(in.rate_radps, m.valid);
   for (std::size_t a = 0; a < axes_; ++a) {
     if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->measurement(a);
+    if (noise_[a].known()) m.tested |= 1U << a;
   }
   out.innovation_radps = m.innovation;
+  published_.passed_over = false;
 
   if (follow_manoeuvres_) {
     follow(m, out);
   } else {
     update_rest(m, true);
+    publish_rest();
   }
-  guard(m, out);
+  if (guard_) guard(m, out);
   publish(m, out);
 }
 
 void Engine::restart() noexcept {
   rest_->restart();
-  monitor_.rearm();
+  trackers_.begin();
+  change_.restart();
+  outliers_.restart();
+  for (NoiseScale& noise : noise_) noise.break_off();
   started_ = 0;
   first_ = true;
-  in_manoeuvre_ = held_ = settling_ = false;
-  history_length_ = 0;
+  in_manoeuvre_ = waiting_ = begun_ = false;
+  untested_ = {};
+  since_moved_ = at_rest_for_ = 0.0;
   until_lag_ = 0;
 }
 
-std::array<double, kMaxAxes> Engine::owed() const noexcept {
+Axes Engine::owed() const noexcept {
   Axes angle{};
   if (!conserve_angle_) return angle;
-  for (std::size_t a = 0; a < axes_; ++a)
-    if (has(booked_, a)) angle[a] = ledger_.owed(a);
+  for (std::size_t a = 0; a < axes_; ++a) {
+    angle[a] = ledger_.owed(a);
+    // Outliers or a jump: nobody will tell any more, and measured they were.
+    if (!in_manoeuvre_ && !outliers_.run().empty()) angle[a] += kept_out_[a];
+  }
   return angle;
 }
 
-void Engine::owe(const std::array<double, kMaxAxes>& angle_rad) noexcept {
+void Engine::owe(const Axes& angle_rad) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (!std::isfinite(angle_rad[a]) || angle_rad[a] == 0.0) continue;
-    ledger_.owe(a, angle_rad[a]);
-    booked_ |= 1U << a;
+    if (std::isfinite(angle_rad[a]) && angle_rad[a] != 0.0) ledger_.owe(a, angle_rad[a]);
   }
 }
 
@@ -110,16 +116,11 @@ void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
   if (fresh == 0) return;
   rest_->shift_to(rate, fresh);
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(fresh, a)) continue;
-    // After a restart the debt stands; only where the lag is counted from is new.
-    if (has(booked_, a)) {
-      ledger_.end_manoeuvre(a, rate[a]);
-    } else {
-      ledger_.begin(a, rate[a]);
-    }
+    if (has(fresh, a)) ledger_.refer(a, rate[a]);
   }
+  // The trackers' first measurement is the first that all axes have had.
+  trackers_.begin();
   started_ |= fresh;
-  booked_ |= fresh;
 }
 
 void Engine::update_rest(const Measurement& m, bool learn) noexcept {
@@ -130,181 +131,125 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   // The first measurement sets the state; its innovation is zero by construction and no evidence.
   rest_->update(m.in.rate_radps, m.valid, m.noise_scale, m.in.sequence, learn && !first_);
   first_ = false;
-  if (!learn) return;
+  since_moved_ += 1.0;
+  // Where it goes under way, in the tail of a motion, or while its gain is that of a filter that was moved,
+  // its lag will not return.
+  at_rest_for_ = in_manoeuvre_ ? 0.0 : at_rest_for_ + 1.0;
+  const bool settled = at_rest_for_ * rest_->gain() > kSettledLags;
+  for (std::size_t a = 0; !settled && a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
+  // Under way, too, a filter that has had time to settle and was not found wrong is to be as far from the
+  // measurements as it believes; that of a larger model is only moved by its level, and may take longer.
+  const bool doubtful = learn || (rest_->rate_alone() && since_moved_ > kSettledLags * lag_samples());
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (has(m.valid, a)) grade(a, m.innovation[a], rest_->covariance());
+    if (!has(m.valid, a) || !(rest_->covariance() > 0.0)) continue;
+    const double normalised = m.innovation[a] / std::sqrt(rest_->covariance());
+    if (doubtful) doubt(a, normalised);
+    if (learn) grade(a, normalised);
   }
+}
+
+double Engine::lag_samples() const noexcept { return std::max(longest_lag_, 1.0); }
+
+Surprise Engine::surprise(const Measurement& m) const noexcept {
+  Surprise now;
+  now.rate = m.in.rate_radps;
+  now.innovation = m.innovation;
+  // Of R nothing: it is in the scale, and what both say of it must not differ.
+  const double usual = rest_variance_ + rest_->rule().measurement_noise();
+  if (rest_variance_ > 0.0)
+    now.rest_factor = std::max(1.0, 1.0 + (rest_->measurement_variance() - rest_variance_) / usual);
+  for (std::size_t a = 0; a < axes_; ++a) {
+    now.covered_s[a] = m.covered_s(a);
+    now.scale[a] = noise_[a].now() * m.noise_scale;
+    if (has(m.valid, a) && noise_[a].known() && now.scale[a] > 0.0) now.valid |= 1U << a;
+  }
+  return now;
 }
 
 void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
-  remember(m.in.rate_radps, m.valid);
-  const InnovationMonitor::Verdict verdict =
-      monitor_.test({m.innovation.data(), axes_}, m.valid, !in_manoeuvre_);
-  if (in_manoeuvre_) {
-    follow_manoeuvre(m, verdict, out);
-  } else if (verdict.changed_since > 0) {
-    begin_manoeuvre(verdict.changed_since, out);
-  } else if (verdict.suspect) {
-    hold(m, out);
-  } else {
-    held_ = false;
-    follow_rest(m);
-  }
-  judge_noise(m);
-}
-
-// A manoeuvre throughout which every axis had nothing but noise was none, and is over.
-void Engine::judge_noise(const Measurement& m) noexcept {
-  bool all_noise = m.valid != 0;
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(m.valid, a)) continue;
-    noise_or_motion_.take(a, m.in.rate_radps[a],
-                          in_manoeuvre_ ? trackers_.best_innovation(a) : m.innovation[a]);
-    monitor_.allow(a, noise_or_motion_.variance(a), noise_or_motion_.widening(a));
-    all_noise = all_noise && noise_or_motion_.noise(a);
-  }
-  manoeuvre_samples_ = in_manoeuvre_ ? std::min(manoeuvre_samples_ + 1, NoiseOrMotion::kWindow) : 0;
-  if (!all_noise || manoeuvre_samples_ < NoiseOrMotion::kWindow) return;
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (has(m.valid, a)) monitor_.adopt(a, noise_or_motion_.variance(a), noise_or_motion_.widening(a));
-  }
-  jump(kHistory);
-  end_manoeuvre();
-}
-
-void Engine::follow_rest(const Measurement& m) noexcept {
-  update_rest(m, !settling_);
-  if (settling_) {
-    settling_ = m.valid == 0 || rest_->variance() < kSettled * settling_variance_;
-    settling_variance_ = rest_->variance();
-    return;
-  }
-  const double share = monitor_.armed() ? 1.0 / kRestMemory : 1.0;
-  rest_gain_ += share * (rest_->measurement_gain() - rest_gain_);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(m.valid, a)) continue;
-    monitor_.learn_still(a, m.in.rate_radps[a]);
-    // Learned while the sensor moved, the rule's window holds motion, not noise.
-    if (steps_ > 0 && monitor_.learn(a, m.innovation[a], m.noise_scale)) rest_->rule().restart();
-  }
-  ++steps_;
-}
-
-// Measurement noise of an axis now: what the monitor sees of innovations at rest, less the filter's own
-// share.
-double Engine::noise(std::size_t axis) const noexcept { return monitor_.variance(axis) * (1.0 - rest_gain_); }
-
-// A sample that nothing else supports yet: passed over, and booked in case the next one supports it. In noise
-// with tails or a colour it takes several in a row.
-void Engine::hold(const Measurement& m, EstimatorOutput& out) noexcept {
-  out.flags |= kGated;
-  ++health_.gated;
-  rest_->skip();
-  if (!held_) held_angle_ = {};
-  held_ = true;
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(m.valid, a) || in_manoeuvre_) continue;
-    held_angle_[a] += (m.in.rate_radps[a] - last_output_[a]) * m.covered_s(a);
-    // Clipped, it counts for the scale: what happens to one sample in a hundred is the sensor's noise.
-    monitor_.learn(a, m.innovation[a], m.noise_scale);
-  }
-}
-
-void Engine::admit_held() noexcept {
-  if (!held_) return;
-  for (std::size_t a = 0; a < axes_; ++a) ledger_.admit(a, held_angle_[a]);
-  held_ = false;
-}
-
-void Engine::remember(const Axes& rate, std::uint32_t valid) noexcept {
-  Axes& place = history_[history_at_];
-  for (std::size_t a = 0; a < axes_; ++a) place[a] = has(valid, a) ? rate[a] : last_output_[a];
-  history_at_ = (history_at_ + 1) % kHistory;
-  if (history_length_ < kHistory) ++history_length_;
-}
-
-// The last `count` measurements, oldest first.
-std::span<const Axes> Engine::recent(std::size_t count) noexcept {
-  count = std::min(count, history_length_);
-  for (std::size_t i = 0; i < count; ++i)
-    recent_[i] = history_[(history_at_ + kHistory - count + i) % kHistory];
-  return {recent_.data(), count};
-}
-
-// P- is raised to explain the change from where it began: the filter then stands at the mean of the
-// measurements since, with their variance, as if it had been raised there and had filtered them.
-void Engine::jump(int since) noexcept {
-  const std::span<const Axes> last = recent(static_cast<std::size_t>(since));
-  const auto count = static_cast<double>(last.size());
-  Axes mean{};
-  for (const Axes& rate : last) {
-    for (std::size_t a = 0; a < axes_; ++a) mean[a] += rate[a] / count;
-  }
-  rest_->shift_to(mean, started_);
-  rest_->raise_to(rest_->rule().measurement_noise() / count);
-  rest_->skip();
-  settling_ = true;
-  settling_variance_ = rest_->variance();
-  monitor_.rearm();
-}
-
-void Engine::begin_manoeuvre(int since, EstimatorOutput& out) noexcept {
-  out.flags |= kManoeuvre;
-  ++health_.manoeuvres;
-  admit_held();
-  ledger_.begin_manoeuvre();
-  trackers_.begin(recent(static_cast<std::size_t>(since)));
-  jump(since);
-  in_manoeuvre_ = true;
-  quiet_ = calm_ = 0;
-}
-
-void Engine::follow_manoeuvre(const Measurement& m, const InnovationMonitor::Verdict& verdict,
-                              EstimatorOutput& out) noexcept {
-  out.flags |= kManoeuvre;
-  Axes noises{};
-  for (std::size_t a = 0; a < axes_; ++a) noises[a] = noise(a);
   trackers_.predict(m.dt_s / period_s_);
-  const double level_factor = 1.0 + rest_->measurement_variance() / rest_->rule().measurement_noise();
-  if (trackers_.improbable(m.in.rate_radps, noises, m.valid) && far_from_rest(m)) {
-    if (!held_) {
-      hold(m, out);
-      return;
-    }
-    admit_held();
-    trackers_.begin_again(recent(2));
-    jump(1);
-    quiet_ = calm_ = 0;
-    return;
-  }
-  held_ = false;
-  trackers_.update(m.in.rate_radps, noises, m.valid, m.innovation, level_factor);
-  if (verdict.changed_since > 0) {
-    jump(verdict.changed_since);
-    quiet_ = calm_ = 0;
+  const Surprise now = surprise(m);
+  if (in_manoeuvre_) {
+    follow_manoeuvre(m, now, out);
   } else {
-    update_rest(m, false);
-    quiet_ = trackers_.level_weight() > 0.5 ? quiet_ + 1 : 0;
-    calm_ = verdict.calm ? calm_ + 1 : 0;
+    follow_rest(m, now, out);
   }
+}
+
+// The noise under way, whether the sensor moves or not.
+void Engine::hear(const Measurement& m) noexcept {
+  const double scale = std::sqrt(1.0 / m.noise_scale);
+  // Scaled alike, the rate itself is none of a third difference; scaled differently it is all of it.
+  const bool alike = m.noise_scale == heard_scale_;
+  heard_scale_ = m.noise_scale;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!alike) noise_[a].break_off();
+    if (has(m.valid, a)) {
+      noise_[a].take(m.in.rate_radps[a] * scale);
+    } else {
+      noise_[a].break_off();
+    }
+  }
+}
+
+void Engine::learn_noise(const Measurement& m) noexcept {
+  bool newly = false, all = m.valid != 0;
+  double rest = 0.0, greatest = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
-    monitor_.learn(a, trackers_.best_innovation(a), trackers_.best_factor() * (1.0 - rest_gain_));
+    newly = noise_[a].learn(m.innovation[a] * std::sqrt(1.0 / m.noise_scale), lag_samples()) || newly;
+    all = all && noise_[a].known();
+    rest += noise_[a].rest();
+    greatest += noise_[a].greatest_noise();
   }
-  if (quiet_ >= kQuiet || calm_ >= kCalmSamples) end_manoeuvre();
+  if (steady_ == nullptr || !all) return;
+  const double axes = std::popcount(m.valid);
+  if (!begun_) steady_->begin(rest / axes, kRestMemory);
+  begun_ = true;
+  steady_->limit(greatest / axes);
 }
 
-bool Engine::far_from_rest(const Measurement& m) const noexcept {
-  for (std::size_t a = 0; a < axes_; ++a) {
-    const double bound = kFar * kFar * (monitor_.variance(a) + rest_->measurement_variance());
-    if (has(m.valid, a) && m.innovation[a] * m.innovation[a] > bound) return true;
+void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
+  if (now.valid != 0) outliers_.take(now, lag_samples());
+  const bool keep_out = now.valid != 0 && outliers_.keep_out();
+  if (now.valid != 0 && outliers_.jump()) {
+    hear(m);
+    jump(out);
+    return;
   }
-  return false;
-}
-
-void Engine::end_manoeuvre() noexcept {
-  in_manoeuvre_ = false;
-  for (std::size_t a = 0; a < axes_; ++a) ledger_.end_manoeuvre(a, rest_->rate(a));
+  hear(m);
+  if (outliers_.run().size() <= 1) kept_out_ = {};
+  if (keep_out) {
+    out.flags |= kGated;
+    ++health_.gated;
+    published_.passed_over = true;
+    for (std::size_t a = 0; a < axes_; ++a)
+      if (has(m.valid, a)) kept_out_[a] += (m.in.rate_radps[a] - rest_->rate(a)) * m.covered_s(a);
+  }
+  std::optional<std::size_t> changed;
+  if (keep_out && outliers_.run().size() == 1) {
+    trackers_.pass_over();
+  } else if (m.valid != 0) {
+    if (now.valid != 0) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
+    trackers_.correct(m.in.rate_radps, m.valid);
+  }
+  if (changed) {
+    begin_manoeuvre(m, *changed, out);
+    return;
+  }
+  if (keep_out) {
+    rest_->skip();
+  } else {
+    const double predicted = rest_->measurement_variance();
+    const bool learns = since_moved_ > kRestMemory || !begun_;
+    update_rest(m, learns);
+    if (m.valid != 0 && !first_) learn_noise(m);
+    if (learns) rest_variance_ += (begun_ ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
+  }
+  publish_rest();
+  // Until the next measurement says which, it may be the first of a jump.
+  for (std::size_t a = 0; keep_out && a < axes_; ++a)
+    published_.variance[a] += m.innovation[a] * m.innovation[a];
 }
 
 // Divergence: a covariance that is no longer one, a state that is no number, or a filter that for long has
@@ -327,44 +272,64 @@ void Engine::guard(const Measurement& m, EstimatorOutput& out) noexcept {
   restart();
   begin_axes(m.in.rate_radps, m.valid);
   update_rest(m, false);
+  publish_rest();
+}
+
+// At rest the variance is the filter's own where the noise is white. Half of it is noise; where neighbours
+// have something in common that is more by as much as their mean over a long time varies more.
+void Engine::publish_rest() noexcept {
+  published_.gain = rest_->gain();
+  // Of an innovation, as the filter believes it to be.
+  const double believed = rest_variance_ + rest_->rule().measurement_noise();
+  for (std::size_t a = 0; a < axes_; ++a) {
+    published_.rate[a] = rest_->rate(a);
+    published_.variance[a] = rest_->variance();
+    if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
+    const double wider = change_.widening(trackers_, a, lag_samples());
+    published_.variance[a] *= 0.5 * (1.0 + wider * std::max(1.0, noise_[a].rest() / believed));
+    published_.variance[a] += noise_[a].rounding();
+  }
 }
 
 void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
-    const double rest = rest_->rate(a);
-    double rate = rest;
-    out.variance_rad2ps2[a] = rest_->variance();
-    out.gain[a] = rest_->gain();
-    if (in_manoeuvre_) {
-      rate = trackers_.rate(a, rest);
-      out.variance_rad2ps2[a] = trackers_.variance(a, rest, rest_->variance(), noise(a));
-      out.gain[a] = trackers_.gain(rest_->gain());
-    }
+    double rate = published_.rate[a];
+    double variance = published_.variance[a];
     if (conserve_angle_) {
-      rate += ledger_.payment(a, lag_s_);
+      const double dt_s = m.covered_s(a);
+      const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_->variance(), dt_s);
+      rate += paid.rate();
+      variance += paid.rate() * paid.rate();
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
-      if (has(m.valid, a) && ((out.flags & kGated) == 0 || in_manoeuvre_)) {
-        ledger_.book(a, m.in.rate_radps[a], rate, m.covered_s(a), in_manoeuvre_);
-        if (!in_manoeuvre_) ledger_.settle(a, rest, lag_s_);
+      const double short_by =
+          has(m.valid, a) && !published_.passed_over ? m.in.rate_radps[a] - published_.rate[a] : 0.0;
+      const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), in_manoeuvre_);
+      // What was fallen short of before its noise was known no test has seen: a filter that begins under way
+      // finds that out late, and owes it to the manoeuvre.
+      if (!has(m.tested, a)) {
+        untested_[a] += grown;
+        tested_for_[a] = 0.0;
+      } else if ((tested_for_[a] += 1.0) > kUntestedKept) {
+        untested_[a] = 0.0;
       }
     }
     out.denoised_radps[a] = rate;
+    out.variance_rad2ps2[a] = variance;
+    out.gain[a] = published_.gain;
     out.innovation_variance[a] = rest_->covariance();
-    last_output_[a] = rate;
     health_.measurement_noise[a] = rest_->rule().measurement_noise();
   }
   health_.floor_hits = rest_->rule().floor_hits();
-  // Last, so that a payment never divides what was owed at one lag by another.
   if (--until_lag_ <= 0) {
     until_lag_ = kLagEvery;
     refresh_lag();
   }
+  // A tracker has no lag in a rate, slope or curvature that lasts.
+  health_.group_delay_s = in_manoeuvre_ ? mix_.rest_weight() * lag_s_ : lag_s_;
 }
 
 // Normalised innovation squared and lag-1 autocorrelation, over the last kHealthMemory samples or so.
-void Engine::grade(std::size_t axis, double innovation, double variance) noexcept {
-  if (!(variance > 0.0)) return;
-  const double normalised = innovation / std::sqrt(variance);
+void Engine::grade(std::size_t axis, double normalised) noexcept {
   Grade& grade = grades_[axis];
   grade.count = std::min(grade.count + 1.0, kHealthMemory);
   grade.square += (normalised * normalised - grade.square) / grade.count;
@@ -372,16 +337,29 @@ void Engine::grade(std::size_t axis, double innovation, double variance) noexcep
   grade.last = normalised;
   health_.nis_mean[axis] = grade.square;
   health_.whiteness[axis] = grade.square > 0.0 ? grade.product / grade.square : 0.0;
-  // From zero, so that it takes most of the memory to be lost: not the start-up of an adaptive rule.
-  grade.beyond += ((normalised * normalised > kBeyond * kBeyond ? 1.0 : 0.0) - grade.beyond) / kHealthMemory;
 }
 
+// From zero, so that it takes most of the memory to be lost: not the start-up of an adaptive rule.
+void Engine::doubt(std::size_t axis, double normalised) noexcept {
+  double& beyond = grades_[axis].beyond;
+  beyond += ((normalised * normalised > kBeyond * kBeyond ? 1.0 : 0.0) - beyond) / kHealthMemory;
+}
+
+// The lag of the filter at rest, not of one that has just been moved and still has to forget by how much.
 void Engine::refresh_lag() noexcept {
   const Settled now = rest_->settled();
   // A filter that has taken in nothing yet has neither.
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
-  lag_s_ = std::max(0.0, now.lag) * period_s_;
-  health_.group_delay_s = now.lag * period_s_;
+  const double lag = std::max(0.0, now.lag);
+  if (follow_manoeuvres_ && lag_s_ > 0.0 && (in_manoeuvre_ || since_moved_ < longest_lag_) &&
+      lag < longest_lag_)
+    return;
+  lag_s_ = lag * period_s_;
+  Axes rest{};
+  for (std::size_t a = 0; a < axes_; ++a) rest[a] = rest_->rate(a);
+  ledger_.set_lag(lag_s_, rest);
+  longest_lag_ = lag;
+  trackers_.reach(lag);
   health_.correlation_time_s = now.correlation * period_s_;
 }
 

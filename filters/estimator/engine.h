@@ -1,4 +1,4 @@
-// What the estimator does at each step: screen the measurement, let the filter at rest or the trackers of a
+// What the estimator does at each step: screen the measurement, let the filter at rest or the mix of a
 // manoeuvre have it, book the angle, publish.
 #pragma once
 
@@ -6,70 +6,91 @@
 #include <span>
 
 #include "filters/estimator/angle_ledger.h"
+#include "filters/estimator/change_test.h"
 #include "filters/estimator/estimator.h"
-#include "filters/estimator/fading_trackers.h"
-#include "filters/estimator/innovation_monitor.h"
-#include "filters/estimator/noise_or_motion.h"
+#include "filters/estimator/motion_mix.h"
+#include "filters/estimator/noise_scale.h"
+#include "filters/estimator/outlier_run.h"
 #include "filters/estimator/rest_filter.h"
 #include "filters/estimator/sensor_check.h"
+#include "filters/estimator/steady_gain.h"
+#include "filters/estimator/tracker_bank.h"
 
 namespace ifog {
 
+// Of a set of axes, bit i.
+[[nodiscard]] constexpr bool has(std::uint32_t set, std::size_t axis) noexcept {
+  return (set >> axis & 1U) != 0;
+}
+
 class Engine {
  public:
-  Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s);
+  // steady: the rule of `rest` when it is one whose gain is averaged, else null.
+  Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, SteadyGain* steady, int axes,
+         double period_s);
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
+  void retune(double process_noise) noexcept { rest_->retune(process_noise); }
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
 
  private:
-  // Measurements kept for starting the trackers at the beginning of a change.
-  static constexpr std::size_t kHistory = 16;
-
   // What one step knows of its measurement.
   struct Measurement {
     const EstimatorInput& in;
     std::uint32_t valid = 0;
     double dt_s = 0.0, noise_scale = 1.0;
-    Axes innovation{};  // of the filter at rest; zero where not valid
+    Axes innovation{};         // of the filter at rest; zero where not valid
+    std::uint32_t tested = 0;  // axes whose noise was known before
     [[nodiscard]] double covered_s(std::size_t axis) const noexcept {
       return in.covered_s[axis] > 0.0 ? in.covered_s[axis] : dt_s;
     }
+  };
+  // Of the published rate, payments left out.
+  struct Published {
+    Axes rate{}, variance{};
+    double gain = 0.0;
+    bool passed_over = false;  // an outlier, as it looks now: no rotation
   };
 
   [[nodiscard]] std::uint32_t screen(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void begin_axes(const Axes& rate, std::uint32_t valid) noexcept;
   void update_rest(const Measurement& m, bool learn) noexcept;
+  [[nodiscard]] Surprise surprise(const Measurement& m) const noexcept;
   void follow(const Measurement& m, EstimatorOutput& out) noexcept;
-  void follow_rest(const Measurement& m) noexcept;
-  void follow_manoeuvre(const Measurement& m, const InnovationMonitor::Verdict& verdict,
-                        EstimatorOutput& out) noexcept;
-  void begin_manoeuvre(int since, EstimatorOutput& out) noexcept;
-  void end_manoeuvre() noexcept;
-  void hold(const Measurement& m, EstimatorOutput& out) noexcept;
-  void admit_held() noexcept;
-  void judge_noise(const Measurement& m) noexcept;
-  void jump(int since) noexcept;
-  void remember(const Axes& rate, std::uint32_t valid) noexcept;
-  [[nodiscard]] std::span<const Axes> recent(std::size_t count) noexcept;
-  [[nodiscard]] bool far_from_rest(const Measurement& m) const noexcept;
-  [[nodiscard]] double noise(std::size_t axis) const noexcept;
+  void follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
+  void follow_manoeuvre(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
+  [[nodiscard]] bool unforeseen(const Measurement& m, const Surprise& now, Axes& least) noexcept;
+  void hear(const Measurement& m) noexcept;
+  void learn_noise(const Measurement& m) noexcept;
+  void jump(EstimatorOutput& out) noexcept;
+  void begin_again(const Measurement& m, const Axes& least) noexcept;
+  void judge_manoeuvre() noexcept;
+  void begin_manoeuvre(const Measurement& m, std::size_t tracker, EstimatorOutput& out) noexcept;
+  void owe_to_manoeuvre(std::size_t axis) noexcept;
+  void move_rest(const Axes& rate, double variance) noexcept;
   void guard(const Measurement& m, EstimatorOutput& out) noexcept;
+  void publish_rest() noexcept;
+  void publish_mix(const Surprise& now) noexcept;
   void publish(const Measurement& m, EstimatorOutput& out) noexcept;
-  void grade(std::size_t axis, double innovation, double variance) noexcept;
+  void grade(std::size_t axis, double normalised) noexcept;
+  void doubt(std::size_t axis, double normalised) noexcept;
   void refresh_lag() noexcept;
+  [[nodiscard]] double lag_samples() const noexcept;
 
-  bool follow_manoeuvres_, conserve_angle_;
+  bool follow_manoeuvres_, conserve_angle_, guard_;
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
+  SteadyGain* steady_;
   SensorCheck check_;
-  InnovationMonitor monitor_;
-  NoiseOrMotion noise_or_motion_;
-  FadingTrackers trackers_;
+  std::array<NoiseScale, kMaxAxes> noise_;
+  TrackerBank trackers_;
+  ChangeTest change_;
+  OutlierRun outliers_;
+  MotionMix mix_;
   AngleLedger ledger_;
   EstimatorHealth health_;
 
@@ -79,17 +100,22 @@ class Engine {
   };
   std::array<Grade, kMaxAxes> grades_{};
 
-  std::uint32_t started_ = 0, booked_ = 0;  // axes that have a state, axes whose angle is being kept
-  bool first_ = true, in_manoeuvre_ = false, held_ = false, settling_ = false, lost_ = false;
-  int quiet_ = 0, calm_ = 0, until_lag_ = 0;
-  int manoeuvre_samples_ = 0;
-  std::int64_t steps_ = 0;
-  double rest_gain_ = 0.0;          // of the measurement at rest, averaged
-  double settling_variance_ = 0.0;  // of the rate after the last measurement while P settles
+  Published published_;
+  std::uint32_t started_ = 0;  // axes that have a state
+  bool first_ = true, in_manoeuvre_ = false, lost_ = false, begun_ = false;
+  bool waiting_ = false;        // in a manoeuvre: the last measurement was foreseen by nobody
+  Axes tested_for_{};           // measurements since the noise was known
+  Axes untested_{};             // angle fallen short of while the noise was not known
+  Axes kept_out_{};             // angle of the measurements kept out in a row
+  Axes waiting_rate_{};         // that measurement
+  Axes surprised_{};            // running mean of the least normalised square in the manoeuvre
+  double rest_variance_ = 0.0;  // of the predicted rate at rest, averaged
+  double at_rest_for_ = 0.0;    // measurements since the end of the last manoeuvre
+  double since_moved_ = 0.0;    // measurements since the filter at rest was last moved
+  double heard_scale_ = 1.0;    // Measurement::noise_scale of the last one
   double lag_s_ = 0.0;
-  Axes held_angle_{}, last_output_{};
-  std::array<Axes, kHistory> history_{}, recent_{};
-  std::size_t history_at_ = 0, history_length_ = 0;
+  double longest_lag_ = 0.0;  // samples
+  int until_lag_ = 0;
 };
 
 }  // namespace ifog

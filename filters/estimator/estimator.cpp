@@ -30,6 +30,13 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
+FilterSettings in_force(FilterSettings settings) {
+  if (!settings.plain) return settings;
+  settings.follow_manoeuvres = settings.conserve_angle = settings.steady_gain = settings.guard = false;
+  settings.floor = 0.0;
+  return settings;
+}
+
 }  // namespace
 
 struct Estimator::Impl {
@@ -37,11 +44,21 @@ struct Estimator::Impl {
   Engine engine;
 };
 
-Estimator::Estimator(const FilterSettings& settings, int axes, double nominal_period_s) {
-  check(settings, axes, nominal_period_s);
+Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s) {
+  check(told, axes, nominal_period_s);
+  const FilterSettings settings = in_force(told);
+  std::unique_ptr<Rule> rule = make_rule(settings);
+  SteadyGain* steady = nullptr;
+  // What a rule without an opinion of its own is told stays; a bank's cores have one each.
+  if (settings.steady_gain && settings.follow_manoeuvres && settings.rule != "ckf" &&
+      rule->hypotheses().size() == 1) {
+    auto wrapped = std::make_unique<SteadyGain>(std::move(rule));
+    steady = wrapped.get();
+    rule = std::move(wrapped);
+  }
   auto rest = make_rest_filter(make_state_model(settings.state, settings.state_parameters, nominal_period_s),
-                               make_rule(settings), settings.process_noise, settings.measurement_noise);
-  impl_ = std::make_unique<Impl>(Engine(settings, std::move(rest), axes, nominal_period_s));
+                               std::move(rule), settings.process_noise, settings.measurement_noise);
+  impl_ = std::make_unique<Impl>(Engine(settings, std::move(rest), steady, axes, nominal_period_s));
 }
 
 Estimator::~Estimator() = default;
@@ -50,8 +67,9 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
 void Estimator::restart() noexcept { impl_->engine.restart(); }
-std::array<double, kMaxAxes> Estimator::owed() const noexcept { return impl_->engine.owed(); }
-void Estimator::owe(const std::array<double, kMaxAxes>& angle_rad) noexcept { impl_->engine.owe(angle_rad); }
+void Estimator::retune(double process_noise) noexcept { impl_->engine.retune(process_noise); }
+Axes Estimator::owed() const noexcept { return impl_->engine.owed(); }
+void Estimator::owe(const Axes& angle_rad) noexcept { impl_->engine.owe(angle_rad); }
 const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine.health(); }
 
 }  // namespace ifog

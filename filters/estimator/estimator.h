@@ -62,6 +62,8 @@ class Estimator {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;  // forget the state, keep the counters
+  // Another driving noise, FilterSettings::process_noise, from the next step on; the state stays. > 0.
+  void retune(double process_noise) noexcept;
   // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
   // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
   // step, so that a reload in a turn loses none.

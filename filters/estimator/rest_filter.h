@@ -18,6 +18,8 @@ class RestFilter {
   virtual ~RestFilter() = default;
 
   virtual void restart() noexcept = 0;
+  // Another driving noise from the next prediction on.
+  virtual void retune(double process_noise) noexcept = 0;
   // Eqs. (9), (10) of the paper over dt.
   virtual void predict(double dt_s) noexcept = 0;
   // Takes in the measurements of the axes in `valid`. With learn off the rule keeps its opinion of R: the
@@ -30,6 +32,8 @@ class RestFilter {
   // Moves the level of the axes in `which` until the measurement would be this, leaving what the model holds
   // beside it (a line, a slope) alone.
   virtual void shift_to(const Axes& rate, std::uint32_t which) noexcept = 0;
+  // The same until the rate is this, whatever is measured beside it.
+  virtual void shift_rate_to(const Axes& rate, std::uint32_t which) noexcept = 0;
   // Raises P so that the variance of the rate is at least this.
   virtual void raise_to(double variance) noexcept = 0;
   // Lag and correlation if the gain stayed as it is.
@@ -46,6 +50,8 @@ class RestFilter {
   [[nodiscard]] double measurement(std::size_t axis) const noexcept { return measurement_[axis]; }
   [[nodiscard]] double measurement_variance() const noexcept { return measurement_variance_; }
   [[nodiscard]] double measurement_gain() const noexcept { return measurement_gain_; }
+  // The rate is all that is measured: the model knows no colour and no line.
+  [[nodiscard]] bool rate_alone() const noexcept { return rate_alone_; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
   [[nodiscard]] const Rule& rule() const noexcept { return *rule_; }
@@ -57,6 +63,7 @@ class RestFilter {
   Axes rate_{}, measurement_{};
   double variance_ = 0.0, gain_ = 0.0, covariance_ = 0.0;
   double measurement_variance_ = 0.0, measurement_gain_ = 0.0;
+  bool rate_alone_ = true;
 };
 
 // Throws std::invalid_argument when the model has too many states.

@@ -27,6 +27,7 @@ class SizedRestFilter final : public RestFilter {
     constexpr double kDiffuse = 1e6;
     start_.diagonal() += kDiffuse * measurement_noise * model_->diffuse();
     for (Core& core : cores_) core.h = model_->measurement();
+    rate_alone_ = readout_ == cores_[0].h;
     restart();
   }
 
@@ -39,6 +40,11 @@ class SizedRestFilter final : public RestFilter {
     weighed_ = 0.0;
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) mean_weight_[j] = rule_->weight(j);
     refresh();
+  }
+
+  void retune(double process_noise) noexcept override {
+    process_noise_ = process_noise;
+    discretised_dt_s_ = 0.0;
   }
 
   void predict(double dt_s) noexcept override {
@@ -74,7 +80,7 @@ class SizedRestFilter final : public RestFilter {
       const double projected = core.variance();
       const double c = learn ? rule_->innovation_covariance(
                                    {projected, noise_scale, {innovations.data(), count}, sequence, j})
-                             : projected + rule_->measurement_noise() * noise_scale;
+                             : projected + rule_->measurement_noise_of(j) * noise_scale;
       core.correct(c);
       for (std::size_t i = 0; i < count; ++i) core.update(axes[i], innovations[i]);
       mixture += weight * c;
@@ -90,14 +96,9 @@ class SizedRestFilter final : public RestFilter {
     covariance_ = measurement_variance_ + rule_->measurement_noise();
   }
 
-  void shift_to(const Axes& rate, std::uint32_t which) noexcept override {
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      for (int axis = 0; axis < Core::kAxes; ++axis) {
-        if ((which >> static_cast<unsigned>(axis) & 1U) == 0) continue;
-        cores_[j].x.col(axis) += level_ * (rate[static_cast<std::size_t>(axis)] - cores_[j].rate(axis));
-      }
-    }
-    refresh();
+  void shift_to(const Axes& rate, std::uint32_t which) noexcept override { shift(cores_[0].h, rate, which); }
+  void shift_rate_to(const Axes& rate, std::uint32_t which) noexcept override {
+    shift(readout_, rate, which);
   }
 
   void raise_to(double variance) noexcept override {
@@ -138,6 +139,16 @@ class SizedRestFilter final : public RestFilter {
 
   Settled settled(const Core& core) const noexcept {
     return ifog::settled<n>(transition_, core.h, readout_, core.gain, core.p);
+  }
+
+  void shift(const typename Core::Vector& of, const Axes& to, std::uint32_t which) noexcept {
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      for (int axis = 0; axis < Core::kAxes; ++axis) {
+        if ((which >> static_cast<unsigned>(axis) & 1U) == 0) continue;
+        cores_[j].x.col(axis) += level_ * (to[static_cast<std::size_t>(axis)] - along(of, cores_[j], axis));
+      }
+    }
+    refresh();
   }
 
   void average_weights() noexcept {

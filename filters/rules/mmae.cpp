@@ -38,15 +38,16 @@ class Mmae final : public Rule {
 
   double innovation_covariance(const RuleInput& in) noexcept override {
     const std::size_t j = in.hypothesis;
-    const double c = in.projected + noise_ * kNoiseFactors[j / kProcessFactors.size()] * in.noise_scale;
+    const double c = in.projected + measurement_noise_of(j) * in.noise_scale;
     double squares = 0.0;
     for (const double v : in.innovations) squares += v * v;
     log_[j] -= 0.5 * (squares / c + static_cast<double>(in.innovations.size()) * logarithm(c / noise_));
     if (j + 1 == kModels) weigh();
     return c;
   }
-  double measurement_noise() const noexcept override {
-    return noise_ * kNoiseFactors[likeliest_ / kProcessFactors.size()];
+  double measurement_noise() const noexcept override { return measurement_noise_of(likeliest_); }
+  double measurement_noise_of(std::size_t hypothesis) const noexcept override {
+    return noise_ * kNoiseFactors[hypothesis / kProcessFactors.size()];
   }
   void restart() noexcept override {
     log_ = {};

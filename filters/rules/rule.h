@@ -34,6 +34,10 @@ class Rule {
 
   // Measurement noise the rule now believes in, at the nominal period, (rad/s)^2.
   [[nodiscard]] virtual double measurement_noise() const noexcept = 0;
+  // The same as one core of a bank holds it to be.
+  [[nodiscard]] virtual double measurement_noise_of(std::size_t) const noexcept {
+    return measurement_noise();
+  }
 
   virtual void restart() noexcept = 0;
 
@@ -45,7 +49,7 @@ class Rule {
   }
   [[nodiscard]] virtual double weight(std::size_t) const noexcept { return 1.0; }
 
-  [[nodiscard]] std::uint64_t floor_hits() const noexcept { return floor_hits_; }
+  [[nodiscard]] virtual std::uint64_t floor_hits() const noexcept { return floor_hits_; }
 
  protected:
   // C >= h'P h + epsilon R0: below it the gain exceeds one and the covariance turns negative. Ours, not the

@@ -27,6 +27,9 @@ struct FilterSettings {
   double floor = 0.01;            // epsilon of the floor on the innovation covariance; 0 switches it off
   bool follow_manoeuvres = true;  // the cure for inertia
   bool conserve_angle = true;     // integral of (denoised - compensated) returns to zero
+  bool steady_gain = true;        // the gain of the average of what the rule has believed of R
+  bool guard = true;              // a filter that has diverged starts again
+  bool plain = false;             // the rule's filter and nothing else: the four above off, no floor
   std::uint64_t seed = 1;         // of the weights
 };
 
@@ -36,7 +39,7 @@ struct FilterChoice {
   std::optional<double> process_noise, measurement_noise, floor;
   std::optional<std::vector<double>> state_parameters;
   std::optional<int> window, draws;
-  std::optional<bool> follow_manoeuvres, conserve_angle;
+  std::optional<bool> follow_manoeuvres, conserve_angle, steady_gain, guard, plain;
   std::optional<std::uint64_t> seed;
 };
 

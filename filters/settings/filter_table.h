@@ -36,7 +36,7 @@ struct SettingMember {
 
 struct FilterSetting {
   const char* key;     // in TOML
-  const char* option;  // on the command line; of a boolean, the flag that makes it false
+  const char* option;  // on the command line; of a boolean, the flag that makes it what it is not by default
   std::variant<SettingMember<bool>, SettingMember<int>, SettingMember<std::uint64_t>, SettingMember<double>,
                SettingMember<std::string>, SettingMember<std::vector<double>>>
       member;

@@ -68,7 +68,7 @@ TEST_P(ColouredNoise, DoesNotHideAChangeOfRate) {
 }
 
 // Noise that trackers predict better than the filter at rest for ever: a sensor sampled much faster than its
-// own filter is. It takes two windows of NoiseOrMotion, at least, to see that it is none; from then on it is
+// own filter is. Once the colour is learned it is
 // as quiet as without the test, and a change of rate is still found.
 TEST(StronglyColouredNoise, IsNotFollowedForEver) {
   constexpr std::size_t kLearned = 25'000;
@@ -94,8 +94,9 @@ TEST(StronglyColouredNoise, IsNotFollowedForEver) {
       ASSERT_NEAR(got.denoised[i], 40.0, 6.0)
           << i - change << " after the change, correlation " << correlation;
     }
-    // Passed over for tens of samples before it is believed, the change still is not lost to the angle.
-    EXPECT_LT(std::abs(lost), 10 * 40.0) << "correlation " << correlation;
+    // Passed over for tens of samples before it is believed, the change still is not lost to the angle. What
+    // the lag of a thousand samples holds of the colour's own wander of 0.2 sigma is.
+    EXPECT_LT(std::abs(lost), 20 * 40.0) << "correlation " << correlation;
   }
 }
 

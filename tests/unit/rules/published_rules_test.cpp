@@ -37,7 +37,8 @@ Scalar started(double first) {
   return {first, prior * kR / (prior + kR)};
 }
 
-void expect_equal(const char* rule, const std::function<void(Scalar&, double, int)>& published) {
+void expect_equal(const char* rule, const std::function<void(Scalar&, double, int)>& published,
+                  double first_variance = started(0.0).p) {
   ifog::FilterSettings settings;
   settings.rule = rule;
   settings.process_noise = kQ / kPeriod;
@@ -48,7 +49,7 @@ void expect_equal(const char* rule, const std::function<void(Scalar&, double, in
   ifog::EstimatorInput in;
   ifog::EstimatorOutput out;
   const std::vector<double> z = measurements();
-  Scalar state = started(z[0]);
+  Scalar state{z[0], first_variance};
   for (std::size_t k = 0; k < z.size(); ++k) {
     in.sequence = k;
     in.dt_s = kPeriod;
@@ -130,21 +131,26 @@ TEST(PublishedEquations, ResidualBasedEstimation) {
 
 TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
   constexpr int kModels = 15;
+  const auto process = [](int j) { return kQ * std::pow(100.0, j % 5 - 2); };
+  const auto noise = [](int j) { return kR * std::pow(100.0, j / 5 - 1); };
   std::vector<Scalar> bank;
   std::vector<double> log_weight(kModels, 0.0);
-  expect_equal("mmae", [&](Scalar& s, double z, int k) {
-    if (k == 1) {
-      for (int j = 0; j < kModels; ++j) {
-        const double prior = 1e6 * kR + kQ * std::pow(100.0, j % 5 - 2);
-        bank.push_back({s.x, prior * kR / (prior + kR)});
-      }
-    }
+  // After the first measurement each filter has its own noise, and all weigh the same.
+  double first_variance = 0.0;
+  for (int j = 0; j < kModels; ++j) {
+    const double prior = 1e6 * kR + process(j);
+    bank.push_back({0.0, prior * noise(j) / (prior + noise(j))});
+    first_variance += bank.back().p / kModels;
+  }
+  const auto published = [&](Scalar& s, double z, int k) {
+    for (Scalar& f : bank)
+      if (k == 1) f.x = s.x;
     double greatest = -1e300;
     for (int j = 0; j < kModels; ++j) {
       const auto at = static_cast<std::size_t>(j);
       Scalar& f = bank[at];
-      const double prior = f.p + kQ * std::pow(100.0, j % 5 - 2);
-      const double c = prior + kR * std::pow(100.0, j / 5 - 1);
+      const double prior = f.p + process(j);
+      const double c = prior + noise(j);
       const double innovation = z - f.x;
       log_weight[at] -= 0.5 * (innovation * innovation / c + std::log(c));
       greatest = std::max(greatest, log_weight[at]);
@@ -165,7 +171,8 @@ TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
       const double apart = bank[j].x - s.x;
       s.p += std::exp(log_weight[j]) / sum * (bank[j].p + apart * apart);
     }
-  });
+  };
+  expect_equal("mmae", published, first_variance);
 }
 
 TEST(Rules, AreAllMadeByName) {

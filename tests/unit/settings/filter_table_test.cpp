@@ -95,6 +95,9 @@ TEST(FilterTable, AModelFileKeepsEverySetting) {
   model.filter->floor = 0.25;
   model.filter->follow_manoeuvres = false;
   model.filter->conserve_angle = false;
+  model.filter->steady_gain = false;
+  model.filter->guard = false;
+  model.filter->plain = true;
   model.filter->seed = 5;
   const Model back = parse_model(model_text(model), "f");
   ASSERT_TRUE(back.filter.has_value());

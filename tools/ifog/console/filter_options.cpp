@@ -26,7 +26,11 @@ template <typename T>
 CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choice) {
   if constexpr (std::is_same_v<T, bool>) {
     return app.add_flag_callback(
-        setting.option, [&setting, &choice] { static_cast<void>(choose(setting, false, choice)); },
+        setting.option,
+        [&setting, &choice] {
+          const bool usual = std::get<bool>(value_of(setting, FilterSettings{}));
+          static_cast<void>(choose(setting, !usual, choice));
+        },
         help(setting));
   } else {
     return app.add_option_function<Read<T>>(

@@ -15,6 +15,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/estimator/smoother.h"
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
@@ -34,14 +35,16 @@ struct Options {
   double nominal_rate_hz = 0.0, start_up_s = 0.0;
   CaptureInput input;
   FilterChoice filter;
+  bool smooth = false;
 };
 
 struct Series {
   std::vector<double> raw, compensated, denoised, variance;
+  std::vector<double> smoothed, smoothed_variance;  // empty unless asked for
 };
 
 struct Columns {
-  std::vector<double> time_s;
+  std::vector<double> time_s, dt_s;
   std::vector<Series> axes;
   std::uint64_t gated = 0, stale = 0, out_of_range = 0, unknown_noise = 0;
 };
@@ -54,16 +57,20 @@ void append(std::string& text, double value) {
 
 std::string as_text(const Columns& columns, const OfflineResult& result) {
   std::string text = "time_s";
+  const bool smoothed = !columns.axes.empty() && !columns.axes[0].smoothed.empty();
   for (const std::string& axis : result.axes) {
     const std::string suffix = axis.empty() ? "" : "_" + axis;
     text += ",raw" + suffix + "_radps,compensated" + suffix + "_radps,denoised" + suffix + "_radps,variance" +
             suffix + "_rad2ps2";
+    if (smoothed) text += ",smoothed" + suffix + "_radps,smoothed_variance" + suffix + "_rad2ps2";
   }
   text += '\n';
   for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
     append(text, columns.time_s[i]);
     for (const Series& axis : columns.axes)
-      for (const auto* const series : {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance}) {
+      for (const auto* const series : {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance,
+                                       &axis.smoothed, &axis.smoothed_variance}) {
+        if (series->empty()) continue;
         text += ',';
         append(text, (*series)[i]);
       }
@@ -124,6 +131,8 @@ nlohmann::json summary(const Options& options, const Columns& columns, const Off
             {"floor", filter.floor},
             {"follow_manoeuvres", filter.follow_manoeuvres},
             {"conserve_angle", filter.conserve_angle},
+            {"guard", filter.guard},
+            {"steady_gain", filter.steady_gain},
             {"seed", filter.seed}}},
           {"axes", axes}};
 }
@@ -210,6 +219,23 @@ void tell(const Options& options, const Columns& columns, const OfflineResult& r
         moments(columns.axes[a].denoised).second / kDegreePerHour);
 }
 
+// What the chain left out as invalid takes no part; what it compensated does, so that the same effects are
+// removed.
+void smooth(Columns& columns, const OfflineResult& result) {
+  if (!result.noise_known)
+    throw std::runtime_error(
+        "--smooth: the capture is shorter than the start-up that would show its noise; "
+        "expected --process-noise and --measurement-noise");
+  std::vector<std::vector<double>> rates;
+  for (const Series& axis : columns.axes) rates.push_back(axis.compensated);
+  std::vector<Smoothed> smoothed =
+      ifog::smooth(result.filter, rates, columns.dt_s, 1.0 / result.sample_rate_hz);
+  for (std::size_t a = 0; a < columns.axes.size(); ++a) {
+    columns.axes[a].smoothed = std::move(smoothed[a].rate_radps);
+    columns.axes[a].smoothed_variance = std::move(smoothed[a].variance_rad2ps2);
+  }
+}
+
 void run(Options options) {
   will_write("--output", options.output);
   will_write("--json", options.json);
@@ -220,6 +246,7 @@ void run(Options options) {
   columns.axes.resize(kMaxAxes);
   const auto sink = [&](double time_s, const Increment& increment, const ChainOutput& out) {
     columns.time_s.push_back(time_s);
+    columns.dt_s.push_back(increment.dt_s);
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
       Series& axis = columns.axes[a];
       axis.raw.push_back(increment.rate_radps[a]);
@@ -244,6 +271,7 @@ void run(Options options) {
     result = denoise_capture(options.input.read(capture), settings, sink);
   }
   columns.axes.resize(result.axes.size());
+  if (options.smooth) smooth(columns, result);
   write_text_file(options.output, as_text(columns, result));
   tell(options, columns, result);
   if (!options.json.empty()) write_json(options.json, summary(options, columns, result));
@@ -263,6 +291,8 @@ void add_denoise(CLI::App& app) {
       ->type_name("FILE");
   options->input.add_to(*command);
   add_filter_options(*command, options->filter);
+  command->add_flag("--smooth", options->smooth,
+                    "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
   command->add_option("--model", options->model, "Model file of the sensor")->type_name("FILE");
   command->add_option("--config", options->config, "Take all settings from the daemon's configuration")
       ->type_name("FILE");

@@ -1,0 +1,130 @@
+#include "filters/estimator/change_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/random/log_exp.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMemories = 3.0;
+constexpr double kLeastHorizon = 5.0;
+// Least ratio: what speaks for rest must not delay what comes then.
+constexpr double kLeast = -5.0;
+// By how much less evidence is asked for after a motion, and for how long, samples.
+constexpr double kRelaxed = 10.0;
+constexpr double kRelaxedFor = 1000.0;
+// Widenings are believed as found once they stand on ten horizons, and forgotten after four hundred.
+constexpr double kHorizonsBelieved = 10.0;
+constexpr double kHorizonsKept = 400.0;
+// One sum counts for so many times what is known: a motion about to be found is no colour.
+constexpr double kWideningClip = 16.0;
+// What was found may have been this much too small.
+constexpr double kWideningMargin = 1.25;
+// Squares are known to this many measurements' worth before there are any.
+constexpr double kPrior = 4.0;
+constexpr double kSquareClip = 400.0;
+// What a tracker gains on a wrong model with each measurement: before it was seen, and over how many horizons
+// it is averaged then.
+constexpr double kModelDoubt = 0.1;
+constexpr double kUsualHorizons = 5.0;
+
+}  // namespace
+
+ChangeTest::ChangeTest(bool rate_alone) : rate_alone_(rate_alone) {
+  for (Contest& contest : contests_) contest.usual = rate_alone ? 0.0 : kModelDoubt;
+}
+
+double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
+
+void ChangeTest::restart() noexcept {
+  for (Contest& contest : contests_) {
+    contest.ratio = contest.rest = contest.tracker = contest.rest_squares = 0.0;
+    for (Sum& sum : contest.sums) sum.angle = sum.normalised = 0.0;
+  }
+  relaxed_ = kRelaxed;
+}
+
+// Learns how wide the sums are at rest; gives by how much the test is to believe them wider than white
+// noise's.
+double ChangeTest::widen(Sum& sum, double normalised, double horizon, const NoiseScale& noise) noexcept {
+  const double keep = 1.0 - 1.0 / horizon;
+  sum.normalised = keep * sum.normalised + normalised;
+  const double found = sum.normalised * sum.normalised * (1.0 - keep * keep);
+  sum.horizons = std::min(sum.horizons + 1.0 / horizon, kHorizonsKept);
+  sum.widening += (std::min(found, kWideningClip * std::max(sum.widening, 1.0)) - sum.widening) /
+                  (horizon * (sum.horizons + 1.0));
+  if (noise.white()) return 1.0;
+  // Of coloured noise nothing known yet: all that is not rough may be as slow as the horizon.
+  const double most = std::max(1.0, horizon * (1.0 - 1.0 / noise.colour()));
+  const double believed =
+      (kHorizonsBelieved * most + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
+  return kWideningMargin * std::max(1.0, believed);
+}
+
+// Log-likelihood ratio of two predictors of unknown variance: n/2 times the logarithm of the ratio of their
+// mean squares, n the number of measurements that the squares of the worse one come from.
+double ChangeTest::unknown_variance(const Contest& contest) noexcept {
+  if (!(contest.rest_squares > 0.0)) return 0.0;
+  const double samples = contest.rest * contest.rest / contest.rest_squares;
+  return 0.5 * samples * logarithm((kPrior + contest.rest) / (kPrior + contest.tracker));
+}
+
+std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const Surprise& now,
+                                            const std::array<NoiseScale, kMaxAxes>& noise, double most,
+                                            double lag) noexcept {
+  const double log_rest = logarithm(now.rest_factor);
+  relaxed_ *= 1.0 - 1.0 / kRelaxedFor;
+  double greatest = 0.0;
+  std::optional<std::size_t> best;
+  for (std::size_t j = 0; j < trackers.size(); ++j) {
+    Contest& contest = contests_[j];
+    const double h = horizon(trackers.memory(j)), keep = 1.0 - 1.0 / h;
+    double gained = 0.0, rest_square = 0.0, tracker_square = 0.0, widest = 1.0;
+    for (std::size_t a = 0; a < kMaxAxes; ++a) {
+      if ((now.valid >> a & 1U) == 0) continue;
+      const double scale = now.scale[a], apart = now.rate[a] - trackers.rate(j, a);
+      const double rest = now.innovation[a] * now.innovation[a] / (now.rest_factor * scale);
+      const double tracker = apart * apart / (trackers.factor(j) * scale);
+      Sum& sum = contest.sums[a];
+      sum.angle = keep * sum.angle + now.innovation[a] * now.covered_s[a];
+      const double wide = widen(sum, now.innovation[a] / std::sqrt(scale), h, noise[a]);
+      gained +=
+          0.5 *
+          (std::min(rest, 2.0 * most) + log_rest - std::min(tracker, 2.0 * most) - trackers.log_factor(j)) /
+          wide;
+      rest_square += std::min(rest, kSquareClip);
+      tracker_square += std::min(tracker, kSquareClip);
+      widest = std::max(widest, wide);
+    }
+    if (!rate_alone_) {
+      contest.usual += (std::clamp(gained, -1.0, 1.0) - contest.usual) / (kUsualHorizons * h);
+      gained -= std::max(contest.usual, 0.0);
+    }
+    contest.ratio = std::max(keep * contest.ratio + gained, kLeast);
+    contest.rest = keep * contest.rest + rest_square;
+    contest.tracker = keep * contest.tracker + tracker_square;
+    contest.rest_squares = keep * contest.rest_squares + rest_square * rest_square;
+    // A ratio over a long horizon is not looked at afresh with each sample.
+    const double asked = kEvidence - relaxed_ - logarithm(h / kLeastHorizon);
+    if (contest.ratio - asked <= greatest) continue;
+    // That noise has become louder is the likelier, the less often the rate changes beside the filter's lag.
+    if (unknown_variance(contest) / widest <= logarithm(std::max(lag, 1.0))) continue;
+    greatest = contest.ratio - asked;
+    best = j;
+  }
+  return best;
+}
+
+double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept {
+  double widest = 1.0;
+  for (std::size_t j = 1; j < trackers.size() && horizon(trackers.memory(j)) <= 2.0 * lag; ++j) {
+    const Sum& sum = contests_[j].sums[axis];
+    widest = std::max(widest,
+                      (kHorizonsBelieved + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons));
+  }
+  return widest;
+}
+
+}  // namespace ifog

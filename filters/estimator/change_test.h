@@ -1,0 +1,85 @@
+// Whether the rate changes: does a tracker predict the measurements so much better than the filter at rest
+// that noise cannot be the reason?
+//
+// For each tracker the log-likelihood ratio of its predictions against those of the filter at rest, over
+// three of its memories: Page's test (Biometrika 41, 1954) with a bank of alternatives, so that a jump is
+// found in samples and a drift of a hundredth of the noise in thousands. Three things keep noise out:
+// - a single measurement counts for no more than outliers are rare (OutlierRun);
+// - where the noise is coloured at rest, the ratio is divided by how much wider the sums of innovations over
+//   that horizon are than white noise's;
+// - noise that has just become louder is told from motion by the ratio each predictor earns under its own
+//   best variance, the known one forgotten: the generalised likelihood ratio with unknown variance;
+// - a model of colour or of a line may have become wrong, and then its filter predicts worse than any
+//   tracker, though nothing moves: what a tracker gains on it all the time is no change.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "filters/estimator/noise_scale.h"
+#include "filters/estimator/tracker_bank.h"
+
+namespace ifog {
+
+// What a step knows of its measurement beside the measurement.
+struct Surprise {
+  std::uint32_t valid = 0;  // axes whose noise is known
+  Axes rate{};
+  Axes innovation{};         // of the filter at rest
+  Axes covered_s{};          // time it stands for
+  Axes scale{};              // variance of an innovation at rest as the noise is now
+  double rest_factor = 1.0;  // innovation variance of the filter at rest over that
+};
+
+class ChangeTest {
+ public:
+  // e^-18 is 1.5e-8: on white noise not one false change in 3e6 samples.
+  static constexpr double kEvidence = 18.0;
+
+  // rate_alone: that of the filter at rest.
+  explicit ChangeTest(bool rate_alone);
+
+  // After trackers.predict(), before correct(). most: what one measurement may count for at most; lag: of the
+  // filter at rest, samples. Gives the tracker that shows a change.
+  std::optional<std::size_t> take(const TrackerBank& trackers, const Surprise& now,
+                                  const std::array<NoiseScale, kMaxAxes>& noise, double most,
+                                  double lag) noexcept;
+  // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
+  void restart() noexcept;
+  // By which the variance of an axis's innovations summed over up to two lags is above white noise's: what
+  // neighbours have in common widens it, and what a filter lags behind. Over longer the filter takes part in
+  // the sum and narrows it.
+  [[nodiscard]] double widening(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept;
+  // Sum of the innovations an axis has had over the tracker's horizon, by the time each stands for, rad: what
+  // was owed before is not this change's.
+  [[nodiscard]] double fallen_short(std::size_t tracker, std::size_t axis) const noexcept {
+    return contests_[tracker].sums[axis].angle;
+  }
+  [[nodiscard]] static double horizon(double memory) noexcept;
+
+ private:
+  struct Sum {
+    double angle = 0.0;       // of innovations by their time over the horizon
+    double normalised = 0.0;  // the same of innovations over their scale
+    double widening = 1.0;    // of its variance over white noise's, as found
+    double horizons = 0.0;    // from so many of them
+  };
+  struct Contest {
+    double ratio = 0.0;  // log-likelihood ratio
+    double usual = 0.0;  // what a measurement adds to it, on average over many horizons
+    // Of normalised squares over the horizon: the filter at rest's, the tracker's, and the squares of the
+    // former, for the number of measurements they stand on.
+    double rest = 0.0, tracker = 0.0, rest_squares = 0.0;
+    std::array<Sum, kMaxAxes> sums{};
+  };
+
+  double widen(Sum& sum, double normalised, double horizon, const NoiseScale& noise) noexcept;
+  [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
+
+  bool rate_alone_;
+  std::array<Contest, TrackerBank::kMost> contests_{};
+  double relaxed_ = 0.0;
+};
+
+}  // namespace ifog

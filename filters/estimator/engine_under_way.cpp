@@ -1,0 +1,185 @@
+// The engine under way: from a change of rate that was found to the end of the motion.
+#include <algorithm>
+#include <cmath>
+
+#include "filters/estimator/engine.h"
+
+namespace ifog {
+namespace {
+
+// In a manoeuvre a measurement waits for the next one when the filter at rest and all trackers find it this
+// many sigmas away, or of what has lately been the least.
+constexpr double kFar = 5.5;
+constexpr double kSurpriseMemory = 20.0;
+constexpr double kMostSurprise = 400.0;
+
+}  // namespace
+
+// The filter at rest stands where it is told, with that variance, as if it had been raised when the rate
+// changed and had filtered since. What its lag owes then is not returned by it.
+void Engine::move_rest(const Axes& rate, double variance) noexcept {
+  rest_->shift_rate_to(rate, started_);
+  rest_->raise_to(variance);
+  for (std::size_t a = 0; a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
+  since_moved_ = at_rest_for_ = 0.0;
+}
+
+// What a change of rate that was just found has left behind beside what the test has seen of it.
+void Engine::owe_to_manoeuvre(std::size_t axis) noexcept {
+  ledger_.admit(axis, kept_out_[axis]);
+  ledger_.move_to_manoeuvre(axis, untested_[axis]);
+  untested_[axis] = 0.0;
+}
+
+// Measurements that looked like outliers are a jump: all begin with them.
+void Engine::jump(EstimatorOutput& out) noexcept {
+  out.flags |= kManoeuvre;
+  ++health_.manoeuvres;
+  const std::span<const Axes> run = outliers_.run();
+  const auto count = static_cast<double>(run.size());
+  Axes mean{};
+  for (std::size_t a = 0; a < axes_; ++a) {
+    for (const Axes& rate : run) mean[a] += rate[a] / count;
+    owe_to_manoeuvre(a);
+  }
+  ledger_.pace(count);
+  trackers_.begin(run);
+  move_rest(mean, rest_->rule().measurement_noise() / count);
+  rest_->skip();
+  outliers_.clear();
+  mix_.begin(0.0);
+  in_manoeuvre_ = true;
+  waiting_ = false;
+  surprised_ = {};
+  published_.gain = 1.0 / count;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    published_.rate[a] = rest_->rate(a);
+    published_.variance[a] = rest_->variance();
+  }
+}
+
+void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, EstimatorOutput& out) noexcept {
+  out.flags |= kManoeuvre;
+  ++health_.manoeuvres;
+  Axes rate{};
+  for (std::size_t a = 0; a < axes_; ++a) {
+    rate[a] = trackers_.rate(tracker, a);
+    ledger_.move_to_manoeuvre(a, change_.fallen_short(tracker, a));
+    owe_to_manoeuvre(a);
+  }
+  ledger_.pace(trackers_.length(tracker));
+  mix_.begin(std::min(since_moved_, ChangeTest::horizon(trackers_.memory(tracker))));
+  trackers_.begin_from(std::min(tracker + 1, trackers_.size()), tracker);
+  double scale = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a) scale = std::max(scale, noise_[a].now());
+  move_rest(rate, trackers_.output_factor(tracker) * scale);
+  in_manoeuvre_ = true;
+  update_rest(m, false);
+  outliers_.clear();
+  waiting_ = false;
+  surprised_ = {};
+  publish_rest();
+}
+
+// Whether nobody foresaw this measurement, by what has lately surprised the best of all.
+bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) noexcept {
+  bool far = false, beyond = false;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(now.valid, a)) continue;
+    double smallest = 1e300;
+    for (std::size_t j = 0; j < trackers_.size(); ++j) {
+      const double apart = m.in.rate_radps[a] - trackers_.rate(j, a);
+      smallest = std::min(smallest, apart * apart / (trackers_.factor(j) * now.scale[a]));
+    }
+    least[a] = smallest;
+    const double own = m.innovation[a] * m.innovation[a] / (now.rest_factor * now.scale[a]);
+    far = far || own > kFar * kFar;
+    beyond = beyond || smallest > kFar * kFar * std::max(1.0, surprised_[a]);
+  }
+  return far && beyond;
+}
+
+// A blow goes on as it began, and its next sample is no outlier for being as far off.
+void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
+  const std::array<Axes, 2> both{waiting_rate_, m.in.rate_radps};
+  trackers_.begin(both);
+  double scale = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    surprised_[a] = std::max(surprised_[a], least[a]);
+    scale = std::max(scale, noise_[a].now());
+  }
+  move_rest(m.in.rate_radps, scale);
+  mix_.begin(0.0);
+  waiting_ = false;
+  rest_->skip();
+  mix_.weigh(trackers_);
+}
+
+void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
+  out.flags |= kManoeuvre;
+  Axes least{};
+  const bool unforeseen_now = unforeseen(m, now, least);
+  hear(m);
+  if (unforeseen_now && !waiting_) {
+    out.flags |= kGated;
+    ++health_.gated;
+    waiting_ = true;
+    waiting_rate_ = m.in.rate_radps;
+    rest_->skip();
+    for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += m.innovation[a] * m.innovation[a];
+    return;
+  }
+  if (unforeseen_now) {
+    begin_again(m, least);
+    publish_mix(now);
+    return;
+  }
+  waiting_ = false;
+  if (m.valid == 0) {
+    rest_->skip();
+    publish_mix(now);
+    return;
+  }
+  for (std::size_t a = 0; a < axes_; ++a)
+    surprised_[a] += (std::min(least[a], kMostSurprise) - surprised_[a]) / kSurpriseMemory;
+  mix_.judge(trackers_, now, least);
+  trackers_.correct(m.in.rate_radps, m.valid);
+  update_rest(m, false);
+  mix_.weigh(trackers_);
+  publish_mix(now);
+  ledger_.pace(mix_.length(trackers_, rest_->gain()));
+  judge_manoeuvre();
+}
+
+// Who is to begin afresh, and whether the motion is over.
+void Engine::judge_manoeuvre() noexcept {
+  if (mix_.rest_is_wrong()) {
+    double variance = 0.0, scale = 0.0;
+    for (std::size_t a = 0; a < axes_; ++a) {
+      variance = std::max(variance, published_.variance[a]);
+      scale = std::max(scale, noise_[a].now());
+    }
+    move_rest(published_.rate, std::min(variance, scale));
+    mix_.begin_rest();
+  }
+  if (const std::size_t broken = mix_.broken(trackers_); broken < trackers_.size())
+    trackers_.begin_from(broken, broken - 1);
+  if (mix_.rest_is_right()) {
+    in_manoeuvre_ = false;
+    change_.restart();
+    outliers_.clear();
+    publish_rest();
+  }
+}
+
+void Engine::publish_mix(const Surprise& now) noexcept {
+  published_.gain = mix_.gain(trackers_, rest_->gain());
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const double rest = rest_->rate(a), variance = rest_->variance();
+    const double scale = now.scale[a] > 0.0 ? now.scale[a] : rest_->rule().measurement_noise();
+    published_.rate[a] = mix_.rate(trackers_, a, rest);
+    published_.variance[a] = mix_.variance(trackers_, a, rest, variance, scale);
+  }
+}
+
+}  // namespace ifog

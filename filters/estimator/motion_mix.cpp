@@ -1,0 +1,128 @@
+#include "filters/estimator/motion_mix.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/random/log_exp.h"
+
+namespace ifog {
+namespace {
+
+// What speaks for the longer of two trackers before anything is known: it is the quieter one.
+constexpr double kForLonger = 2.0;
+// What speaks against the filter at rest: it was wrong.
+constexpr double kAgainstRest = 4.0;
+// Least log-likelihood ratio with which the motion is over, and least samples; most that is counted, so that
+// a new motion need not make up for a long rest.
+constexpr double kOver = 9.0;
+constexpr double kLeastSamples = 64.0;
+constexpr double kMostRatio = 12.0;
+constexpr double kWrong = -6.0;
+constexpr double kBroken = -12.0;
+// Times as long as it held before it failed.
+constexpr double kHoldLonger = 3.0;
+constexpr double kForgetFailure = 0.9;
+// A normalised square this much above the least one says no more: one bad sample must not rule a tracker out
+// for long.
+constexpr double kMostSquare = 25.0;
+
+double certain(double ratio) noexcept { return 1.0 / (1.0 + exponential(-std::clamp(ratio, -30.0, 30.0))); }
+
+}  // namespace
+
+void MotionMix::begin(double failed_after) noexcept {
+  link_ = {};
+  weight_ = {};
+  weight_[0] = 1.0;
+  rest_weight_ = rest_ratio_ = rest_age_ = 0.0;
+  failed_after_ = failed_after;
+}
+
+void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Axes& least) noexcept {
+  std::array<double, TrackerBank::kMost> log{};
+  double of_rest = 0.0;
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    if ((now.valid >> a & 1U) == 0) continue;
+    const double scale = now.scale[a];
+    for (std::size_t j = 0; j < trackers.size(); ++j) {
+      const double apart = now.rate[a] - trackers.rate(j, a);
+      const double square = apart * apart / (trackers.factor(j) * scale);
+      log[j] -= 0.5 * (std::min(square - least[a], kMostSquare) + trackers.log_factor(j));
+    }
+    const double square = now.innovation[a] * now.innovation[a] / (now.rest_factor * scale);
+    of_rest -= 0.5 * (std::min(square - least[a], kMostSquare) + logarithm(now.rest_factor));
+  }
+  double mean = 0.0, sum = 0.0;
+  for (std::size_t j = 0; j < trackers.size(); ++j) {
+    mean += weight_[j] * log[j];
+    sum += weight_[j];
+    if (j == 0) continue;
+    const double horizon = ChangeTest::horizon(trackers.length(j - 1));
+    link_[j] += log[j] - log[j - 1] - link_[j] / horizon;
+  }
+  mean = sum > 1e-9 ? mean / sum : log[0];
+  rest_ratio_ = std::min(rest_ratio_ + of_rest - mean, kMostRatio);
+  rest_age_ += 1.0;
+}
+
+void MotionMix::weigh(const TrackerBank& trackers) noexcept {
+  rest_weight_ = rest_age_ < kHoldLonger * failed_after_ ? 0.0 : certain(rest_ratio_ - kAgainstRest);
+  double up_to_here = 1.0 - rest_weight_;
+  for (std::size_t j = 0; j < trackers.size(); ++j) {
+    const double next = j + 1 < trackers.size() ? up_to_here * certain(link_[j + 1] + kForLonger) : 0.0;
+    weight_[j] = up_to_here - next;
+    up_to_here = next;
+  }
+}
+
+std::size_t MotionMix::broken(const TrackerBank& trackers) noexcept {
+  for (std::size_t j = 1; j < trackers.size(); ++j) {
+    if (link_[j] >= kBroken || trackers.age(j) <= trackers.age(j - 1)) continue;
+    for (std::size_t k = j; k < trackers.size(); ++k) link_[k] = 0.0;
+    return j;
+  }
+  return trackers.size();
+}
+
+bool MotionMix::rest_is_wrong() const noexcept { return rest_ratio_ < kWrong; }
+
+void MotionMix::begin_rest() noexcept {
+  failed_after_ = std::max(kForgetFailure * failed_after_, rest_age_);
+  rest_age_ = rest_ratio_ = 0.0;
+}
+
+bool MotionMix::rest_is_right() const noexcept {
+  return rest_ratio_ > kOver && rest_age_ >= std::max(kLeastSamples, kHoldLonger * failed_after_);
+}
+
+double MotionMix::rate(const TrackerBank& trackers, std::size_t axis, double rest) const noexcept {
+  double mean = rest_weight_ * rest;
+  for (std::size_t j = 0; j < trackers.size(); ++j) mean += weight_[j] * trackers.rate(j, axis);
+  return mean;
+}
+
+double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double rest, double rest_variance,
+                           double scale) const noexcept {
+  const double mean = rate(trackers, axis, rest);
+  double sum = rest_weight_ * (rest_variance + (rest - mean) * (rest - mean));
+  for (std::size_t j = 0; j < trackers.size(); ++j) {
+    const double apart = trackers.rate(j, axis) - mean;
+    sum += weight_[j] * (trackers.output_factor(j) * scale + apart * apart);
+  }
+  return sum;
+}
+
+double MotionMix::gain(const TrackerBank& trackers, double rest_gain) const noexcept {
+  double mean = rest_weight_ * rest_gain;
+  for (std::size_t j = 0; j < trackers.size(); ++j) mean += weight_[j] * trackers.gain(j);
+  return mean;
+}
+
+double MotionMix::length(const TrackerBank& trackers, double rest_gain) const noexcept {
+  // A mean of n has gain 1/n; it lags by a quarter of what a parabola over n would forget.
+  double mean = rest_gain > 0.0 ? rest_weight_ * 0.25 / rest_gain : 0.0;
+  for (std::size_t j = 0; j < trackers.size(); ++j) mean += weight_[j] * trackers.length(j);
+  return mean;
+}
+
+}  // namespace ifog

@@ -1,0 +1,78 @@
+#include "filters/estimator/noise_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "filters/random/log_exp.h"
+
+namespace ifog {
+
+double NoiseScale::now() const noexcept {
+  // Rounding to a digit d has variance d^2 / 12: a single one of them is never far out.
+  const double rounding = digit_ < 1e150 ? digit_ * digit_ / 12.0 : 0.0;
+  return std::max({rest_, local_, rounding});
+}
+
+double NoiseScale::greatest_noise() const noexcept {
+  return kMargin * (known_ ? rest_ / colour_ : rest_) * std::max(1.0, colour_ - kMotion);
+}
+
+double NoiseScale::rounding() const noexcept {
+  if (digit_ > 1e150) return 0.0;
+  constexpr double kPi = std::numbers::pi;
+  const double hidden = 4.0 * kPi * kPi * told_ / (digit_ * digit_);
+  return hidden < 50.0 ? digit_ * digit_ / (2.0 * kPi * kPi) * exponential(-hidden) : 0.0;
+}
+
+void NoiseScale::take(double rate) noexcept {
+  const double step = std::abs(rate - last_[2]);
+  if (step > 0.0) {
+    different_ = std::min(different_ + 1, kDifferent);
+    if (in_a_row_ > 0) digit_ = std::min(digit_, step);
+  }
+  if (in_a_row_ >= 3) {
+    const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
+    const double square = third * third / 20.0;
+    local_ += (std::min(square, kClip * now()) - local_) / kLocalMemory;
+    rough_count_ = std::min(rough_count_ + 1.0, kMemory);
+    // Beside the scale, so that a coarse sensor's runs of equal values do not end in a variance of zero that
+    // nothing could raise again.
+    rough_ += (std::min(square, kClip * std::max(rough_, 0.5 * rest_)) - rough_) / rough_count_;
+    if (known_) rest_ = colour_ * std::max(rough_, 1e-9 * told_);
+  }
+  in_a_row_ = std::min(in_a_row_ + 1, 3);
+  last_ = {last_[1], last_[2], rate};
+}
+
+// What was told counts only where the innovations are much louder than they are rough: motion or colour, and
+// nothing else says which.
+void NoiseScale::settle() noexcept {
+  if (rough_count_ < kDifferent) rough_ = told_;
+  const double rough = std::max(rough_, 1e-9 * told_);
+  const double found = squares_ / learned_;
+  rest_ = found <= 2.0 * rough ? rough : std::max(told_, rough);
+  rough_ = rough;
+  colour_ = rest_ / rough;
+  colour_count_ = kMemory;
+  known_ = true;
+}
+
+bool NoiseScale::learn(double innovation, double lag) noexcept {
+  if (!known_) {
+    squares_ += innovation * innovation;
+    if (++learned_ < kLearning || different_ < kDifferent) return false;
+    if (rough_count_ < kDifferent && learned_ < kUnheard) return false;
+    settle();
+    return true;
+  }
+  const double apart = innovation - mean_;
+  mean_ += apart / std::max(lag, 2.0 * kLocalMemory);
+  const double square = std::min(apart * apart, kColourClip * rest_);
+  colour_count_ = std::min(colour_count_ + 1.0, kColourMemory);
+  colour_ += (square / std::max(rough_, 1e-9 * told_) - colour_) / colour_count_;
+  colour_ = std::max(colour_, 0.5);
+  return false;
+}
+
+}  // namespace ifog

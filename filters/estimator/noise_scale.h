@@ -1,0 +1,80 @@
+// How loud an axis is, whatever moves: from third differences, which hardly see motion, from the innovations
+// at rest, and from the last digit.
+//
+// A third difference of white noise has variance 20 R; of a motion of f cycles a sample it passes (2 sin pi
+// f)^6. So it is an estimate of white noise under way, and within some 30 samples it tells noise that has
+// become louder from motion. What it does not see is colour. That is known from rest: the variance of the
+// innovations there over that of third differences, learned slowly, so that neither a motion about to be
+// found nor a turn of louder noise counts for colour.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace ifog {
+
+class NoiseScale {
+ public:
+  // told: R, (rad/s)^2, believed until enough innovations at rest are there.
+  explicit NoiseScale(double told = 1.0) : told_(told), rest_(told), local_(told) {}
+
+  // The next measurement, scaled to the nominal period's noise. Call break_off() where one is missing.
+  void take(double rate) noexcept;
+  void break_off() noexcept { in_a_row_ = 0; }
+  // An innovation of the filter at rest, scaled likewise; lag: of that filter, in samples. True when this was
+  // the one that made the scale known.
+  bool learn(double innovation, double lag) noexcept;
+
+  // Variance of an innovation at rest as the noise is now.
+  [[nodiscard]] double now() const noexcept;
+  [[nodiscard]] bool known() const noexcept { return known_; }
+  // At rest, over the last thousand samples.
+  [[nodiscard]] double rest() const noexcept { return rest_; }
+  // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
+  [[nodiscard]] double colour() const noexcept { return colour_; }
+  [[nodiscard]] bool white() const noexcept { return colour_ < kWhite; }
+  // Variance of the mean of a level that a coarse converter rounds, over where it lies between two steps: the
+  // first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and Kollar, "Quantization
+  // Noise", 2008, chapter 4). No filter sees it.
+  [[nodiscard]] double rounding() const noexcept;
+  // R for the gain. Where the innovations are louder than their roughness says, that may be colour or motion
+  // the filter lags behind. To take that much colour for motion costs 1 % of RMSE, to take motion for colour
+  // makes the lag longer; so the first part counts for motion.
+  [[nodiscard]] double greatest_noise() const noexcept;
+
+ private:
+  // Innovations that make the scale known.
+  static constexpr int kLearning = 63;
+  // Different values among them: a coarse sensor may show the same one for long, and that is no noise of
+  // zero.
+  static constexpr int kDifferent = 32;
+  // After so many, none of whose neighbours were alike, as in a queue that merges now two and now nine, the
+  // noise is what was told until it can be heard.
+  static constexpr int kUnheard = 4 * kLearning;
+  static constexpr double kLocalMemory = 32.0;
+  static constexpr double kMemory = 1024.0;
+  static constexpr double kColourMemory = 8192.0;
+  static constexpr double kWhite = 1.25;
+  // Of the ratio of innovations to roughness so much counts for motion.
+  static constexpr double kMotion = 0.5;
+  // A square counts for this many variances at most, so that an outlier is none.
+  static constexpr double kClip = 25.0;
+  // The ratio of two variances is spoiled by less.
+  static constexpr double kColourClip = 9.0;
+  // Of the limit above the roughness, whose own error is 4 %.
+  static constexpr double kMargin = 1.05;
+
+  void settle() noexcept;
+
+  double told_, rest_, local_;
+  double rough_ = 0.0, rough_count_ = 0.0;  // variance by third differences, measurements in it
+  double colour_ = 1.0, colour_count_ = 0.0;
+  double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise
+  double squares_ = 0.0;
+  double digit_ = 1e300;  // least difference of two neighbours
+  int learned_ = 0, different_ = 0, in_a_row_ = 0;
+  bool known_ = false;
+  std::array<double, 3> last_{};
+};
+
+}  // namespace ifog

@@ -1,0 +1,139 @@
+#include "filters/estimator/tracker_bank.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/random/log_exp.h"
+
+namespace ifog {
+namespace {
+
+// The shortest is the measurement itself: theta = 0. The next has theta = 0.3.
+constexpr double kShortest = 1.0 / 0.7;
+const double kApart = std::sqrt(10.0);
+// A motion is looked for over this many samples at least, however short the filter at rest is.
+constexpr double kLeastReach = 48.0;
+// After more missed samples than its memory, and than these, a polynomial's prediction is worth nothing.
+constexpr double kMostSteps = 16.0;
+// Innovation variance over the noise's of a tracker that has not enough measurements for a parabola.
+constexpr double kUnknown = 1e6;
+
+}  // namespace
+
+TrackerBank::TrackerBank() {
+  memory_[0] = 1.0;
+  for (std::size_t j = 1; j < kMost; ++j) memory_[j] = j == 1 ? kShortest : memory_[j - 1] * kApart;
+  for (std::size_t j = 0; j < kMost; ++j) {
+    const double theta = 1.0 - 1.0 / memory_[j], m = 1.0 / memory_[j];
+    Gains& g = fading_[j];
+    g.rate = 1.0 - theta * theta * theta;
+    g.slope = 1.5 * m * m * (1.0 + theta);
+    g.curvature = 0.5 * m * m * m;
+    // Variance one sample ahead, Brookner's table 7.2-2.
+    const double plus = 1.0 + theta, plus2 = plus * plus;
+    const double ahead =
+        m / (plus2 * plus2 * plus) * (19.0 + theta * (24.0 + theta * (16.0 + theta * (6.0 + theta))));
+    g.innovation = 1.0 + ahead;
+    g.log_innovation = logarithm(g.innovation);
+    g.output = (1.0 - g.rate) * (1.0 - g.rate) * ahead + g.rate * g.rate;
+  }
+  reach(0.0);
+}
+
+void TrackerBank::reach(double samples) noexcept {
+  const double longest = std::max(kLeastReach, samples);
+  while (size_ < kMost && memory_[size_] <= longest) {
+    state_[size_] = {};
+    if (size_ > 0) state_[size_] = state_[size_ - 1];
+    state_[size_].settled = false;
+    gains(size_++);
+  }
+}
+
+void TrackerBank::begin() noexcept {
+  for (State& state : state_) state = {};
+}
+
+void TrackerBank::begin(std::span<const Axes> measurements) noexcept {
+  begin();
+  for (const Axes& rate : measurements) {
+    predict(1.0);
+    correct(rate, ~0U);
+  }
+}
+
+void TrackerBank::begin_from(std::size_t tracker, std::size_t from) noexcept {
+  for (std::size_t j = tracker; j < size_; ++j) {
+    state_[j] = state_[from];
+    // As old as what it starts from has memory: the parabola through so many.
+    state_[j].age = std::max(3.0, length(from));
+    state_[j].settled = false;
+  }
+}
+
+double TrackerBank::length(std::size_t tracker) const noexcept {
+  return std::min(memory_[tracker], state_[tracker].age / 3.0 + 1.0);
+}
+
+// Gains of the growing-memory filter until the fading ones are larger. The first two steps are a point and a
+// line.
+void TrackerBank::gains(std::size_t tracker) noexcept {
+  State& state = state_[tracker];
+  Gains& now = now_[tracker];
+  if (state.settled) return;
+  const double n = state.age;
+  if (n < 2.0) {
+    now = {1.0, n, 0.0, kUnknown, logarithm(kUnknown), 1.0};
+    return;
+  }
+  const double product = (n + 1.0) * (n + 2.0) * (n + 3.0);
+  const double rate = 3.0 * (3.0 * n * n + 3.0 * n + 2.0) / product;
+  if (rate <= fading_[tracker].rate) {
+    state.settled = true;
+    now = fading_[tracker];
+    return;
+  }
+  const double factor = rate < 1.0 ? 1.0 / (1.0 - rate) : kUnknown;
+  now = {rate, 18.0 * (2.0 * n + 1.0) / product, 30.0 / product, factor, logarithm(factor), rate};
+}
+
+void TrackerBank::predict(double steps) noexcept {
+  steps_ = steps;
+  for (std::size_t j = 0; j < size_; ++j) {
+    State& state = state_[j];
+    if (steps > std::max(kMostSteps, memory_[j])) {
+      state.age = 0.0;
+      state.settled = false;
+    }
+    for (std::size_t a = 0; a < kMaxAxes; ++a) {
+      if (state.age <= 0.0) state.slope[a] = state.curvature[a] = 0.0;
+      state.rate[a] += steps * (state.slope[a] + steps * state.curvature[a]);
+      state.slope[a] += 2.0 * steps * state.curvature[a];
+    }
+    gains(j);
+  }
+}
+
+void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
+  for (std::size_t j = 0; j < size_; ++j) {
+    State& state = state_[j];
+    const Gains& g = now_[j];
+    for (std::size_t a = 0; a < kMaxAxes; ++a) {
+      if ((valid_axes >> a & 1U) == 0) continue;
+      const double innovation = rate[a] - state.rate[a];
+      state.rate[a] += g.rate * innovation;
+      state.slope[a] += g.slope / steps_ * innovation;
+      state.curvature[a] += g.curvature / (steps_ * steps_) * innovation;
+    }
+    state.age += 1.0;
+  }
+}
+
+void TrackerBank::pass_over() noexcept {
+  for (std::size_t j = 0; j < size_; ++j) {
+    for (double& slope : state_[j].slope) slope *= 0.5;
+    state_[j].curvature = {};
+  }
+}
+
+}  // namespace ifog

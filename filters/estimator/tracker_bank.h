@@ -1,0 +1,80 @@
+// Trackers of rate, slope and curvature that forget at different speeds: from the last three samples to as
+// long as the filter at rest, half a power of ten apart.
+//
+// A tracker is the fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
+// Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 7):
+// three equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. Of rate to
+// output, 1 - H is the cube of a first difference: no lag on a constant slope or curvature, and a gain that
+// departs from one only with the fourth power of frequency. That, not noise, is why the degree is two: the
+// coning integral sees the square of the gain. Young, a tracker is the least-squares parabola through all
+// measurements since it began.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "filters/settings/axes.h"
+
+namespace ifog {
+
+class TrackerBank {
+ public:
+  static constexpr std::size_t kMost = 12;
+
+  TrackerBank();
+
+  // Trackers as long as this, in samples, take part; once in they stay.
+  void reach(double samples) noexcept;
+  void begin() noexcept;
+  // All of them afresh from these measurements, oldest first.
+  void begin(std::span<const Axes> measurements) noexcept;
+  // This one, and all that are longer, from what the one before it knows.
+  void begin_from(std::size_t tracker, std::size_t from) noexcept;
+
+  // One step of so many nominal samples.
+  void predict(double steps) noexcept;
+  void correct(const Axes& rate, std::uint32_t valid_axes) noexcept;
+  // The measurement is not to be believed: nothing but time passes, and slopes fade, as what they point to
+  // grows.
+  void pass_over() noexcept;
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  // After predict() the rate one sample ahead, after correct() the filtered one.
+  [[nodiscard]] double rate(std::size_t tracker, std::size_t axis) const noexcept {
+    return state_[tracker].rate[axis];
+  }
+  // Innovation variance over that of the noise, and its logarithm; output variance likewise.
+  [[nodiscard]] double factor(std::size_t tracker) const noexcept { return now_[tracker].innovation; }
+  [[nodiscard]] double log_factor(std::size_t tracker) const noexcept { return now_[tracker].log_innovation; }
+  [[nodiscard]] double output_factor(std::size_t tracker) const noexcept { return now_[tracker].output; }
+  [[nodiscard]] double gain(std::size_t tracker) const noexcept { return now_[tracker].rate; }
+  // Samples it forgets in, and what it has of them by now.
+  [[nodiscard]] double memory(std::size_t tracker) const noexcept { return memory_[tracker]; }
+  [[nodiscard]] double length(std::size_t tracker) const noexcept;
+  [[nodiscard]] double age(std::size_t tracker) const noexcept { return state_[tracker].age; }
+
+ private:
+  struct Gains {
+    double rate = 0.0, slope = 0.0, curvature = 0.0;
+    double innovation = 1.0, log_innovation = 0.0, output = 1.0;
+  };
+  struct State {
+    Axes rate{}, slope{}, curvature{};  // per sample, half of it per sample squared
+    double age = 0.0;                   // measurements
+    bool settled = false;
+  };
+
+  void gains(std::size_t tracker) noexcept;
+
+  std::array<double, kMost> memory_{};
+  std::array<Gains, kMost> fading_{}, now_{};
+  std::array<State, kMost> state_{};
+  std::size_t size_ = 0;
+  // Of the last prediction, nominal samples. The gains are those of one step, whatever its length: in units
+  // of nominal samples those of slope and curvature fall with it. Left as they are, steps of two and more
+  // would put the poles outside the unit circle.
+  double steps_ = 1.0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,161 @@
+// What changes and is no change of rate, and what creeps: noise that becomes louder, drift under a step, slow
+// motion beside a long lag, an axis that is missing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/estimator/drive.h"
+
+namespace {
+
+using namespace ifog::test;
+
+double over_the_truth(const Record& r, double walk_over_noise, std::size_t from) {
+  const Filtered got = run(told(walk_over_noise), r.measured);
+  return std::sqrt(mean_square_error(got.denoised, r.truth, from) /
+                   mean_square_error(told_the_truth(r.measured, walk_over_noise), r.truth, from));
+}
+
+TEST(LouderNoise, IsNotTakenForMotion) {
+  constexpr int kTurn = 4000;
+  for (const double ratio : {1e-3, 1e-6}) {
+    for (const double louder : {5.0, 10.0}) {
+      Record r = record(21, 80'000, ratio);
+      std::mt19937_64 random(22);
+      std::normal_distribution<double> normal;
+      for (std::size_t i = 20'000; i < r.truth.size(); ++i)
+        r.measured[i] = r.truth[i] + (i / kTurn % 2 == 0 ? 1.0 : louder) * normal(random);
+      EXPECT_LT(over_the_truth(r, ratio, 20'000), 1.2) << "Q/R " << ratio << ", noise x " << louder;
+    }
+  }
+}
+
+// What the lag owes for a drift is not the step's to pay.
+TEST(DriftThenStep, PaysQuicklyOnlyWhatTheStepOwes) {
+  constexpr int kFrom = 20'000, kStep = 40'000;
+  for (const double ratio : {1e-5, 1e-6, 1e-7}) {
+    const Record r = record(23, kStep + 4000, ratio,
+                            [](int i) { return 1e-4 * std::max(0, i - kFrom) + (i >= kStep ? 20.0 : 0.0); });
+    const Filtered got = run(told(ratio), r.measured);
+    // Ten samples to find it, and then within the noise of a few.
+    for (std::size_t i = kStep + 10; i < r.truth.size(); ++i)
+      ASSERT_NEAR(got.denoised[i], r.truth[i], 2.5) << "Q/R " << ratio << ", " << i - kStep << " after";
+  }
+}
+
+TEST(SlowMotion, IsFollowedBesideALongLag) {
+  constexpr int kFrom = 20'000;
+  const auto sea = [](int i) { return i < kFrom ? 0.0 : 3.0 * std::sin(6.2831853 * (i - kFrom) / 1000.0); };
+  const auto swing = [](int i) { return i < kFrom ? 0.0 : 3.0 * std::sin(6.2831853 * (i - kFrom) / 5000.0); };
+  const auto ramp = [](int i) { return 1e-3 * std::max(0, i - kFrom); };
+  EXPECT_LT(over_the_truth(record(24, 60'000, 1e-6, sea), 1e-6, kFrom), 0.25);
+  EXPECT_LT(over_the_truth(record(25, 60'000, 1e-6, swing), 1e-6, kFrom), 0.25);
+  EXPECT_LT(over_the_truth(record(26, 60'000, 1e-6, ramp), 1e-6, kFrom), 0.25);
+}
+
+// Payments are errors until they are paid, and the variance says so: the mean of error^2 / variance is one at
+// rest. Where a ramp is followed the members of the mean have noise in common, which their spread counts
+// twice.
+TEST(Variance, IsThatOfWhatIsPublished) {
+  for (const bool moving : {false, true}) {
+    double sum = 0.0, count = 0.0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const Record r = record(seed, 60'000, 1e-4,
+                              [moving](int i) { return moving ? 2e-2 * std::max(0, i - 20'000) : 0.0; });
+      ifog::Estimator estimator(told(1e-4), 1, kPeriod);
+      ifog::EstimatorInput in;
+      ifog::EstimatorOutput out;
+      in.dt_s = kPeriod;
+      in.valid_axes = 1;
+      for (std::size_t i = 0; i < r.truth.size(); ++i) {
+        in.sequence = i;
+        in.rate_radps[0] = r.measured[i];
+        estimator.step(in, out);
+        if (i < 22'000) continue;
+        sum += std::pow(out.denoised_radps[0] - r.truth[i], 2) / out.variance_rad2ps2[0];
+        count += 1.0;
+      }
+    }
+    EXPECT_GT(sum / count, moving ? 0.5 : 0.75) << (moving ? "ramp" : "rest");
+    EXPECT_LT(sum / count, 1.25) << (moving ? "ramp" : "rest");
+  }
+}
+
+// Missing while the others' noise is learned, an axis must not be believed to be without noise for ever.
+TEST(AMissingAxis, HasItsOwnNoiseWhenItComes) {
+  std::mt19937_64 random(27);
+  std::normal_distribution<double> normal;
+  ifog::Estimator estimator(told(1e-6), 2, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  in.dt_s = kPeriod;
+  double squares = 0.0;
+  for (int i = 0; i < 40'000; ++i) {
+    in.sequence = static_cast<std::uint64_t>(i);
+    in.valid_axes = i < 1000 ? 1 : 3;
+    in.rate_radps = {normal(random), i < 1000 ? std::nan("") : normal(random), 0.0};
+    // A turn about the late axis is found, as about the other.
+    if (i >= 39'000) in.rate_radps[1] += 40.0;
+    estimator.step(in, out);
+    if (i >= 5000 && i < 39'000) squares += out.denoised_radps[1] * out.denoised_radps[1];
+    ASSERT_GT(out.variance_rad2ps2[1], 0.0) << i;
+  }
+  EXPECT_LT(std::sqrt(squares / 34'000), 0.06);
+  EXPECT_NEAR(out.denoised_radps[1], 40.0, 0.3);
+  EXPECT_EQ(estimator.health().manoeuvres, 1U);
+}
+
+// The delay of a slow ramp, measured: what is published for it is what the filter does with the ledger on.
+TEST(GroupDelay, IsWhatIsMeasured) {
+  constexpr int kFrom = 5000, kLength = 300'000;
+  constexpr double kSlope = 4e-3;
+  const Record r = record(28, kLength, 1e-3, [](int i) { return kSlope * std::max(0, i - kFrom); });
+  const Filtered got = run(told(1e-3), r.measured);
+  double behind = 0.0;
+  for (std::size_t i = kLength - 200'000; i < kLength; ++i) behind += r.truth[i] - got.denoised[i];
+  const double samples = behind / 200'000 / kSlope;
+  EXPECT_NEAR(got.health.group_delay_s / kPeriod, samples, 0.25 * samples);
+}
+
+TEST(Plain, IsTheRulesFilterAndNothingElse) {
+  Record r = record(29, 20'000, 1e-3, [](int i) { return i > 10'000 ? 5000.0 : 0.0; });
+  r.measured[5000] += 1e4;
+  ifog::FilterSettings settings = told(1e-3);
+  settings.plain = true;
+  settings.rule = "ckf";
+  const Filtered got = run(settings, r.measured);
+  const std::vector<double> kalman = told_the_truth(r.measured, 1e-3);
+  for (std::size_t i = 2000; i < kalman.size(); ++i)
+    ASSERT_NEAR(got.denoised[i], kalman[i], 1e-9 * (1.0 + std::abs(kalman[i]))) << i;
+  settings.rule = "irwe-akfg";
+  EXPECT_EQ(run(settings, r.measured).health.restarts, 0U);
+}
+
+// Colour and lines of the model are the sensor's, not the vehicle's.
+TEST(PublishedRate, IsTheLevelWithoutTheModelsColour) {
+  constexpr double kWalk = 1e-6, kCorrelation = 0.9;
+  std::mt19937_64 random(30);
+  std::normal_distribution<double> normal;
+  std::vector<double> truth, measured;
+  double walk = 0.0, colour = 0.0;
+  for (int i = 0; i < 60'000; ++i) {
+    walk += std::sqrt(kWalk) * normal(random);
+    colour = kCorrelation * colour + normal(random);
+    truth.push_back(walk);
+    measured.push_back(walk + colour + 0.5 * normal(random));
+  }
+  ifog::FilterSettings settings;
+  settings.state = "random-walk + ar(1)";
+  settings.state_parameters = {kCorrelation, 1.0 / kWalk};
+  settings.process_noise = kWalk / kPeriod;
+  settings.measurement_noise = 0.25;
+  for (const bool follows : {true, false}) {
+    settings.follow_manoeuvres = settings.conserve_angle = follows;
+    const Filtered got = run(settings, measured);
+    // Of white noise of the colour's spectral density at zero, 100, the filter leaves (Q R)^(1/4).
+    EXPECT_LT(std::sqrt(mean_square_error(got.denoised, truth, 20'000)), 1.6 * std::pow(kWalk * 100.25, 0.25))
+        << follows;
+  }
+}
+
+}  // namespace
