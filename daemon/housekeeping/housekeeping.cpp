@@ -161,6 +161,8 @@ void Housekeeping::publish(Sensor& sensor) {
 void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   sensor.answered = pipeline.filter().take_snapshot(sensor.snapshot);
+  // A filter that does not come round takes nothing from what the reader brings: that waits.
+  if (!sensor.answered) sensor.snapshot.reader = pipeline.reader().books();
   sensor.unanswered = sensor.answered || pipeline.ended() ? 0 : sensor.unanswered + 1;
   const std::uint64_t turns = pipeline.reader().counters().turns.value();
   sensor.reader_stuck = turns != sensor.reader_turns || pipeline.ended() ? 0 : sensor.reader_stuck + 1;

@@ -29,6 +29,8 @@ struct FilterSnapshot {
   std::array<double, kMaxChannels> channel{};
   std::array<float, kMaxChannels> channel_age_s{};
   std::array<char, 64> model{};
+  // Of one moment: what lies between them is in the ring.
+  ReaderBooks reader;
   FilterBooks books;
   // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.
   double allan_period_s = 0.0;
@@ -45,8 +47,8 @@ class FilterStage {
  public:
   // measure_latency: false where arrival times are not of today (a log read at its own pace).
   FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-              std::unique_ptr<Publisher> publisher, IncrementQueue& queue, EventQueue& events,
-              bool measure_latency);
+              std::unique_ptr<Publisher> publisher, IncrementQueue& queue, const SharedBooks& reader_books,
+              EventQueue& events, bool measure_latency);
   ~FilterStage();
 
   // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
@@ -71,7 +73,7 @@ class FilterStage {
   void process(const Increment& in) noexcept;
   void adopt(std::uint64_t sequence) noexcept;
   void follow_noise(const Increment& in) noexcept;
-  void answer() noexcept;
+  bool answer() noexcept;
 
   SensorFacts facts_;
   SignalChain chain_;
@@ -79,6 +81,7 @@ class FilterStage {
   std::string channel_;
   std::unique_ptr<Publisher> publisher_;
   IncrementQueue& queue_;
+  const SharedBooks& reader_books_;
   EventQueue& events_;
   bool measure_latency_;
   bool noise_known_;

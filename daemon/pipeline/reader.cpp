@@ -13,7 +13,7 @@ constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
                std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-               EventQueue& events)
+               SharedBooks& books, EventQueue& events)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
@@ -21,6 +21,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       incrementer_(facts),
       queue_(queue),
       hand_over_(hand_over),
+      books_(books),
       events_(events) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
@@ -89,10 +90,17 @@ void Reader::publish_counters() noexcept {
   counters_.samples_incomplete.set(driver.samples_incomplete);
   counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
                                     (outside_ != nullptr ? outside_->refused() : 0));
-  now_.bytes_read = transport_->counters().bytes;
+  counters_.channel_drops.set(outside_ != nullptr ? outside_->drops() : 0);
+  const TransportCounters line = transport_->counters();
+  now_.bytes_read = line.bytes;
   now_.bytes_framed = driver.bytes_framed;
   now_.bytes_skipped = driver.bytes_skipped;
   now_.bytes_pending = driver.bytes_pending;
+  now_.frames_read = line.frames;
+  // A driver of bytes counts the frames that it finds in them.
+  now_.frames_good = line.frames > 0 ? driver.frames_good : 0;
+  now_.frames_refused = line.frames > 0 ? driver.frames_format : 0;
+  now_.frames_other = driver.frames_other;
   books_.write(now_);
 }
 
@@ -120,6 +128,7 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
 void Reader::run() noexcept {
   while (turn(queue_.has_waiting() ? kImpatientTurn : kTurn)) {
   }
+  transport_->close_books();
   // The bytes of a frame that never came to its end count as passed over.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();

@@ -263,6 +263,15 @@ TEST(Books, AnImbalanceIsSaidWithItsNumbers) {
   EXPECT_EQ(imbalance(wrong, filter),
             "the books do not balance: 100 bytes read, 72 in frames + 20 skipped + 7 pending");
   wrong = reader;
+  wrong.frames_read = 9;
+  wrong.frames_good = 5;
+  wrong.frames_refused = 1;
+  wrong.frames_other = 3;
+  EXPECT_EQ(imbalance(wrong, filter), "");
+  wrong.frames_other = 2;
+  EXPECT_EQ(imbalance(wrong, filter),
+            "the books do not balance: 9 CAN frames read, 5 decoded + 1 refused + 2 none of the sensor's");
+  wrong = reader;
   wrong.repeated = 0;
   EXPECT_EQ(imbalance(wrong, filter), "the books do not balance: 3 samples decoded, 2 taken + 0 repeated");
   wrong = reader;

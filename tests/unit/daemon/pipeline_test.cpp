@@ -356,6 +356,28 @@ TEST(Pipeline, HousekeepingGetsASnapshotWhileSamplesFlow) {
   EXPECT_GT(snapshot.allan_octaves, 5);
 }
 
+// Reader and filter are asked at one instant: what is read between the answer and the report is not waiting.
+TEST(Pipeline, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
+  Rig rig(frames(1000), kFrame, true);
+  rig.transport->allowed_ = 100 * kFrame;
+  rig.transport->stays_open_ = true;
+  rig.pipeline->start();
+  while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().bytes_read < 100 * kFrame)
+    std::this_thread::sleep_for(1ms);
+  rig.pipeline->filter().ask();
+  FilterSnapshot snapshot;
+  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  rig.transport->allowed_ = ~std::size_t{0};
+  while (rig.pipeline->reader().counters().samples.value() < 1000) std::this_thread::sleep_for(1ms);
+  StatusReport report("test", rig.chain.channels, rig.chain.axes);
+  const status_t& status = report.update(*rig.pipeline, snapshot, 1.0);
+  EXPECT_EQ(status.samples_waiting, 0);
+  EXPECT_EQ(status.samples_in, 100);
+  EXPECT_EQ(status.samples_published, 100);
+  EXPECT_EQ(status.bytes_read, static_cast<std::int64_t>(100 * kFrame));
+  rig.pipeline->stop();
+}
+
 // However late the last question was asked, and whether or not its answer was fetched: what housekeeping says
 // at the end of a file tells of the file's last sample, and is not the latency of an earlier second.
 TEST(Pipeline, TheLastWordTellsOfTheLastSample) {

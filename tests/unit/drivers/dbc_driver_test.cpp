@@ -162,6 +162,7 @@ TEST(DbcDriver, IgnoresOtherIdsAndExtendedTwinsAndCountsShortFrames) {
   cut.length = 5;
   EXPECT_TRUE(decode(driver, {twin, axis_frame(999, 1.0F, 1), cut}).empty());
   EXPECT_EQ(driver.counters().frames_good, 0U);
+  EXPECT_EQ(driver.counters().frames_other, 2U);
   EXPECT_EQ(driver.counters().frames_format, 1U);
 }
 
