@@ -42,7 +42,8 @@ std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter) {
   if (reader.bytes_read != reader.bytes_framed + reader.bytes_skipped + reader.bytes_pending)
     return fmt::format("the books do not balance: {} bytes read, {} in frames + {} skipped + {} pending",
                        reader.bytes_read, reader.bytes_framed, reader.bytes_skipped, reader.bytes_pending);
-  if (reader.frames_read != reader.frames_good + reader.frames_refused + reader.frames_other)
+  const bool of_can = reader.frames_read > 0 || reader.frames_other > 0;
+  if (of_can && reader.frames_read != reader.frames_good + reader.frames_refused + reader.frames_other)
     return fmt::format(
         "the books do not balance: {} CAN frames read, {} decoded + {} refused + {} none of the sensor's",
         reader.frames_read, reader.frames_good, reader.frames_refused, reader.frames_other);

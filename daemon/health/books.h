@@ -20,7 +20,8 @@ namespace ifog {
 // the last delivery, since within one the driver has not yet said what became of them.
 struct ReaderBooks {
   std::uint64_t bytes_read = 0, bytes_framed = 0, bytes_skipped = 0, bytes_pending = 0;
-  std::uint64_t frames_read = 0, frames_good = 0, frames_refused = 0, frames_other = 0;  // CAN
+  // Read, of CAN; a driver of bytes counts here the good and bad ones that it finds in them.
+  std::uint64_t frames_read = 0, frames_good = 0, frames_refused = 0, frames_other = 0;
   std::uint64_t decoded = 0, samples = 0, repeated = 0;
 };
 

@@ -128,10 +128,9 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.samples_waiting = as_signed(books.samples - snapshot.books.samples);
   now_.frames_read = as_signed(books.frames_read);
   now_.frames_other = as_signed(books.frames_other);
-  const bool of_can = books.frames_read > 0;
-  now_.frames_good = as_signed(of_can ? books.frames_good : reader.frames_good.value());
+  now_.frames_good = as_signed(books.frames_good);
   now_.frames_crc = as_signed(reader.frames_crc.value());
-  now_.frames_format = as_signed(of_can ? books.frames_refused : reader.frames_format.value());
+  now_.frames_format = as_signed(books.frames_refused);
   now_.log_faults = as_signed(line.malformed);
   now_.frames_repeated = as_signed(reader.frames_repeated.value());
   now_.samples_incomplete = as_signed(reader.samples_incomplete.value());

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -23,11 +24,16 @@ namespace ifog {
 
 // What housekeeping wants to know of the filter, copied by the filter thread itself when asked.
 struct FilterSnapshot {
+  // Of channels nothing is known before the first sample.
+  FilterSnapshot() {
+    channel.fill(std::numeric_limits<double>::quiet_NaN());
+    channel_age_s.fill(std::numeric_limits<float>::infinity());
+  }
   EstimatorHealth health;
   bool has_health = false;   // false during start-up
   LatencyHistogram latency;  // since the snapshot before
-  std::array<double, kMaxChannels> channel{};
-  std::array<float, kMaxChannels> channel_age_s{};
+  std::array<double, kMaxChannels> channel;
+  std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};
   // Of one moment: what lies between them is in the ring.
   ReaderBooks reader;

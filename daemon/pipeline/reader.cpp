@@ -82,9 +82,7 @@ void Reader::publish_counters() noexcept {
   counters_.clock_steps.set(counts.clock_steps);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();
-  counters_.frames_good.set(driver.frames_good);
   counters_.frames_crc.set(driver.frames_crc);
-  counters_.frames_format.set(driver.frames_format);
   counters_.bytes_skipped.set(driver.bytes_skipped);
   counters_.frames_repeated.set(driver.frames_repeated);
   counters_.samples_incomplete.set(driver.samples_incomplete);
@@ -97,9 +95,8 @@ void Reader::publish_counters() noexcept {
   now_.bytes_skipped = driver.bytes_skipped;
   now_.bytes_pending = driver.bytes_pending;
   now_.frames_read = line.frames;
-  // A driver of bytes counts the frames that it finds in them.
-  now_.frames_good = line.frames > 0 ? driver.frames_good : 0;
-  now_.frames_refused = line.frames > 0 ? driver.frames_format : 0;
+  now_.frames_good = driver.frames_good;
+  now_.frames_refused = driver.frames_format;
   now_.frames_other = driver.frames_other;
   books_.write(now_);
 }

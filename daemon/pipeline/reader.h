@@ -25,7 +25,7 @@ namespace ifog {
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter saturated, implausible, channel_implausible, channel_drops;
-  Counter frames_good, frames_crc, frames_format, bytes_skipped, frames_repeated, samples_incomplete;
+  Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
   Counter bytes_at_end;  // of a file that ends within a frame; also in bytes_skipped
   std::atomic<double> clock_offset_ppm{0.0};
 };
