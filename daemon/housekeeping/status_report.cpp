@@ -31,6 +31,7 @@ constexpr std::array kFaults{
     Named{"ring_overflows", &status_t::ring_overflows},
     Named{"samples_merged", &status_t::samples_merged},
     Named{"kernel_drops", &status_t::kernel_drops},
+    Named{"stood_back", &status_t::stood_back},
     Named{"transport_warnings", &status_t::transport_warnings},
     Named{"can_error_frames", &status_t::can_error_frames},
     Named{"reopened", &status_t::reopened},
@@ -138,6 +139,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.sequence_missing = as_signed(reader.missing.value());
   now_.ring_overflows = as_signed(pipeline.queue().overflows());
   now_.kernel_drops = as_signed(line.kernel_drops);
+  now_.stood_back = as_signed(reader.stood_back.value() + filter.stood_back.value());
   now_.can_error_frames = as_signed(line.error_frames);
   now_.reopened = as_signed(line.reopened);
   now_.invalid_samples = as_signed(reader.invalid.value());

@@ -1,6 +1,8 @@
 #include "daemon/pipeline/filter_stage.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include "drivers/transport/clock.h"
@@ -49,19 +51,38 @@ bool FilterStage::step() noexcept {
 }
 
 void FilterStage::run(bool spin) noexcept {
+  // A source that waits to be read has nobody else's time, one that spins a processor of its own.
+  const bool shares = !spin && !queue_.waits_when_full();
+  std::int64_t slept_ns = 0;  // in all
   for (;;) {
     const bool stepped = step();
     if (ask_.load(std::memory_order_acquire) == Ask::asked) answer();
-    if (stepped) continue;
+    if (stepped) {
+      if (shares) stand_back(slept_ns);
+      continue;
+    }
     if (queue_.finished()) {
       finished_.store(true, std::memory_order_release);
       return;
     }
-    if (spin)
+    if (spin) {
       relax();
-    else
-      queue_.wait();
+      continue;
+    }
+    const std::int64_t from_ns = monotonic_ns();
+    queue_.wait();
+    slept_ns += monotonic_ns() - from_ns;
   }
+}
+
+// Its time here, and not on the processor, is what keeps others of its priority waiting.
+void FilterStage::stand_back(std::int64_t slept_ns) noexcept {
+  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t rest_ns = share_.rest_ns(now_ns, [&] { return now_ns - slept_ns - rested_ns_; });
+  if (rest_ns == 0) return;
+  counters_.stood_back.add(1);
+  std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
+  rested_ns_ += rest_ns;
 }
 
 void FilterStage::process(const Increment& in) noexcept {

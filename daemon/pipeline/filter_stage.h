@@ -14,6 +14,7 @@
 #include "daemon/health/latency.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/processor_share.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
 #include "drivers/transport/counter.h"
@@ -47,6 +48,7 @@ struct FilterSnapshot {
 struct FilterCounters {
   Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
   Counter corrections_refused, merged;
+  Counter stood_back;  // times it had used its share of a processor, see ProcessorShare
 };
 
 class FilterStage {
@@ -77,6 +79,7 @@ class FilterStage {
  private:
   enum class Ask : std::uint32_t { none, asked, answered };
   void process(const Increment& in) noexcept;
+  void stand_back(std::int64_t slept_ns) noexcept;
   void adopt(std::uint64_t sequence) noexcept;
   void follow_noise(const Increment& in) noexcept;
   bool answer() noexcept;
@@ -103,6 +106,8 @@ class FilterStage {
   std::atomic<ChainParts*> offered_{nullptr};
   std::atomic<ChainParts*> retired_{nullptr};
   FilterCounters counters_;
+  ProcessorShare share_;
+  std::int64_t rested_ns_ = 0;
 };
 
 }  // namespace ifog

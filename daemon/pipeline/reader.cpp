@@ -1,5 +1,6 @@
 #include "daemon/pipeline/reader.h"
 
+#include <thread>
 #include <utility>
 
 namespace ifog {
@@ -101,6 +102,13 @@ void Reader::publish_counters() noexcept {
   books_.write(now_);
 }
 
+void Reader::stand_back() noexcept {
+  const std::int64_t rest_ns = share_.rest_ns(turn_ns_, thread_time_ns);
+  if (rest_ns == 0) return;
+  counters_.stood_back.add(1);
+  std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
+}
+
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   const Delivery delivery = transport_->read(timeout);
   if (delivery.restarted) {
@@ -119,6 +127,8 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   publish_counters();
   hand_over_.delivered();
   counters_.turns.add(1);
+  // A source that waits to be read has nobody else's time.
+  if (!delivery.empty() && !transport_->holds_back()) stand_back();
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/processor_share.h"
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
@@ -26,6 +27,7 @@ struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter saturated, implausible, channel_implausible, channel_drops;
   Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
+  Counter stood_back;    // times it had used its share of a processor, see ProcessorShare
   Counter bytes_at_end;  // of a file that ends within a frame; also in bytes_skipped
   std::atomic<double> clock_offset_ppm{0.0};
 };
@@ -52,6 +54,7 @@ class Reader {
   void take(const ifog_sample& sample) noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
   void publish_counters() noexcept;
+  void stand_back() noexcept;
 
   std::unique_ptr<Transport> transport_;
   DriverInstance driver_;
@@ -64,6 +67,7 @@ class Reader {
   EventQueue& events_;
   Reading reading_;
   WallShift wall_shift_;
+  ProcessorShare share_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
   ReaderBooks now_;
