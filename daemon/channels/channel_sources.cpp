@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -39,6 +40,7 @@ class Entrance {
   explicit Entrance(ChannelSources::Wanted wanted)
       : wanted_(std::move(wanted)), plausible_(wanted_.config.limits, kMostChannel) {}
   [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
+  [[nodiscard]] const std::shared_ptr<ChannelTable>& table() const { return wanted_.table; }
 
   void put(double number, std::int64_t time_ns) {
     const double value = number * wanted_.config.scale + wanted_.config.offset;
@@ -128,6 +130,7 @@ class LcmChannel {
 struct CanGroup {
   std::vector<std::pair<Entrance, CanChannel>> channels;
   std::unique_ptr<Transport> transport;
+  std::uint64_t drops = 0;  // of the kernel, told to the sensors so far
 
   void listen() {
     while (!transport->stopped()) {
@@ -135,7 +138,19 @@ struct CanGroup {
       for (const ifog_can_frame& frame : delivery.frames)
         for (auto& [in, channel] : channels)
           if (double value = 0.0; channel.decode(frame, value)) in.put(value, frame.arrival_ns);
+      tell_drops();
     }
+    transport->close_books();
+    tell_drops();
+  }
+  // Each sensor once, however many of its channels are on this bus.
+  void tell_drops() {
+    const std::uint64_t now = transport->counters().kernel_drops;
+    if (now == drops) return;
+    std::set<ChannelTable*> tables;
+    for (const auto& [in, channel] : channels) tables.insert(in.table().get());
+    for (ChannelTable* const table : tables) table->lose(now - drops);
+    drops = now;
   }
 };
 

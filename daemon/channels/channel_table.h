@@ -23,6 +23,9 @@ class ChannelTable {
   // A value came that cannot be: the one before stays, and grows old.
   void refuse() noexcept { refused_.fetch_add(1, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
+  // So many messages of a source of these channels were lost before they could be read.
+  void lose(std::uint64_t messages) noexcept { drops_.fetch_add(messages, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t drops() const noexcept { return drops_.load(std::memory_order_relaxed); }
 
   // NaN and an infinite age until the first value. The value is at least as new as the age says: updates that
   // come between the two loads show in the value alone.
@@ -41,7 +44,7 @@ class ChannelTable {
     std::atomic<std::int64_t> time_ns{0};
   };
   std::unique_ptr<Entry[]> entries_;
-  std::atomic<std::uint64_t> refused_{0};
+  std::atomic<std::uint64_t> refused_{0}, drops_{0};
 };
 
 }  // namespace ifog

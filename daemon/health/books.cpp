@@ -5,10 +5,11 @@
 namespace ifog {
 namespace {
 
-constexpr std::array kEntries{&ReaderBooks::bytes_read,    &ReaderBooks::bytes_framed,
-                              &ReaderBooks::bytes_skipped, &ReaderBooks::bytes_pending,
-                              &ReaderBooks::decoded,       &ReaderBooks::samples,
-                              &ReaderBooks::repeated};
+constexpr std::array kEntries{
+    &ReaderBooks::bytes_read,     &ReaderBooks::bytes_framed, &ReaderBooks::bytes_skipped,
+    &ReaderBooks::bytes_pending,  &ReaderBooks::frames_read,  &ReaderBooks::frames_good,
+    &ReaderBooks::frames_refused, &ReaderBooks::frames_other, &ReaderBooks::decoded,
+    &ReaderBooks::samples,        &ReaderBooks::repeated};
 
 }  // namespace
 
@@ -23,20 +24,29 @@ void SharedBooks::write(const ReaderBooks& books) noexcept {
   version_.store(version + 2, std::memory_order_release);
 }
 
+bool SharedBooks::try_read(ReaderBooks& out) const noexcept {
+  const std::uint32_t before = version_.load(std::memory_order_acquire);
+  for (std::size_t i = 0; i < kEntries.size(); ++i)
+    out.*kEntries[i] = entries_[i].load(std::memory_order_acquire);
+  return before % 2 == 0 && version_.load(std::memory_order_relaxed) == before;
+}
+
 ReaderBooks SharedBooks::read() const noexcept {
-  for (;;) {
-    ReaderBooks books;
-    const std::uint32_t before = version_.load(std::memory_order_acquire);
-    for (std::size_t i = 0; i < kEntries.size(); ++i)
-      books.*kEntries[i] = entries_[i].load(std::memory_order_acquire);
-    if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) return books;
+  ReaderBooks books;
+  while (!try_read(books)) {
   }
+  return books;
 }
 
 std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter) {
   if (reader.bytes_read != reader.bytes_framed + reader.bytes_skipped + reader.bytes_pending)
     return fmt::format("the books do not balance: {} bytes read, {} in frames + {} skipped + {} pending",
                        reader.bytes_read, reader.bytes_framed, reader.bytes_skipped, reader.bytes_pending);
+  const bool of_can = reader.frames_read > 0 || reader.frames_other > 0;
+  if (of_can && reader.frames_read != reader.frames_good + reader.frames_refused + reader.frames_other)
+    return fmt::format(
+        "the books do not balance: {} CAN frames read, {} decoded + {} refused + {} none of the sensor's",
+        reader.frames_read, reader.frames_good, reader.frames_refused, reader.frames_other);
   if (reader.decoded != reader.samples + reader.repeated)
     return fmt::format("the books do not balance: {} samples decoded, {} taken + {} repeated", reader.decoded,
                        reader.samples, reader.repeated);

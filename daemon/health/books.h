@@ -1,10 +1,10 @@
 // The books of one pipeline: all that came in, and where each of it went. Nothing is lost in silence, so at
 // every moment
 //   bytes read      = bytes of frames + bytes skipped + bytes of a frame that is not complete yet
+//   CAN frames read = frames decoded + frames refused + frames that are none of the sensor's
 //   samples decoded = samples + samples that came twice
-//   samples         = samples sent, alone or merged into another one's message, + in messages that LCM did
-//   not
-//                     take + on their way to the filter
+//   samples         = samples sent, alone or merged into another one's message, + samples in messages that
+//                     LCM did not take + samples on their way to the filter
 // and each way out has its counter in the status message.
 #pragma once
 
@@ -16,10 +16,12 @@
 
 namespace ifog {
 
-// Of one moment in the reader thread: the samples as they are handed on, the bytes as of the end of the last
-// delivery, since within one the driver has not yet said what became of them.
+// Of one moment in the reader thread: the samples as they are handed on, bytes and frames as of the end of
+// the last delivery, since within one the driver has not yet said what became of them.
 struct ReaderBooks {
   std::uint64_t bytes_read = 0, bytes_framed = 0, bytes_skipped = 0, bytes_pending = 0;
+  // Read, of CAN; a driver of bytes counts here the good and bad ones that it finds in them.
+  std::uint64_t frames_read = 0, frames_good = 0, frames_refused = 0, frames_other = 0;
   std::uint64_t decoded = 0, samples = 0, repeated = 0;
 };
 
@@ -32,16 +34,19 @@ struct FilterBooks {
 // "", or the identity that does not hold, with its numbers. `filter` is from before `reader`.
 std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter);
 
-// Written by the reader thread, read as a whole by another: a sequence lock (H.-J. Boehm, "Can Seqlocks Get
+// Written by the reader thread, read as a whole by others: a sequence lock (H.-J. Boehm, "Can Seqlocks Get
 // Along With Programming Language Memory Models?", MSPC 2012). The writer never waits.
 class SharedBooks {
  public:
   void write(const ReaderBooks& books) noexcept;
+  // For a thread that may wait for the writer.
   [[nodiscard]] ReaderBooks read() const noexcept;
+  // For one that may not, since it may hold the writer's processor. False: the writer is at it.
+  bool try_read(ReaderBooks& out) const noexcept;
 
  private:
   std::atomic<std::uint32_t> version_{0};  // odd: being written
-  std::array<std::atomic<std::uint64_t>, 7> entries_{};
+  std::array<std::atomic<std::uint64_t>, 11> entries_{};
 };
 
 }  // namespace ifog

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
@@ -122,8 +123,13 @@ bool Housekeeping::open_all() {
 void Housekeeping::start_all() {
   for (const auto& sensor : sensors_) {
     for (const std::string& effect : sensor->parts.left_out) sensor->log->warn("not corrected: {}", effect);
-    if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
-      sensor->log->warn("{}", missed);
+    try {
+      if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
+        sensor->log->warn("{}", missed);
+    } catch (const std::system_error& error) {
+      throw std::runtime_error("sensor \"" + printable(sensor->config.name) + "\": cannot make a thread: " +
+                               error.code().message() + ", expected room for two (TasksMax=, ulimit -u)");
+    }
     const PipelinePlan& plan = sensor->parts.pipeline->plan();
     sensor->log->info("reading {} at {} Hz, publishing on {}",
                       sensor->parts.pipeline->reader().transport().name(), plan.facts.nominal_rate_hz,
@@ -161,6 +167,8 @@ void Housekeeping::publish(Sensor& sensor) {
 void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   sensor.answered = pipeline.filter().take_snapshot(sensor.snapshot);
+  // A filter that does not come round takes nothing from what the reader brings: that waits.
+  if (!sensor.answered) sensor.snapshot.reader = pipeline.reader().books();
   sensor.unanswered = sensor.answered || pipeline.ended() ? 0 : sensor.unanswered + 1;
   const std::uint64_t turns = pipeline.reader().counters().turns.value();
   sensor.reader_stuck = turns != sensor.reader_turns || pipeline.ended() ? 0 : sensor.reader_stuck + 1;

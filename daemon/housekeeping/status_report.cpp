@@ -21,6 +21,7 @@ struct Named {
 constexpr std::array kFaults{
     Named{"frames_crc", &status_t::frames_crc},
     Named{"frames_format", &status_t::frames_format},
+    Named{"log_faults", &status_t::log_faults},
     Named{"bytes_skipped", &status_t::bytes_skipped},
     Named{"frames_repeated", &status_t::frames_repeated},
     Named{"samples_repeated", &status_t::samples_repeated},
@@ -30,6 +31,7 @@ constexpr std::array kFaults{
     Named{"ring_overflows", &status_t::ring_overflows},
     Named{"samples_merged", &status_t::samples_merged},
     Named{"kernel_drops", &status_t::kernel_drops},
+    Named{"stood_back", &status_t::stood_back},
     Named{"transport_warnings", &status_t::transport_warnings},
     Named{"can_error_frames", &status_t::can_error_frames},
     Named{"reopened", &status_t::reopened},
@@ -37,6 +39,7 @@ constexpr std::array kFaults{
     Named{"invalid_samples", &status_t::invalid_samples},
     Named{"saturated_samples", &status_t::saturated_samples},
     Named{"implausible_samples", &status_t::implausible_samples},
+    Named{"channel_drops", &status_t::channel_drops},
     Named{"channel_implausible", &status_t::channel_implausible},
     Named{"channel_stale", &status_t::channel_stale},
     Named{"out_of_range", &status_t::out_of_range},
@@ -93,8 +96,10 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
       break;
   }
   const std::int64_t now_ns = monotonic_ns();
-  if (now_.samples_in + now_.samples_repeated != before_.samples_in + before_.samples_repeated)
-    sample_ns_ = now_ns;
+  // As the reader has it now, whether the filter answers or not.
+  const ReaderCounters& reader = pipeline.reader().counters();
+  const std::uint64_t decoded = reader.samples.value() + reader.repeated.value();
+  if (std::exchange(decoded_, decoded) != decoded) sample_ns_ = now_ns;
   if (sample_ns_ == 0) return status_t::STATE_STARTING;
   if (static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s) return status_t::STATE_NO_DATA;
   return status_t::STATE_RUNNING;
@@ -108,8 +113,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   const TransportCounters line = transport.counters();
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
-  // The snapshot is from before, so that whatever it has taken is in these, too.
-  const ReaderBooks books = pipeline.reader().books();
+  const ReaderBooks& books = snapshot.reader;
   now_.fault = imbalance(books, snapshot.books);
   if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
   now_.bytes_read = as_signed(books.bytes_read);
@@ -123,20 +127,25 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.samples_merged = as_signed(snapshot.books.merged);
   now_.lcm_failures = as_signed(snapshot.books.failed);
   now_.samples_waiting = as_signed(books.samples - snapshot.books.samples);
-  now_.frames_good = as_signed(reader.frames_good.value());
+  now_.frames_read = as_signed(books.frames_read);
+  now_.frames_other = as_signed(books.frames_other);
+  now_.frames_good = as_signed(books.frames_good);
   now_.frames_crc = as_signed(reader.frames_crc.value());
-  now_.frames_format = as_signed(reader.frames_format.value() + line.malformed);
+  now_.frames_format = as_signed(books.frames_refused);
+  now_.log_faults = as_signed(line.malformed);
   now_.frames_repeated = as_signed(reader.frames_repeated.value());
   now_.samples_incomplete = as_signed(reader.samples_incomplete.value());
   now_.sequence_gaps = as_signed(reader.gaps.value());
   now_.sequence_missing = as_signed(reader.missing.value());
   now_.ring_overflows = as_signed(pipeline.queue().overflows());
   now_.kernel_drops = as_signed(line.kernel_drops);
+  now_.stood_back = as_signed(reader.stood_back.value() + filter.stood_back.value());
   now_.can_error_frames = as_signed(line.error_frames);
   now_.reopened = as_signed(line.reopened);
   now_.invalid_samples = as_signed(reader.invalid.value());
   now_.saturated_samples = as_signed(reader.saturated.value());
   now_.implausible_samples = as_signed(reader.implausible.value());
+  now_.channel_drops = as_signed(reader.channel_drops.value());
   now_.channel_implausible = as_signed(reader.channel_implausible.value());
   now_.gated = as_signed(snapshot.health.gated);
   now_.channel_stale = as_signed(filter.channel_stale.value());

@@ -14,7 +14,8 @@ class StatusReport {
  public:
   StatusReport(std::string sensor, std::vector<std::string> channels, const std::vector<std::string>& axes);
 
-  // From the counters now and the last snapshot of the filter; interval_s since the call before.
+  // From the counters now and the last snapshot of the filter, with its books; interval_s since the call
+  // before.
   const ifog::status_t& update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
@@ -27,6 +28,7 @@ class StatusReport {
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
 
   ifog::status_t before_, now_;
+  std::uint64_t decoded_ = 0;   // samples, at the last update()
   std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
 };
 

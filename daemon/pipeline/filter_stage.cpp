@@ -1,6 +1,8 @@
 #include "daemon/pipeline/filter_stage.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include "drivers/transport/clock.h"
@@ -19,14 +21,15 @@ void relax() noexcept {
 }  // namespace
 
 FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-                         std::unique_ptr<Publisher> publisher, IncrementQueue& queue, EventQueue& events,
-                         bool measure_latency)
+                         std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
+                         const SharedBooks& reader_books, EventQueue& events, bool measure_latency)
     : facts_(facts),
       chain_(std::move(parts)),
       encoder_(facts.axes),
       channel_(std::move(channel)),
       publisher_(std::move(publisher)),
       queue_(queue),
+      reader_books_(reader_books),
       events_(events),
       measure_latency_(measure_latency),
       noise_known_(chain_.parts().noise_known()) {
@@ -48,19 +51,38 @@ bool FilterStage::step() noexcept {
 }
 
 void FilterStage::run(bool spin) noexcept {
+  // A source that waits to be read has nobody else's time, one that spins a processor of its own.
+  const bool shares = !spin && !queue_.waits_when_full();
+  std::int64_t slept_ns = 0;  // in all
   for (;;) {
     const bool stepped = step();
     if (ask_.load(std::memory_order_acquire) == Ask::asked) answer();
-    if (stepped) continue;
+    if (stepped) {
+      if (shares) stand_back(slept_ns);
+      continue;
+    }
     if (queue_.finished()) {
       finished_.store(true, std::memory_order_release);
       return;
     }
-    if (spin)
+    if (spin) {
       relax();
-    else
-      queue_.wait();
+      continue;
+    }
+    const std::int64_t from_ns = monotonic_ns();
+    queue_.wait();
+    slept_ns += monotonic_ns() - from_ns;
   }
+}
+
+// Its time here, and not on the processor, is what keeps others of its priority waiting.
+void FilterStage::stand_back(std::int64_t slept_ns) noexcept {
+  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t rest_ns = share_.rest_ns(now_ns, [&] { return now_ns - slept_ns - rested_ns_; });
+  if (rest_ns == 0) return;
+  counters_.stood_back.add(1);
+  std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
+  rested_ns_ += rest_ns;
 }
 
 void FilterStage::process(const Increment& in) noexcept {
@@ -130,7 +152,10 @@ void FilterStage::offer(std::unique_ptr<ChainParts> parts) noexcept {
 
 void FilterStage::collect_retired() noexcept { delete retired_.exchange(nullptr, std::memory_order_acq_rel); }
 
-void FilterStage::answer() noexcept {
+// False: the reader was at its books all the time. It is not waited for, because it may wait for this
+// processor.
+bool FilterStage::answer() noexcept {
+  constexpr int kTries = 1000;
   const ChainParts& parts = chain_.parts();
   current_.has_health = parts.health() != nullptr;
   current_.health = chain_.health();
@@ -138,6 +163,9 @@ void FilterStage::answer() noexcept {
                     .sent = counters_.published.value(),
                     .failed = counters_.lcm_failures.value(),
                     .merged = counters_.merged.value()};
+  // After the filter's own: whatever that has taken is in the reader's.
+  for (int tries = 0; !reader_books_.try_read(current_.reader); relax())
+    if (++tries == kTries) return false;
   current_.allan_period_s = intervals_ > 0 ? mean_interval_s_ : 1.0 / facts_.nominal_rate_hz;
   current_.allan_octaves = StreamingAllan::kOctaves;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
@@ -151,13 +179,14 @@ void FilterStage::answer() noexcept {
   snapshot_ = current_;
   current_.latency.clear();
   ask_.store(Ask::answered, std::memory_order_release);
+  return true;
 }
 
 bool FilterStage::ask() noexcept {
-  if (ask_.load(std::memory_order_acquire) == Ask::asked) return false;
-  ask_.store(Ask::asked, std::memory_order_release);
+  const bool first = ask_.load(std::memory_order_acquire) != Ask::asked;
+  if (first) ask_.store(Ask::asked, std::memory_order_release);
   queue_.notify();
-  return true;
+  return first;
 }
 
 bool FilterStage::take_snapshot(FilterSnapshot& out) noexcept {

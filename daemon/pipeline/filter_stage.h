@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "daemon/health/latency.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/processor_share.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
 #include "drivers/transport/counter.h"
@@ -23,12 +25,19 @@ namespace ifog {
 
 // What housekeeping wants to know of the filter, copied by the filter thread itself when asked.
 struct FilterSnapshot {
+  // Of channels nothing is known before the first sample.
+  FilterSnapshot() {
+    channel.fill(std::numeric_limits<double>::quiet_NaN());
+    channel_age_s.fill(std::numeric_limits<float>::infinity());
+  }
   EstimatorHealth health;
   bool has_health = false;   // false during start-up
   LatencyHistogram latency;  // since the snapshot before
-  std::array<double, kMaxChannels> channel{};
-  std::array<float, kMaxChannels> channel_age_s{};
+  std::array<double, kMaxChannels> channel;
+  std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};
+  // Of one moment: what lies between them is in the ring.
+  ReaderBooks reader;
   FilterBooks books;
   // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.
   double allan_period_s = 0.0;
@@ -39,14 +48,15 @@ struct FilterSnapshot {
 struct FilterCounters {
   Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
   Counter corrections_refused, merged;
+  Counter stood_back;  // times it had used its share of a processor, see ProcessorShare
 };
 
 class FilterStage {
  public:
   // measure_latency: false where arrival times are not of today (a log read at its own pace).
   FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-              std::unique_ptr<Publisher> publisher, IncrementQueue& queue, EventQueue& events,
-              bool measure_latency);
+              std::unique_ptr<Publisher> publisher, IncrementQueue& queue, const SharedBooks& reader_books,
+              EventQueue& events, bool measure_latency);
   ~FilterStage();
 
   // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
@@ -69,9 +79,10 @@ class FilterStage {
  private:
   enum class Ask : std::uint32_t { none, asked, answered };
   void process(const Increment& in) noexcept;
+  void stand_back(std::int64_t slept_ns) noexcept;
   void adopt(std::uint64_t sequence) noexcept;
   void follow_noise(const Increment& in) noexcept;
-  void answer() noexcept;
+  bool answer() noexcept;
 
   SensorFacts facts_;
   SignalChain chain_;
@@ -79,6 +90,7 @@ class FilterStage {
   std::string channel_;
   std::unique_ptr<Publisher> publisher_;
   IncrementQueue& queue_;
+  const SharedBooks& reader_books_;
   EventQueue& events_;
   bool measure_latency_;
   bool noise_known_;
@@ -94,6 +106,8 @@ class FilterStage {
   std::atomic<ChainParts*> offered_{nullptr};
   std::atomic<ChainParts*> retired_{nullptr};
   FilterCounters counters_;
+  ProcessorShare share_;
+  std::int64_t rested_ns_ = 0;
 };
 
 }  // namespace ifog

@@ -33,6 +33,7 @@ class IncrementQueue {
   // awake, or more than `most` increments wait.
   [[nodiscard]] bool flush_or_borrow(std::size_t most) noexcept;
   void give_back() noexcept { wakeup_.give_back(ring_.size() > 0); }
+  [[nodiscard]] bool waits_when_full() const noexcept { return when_full_ == WhenFull::wait; }
   // Something waits outside the full ring: without a further delivery nobody but the next flush moves it in.
   [[nodiscard]] bool has_waiting() const noexcept { return has_waiting_; }
   // No more will come. Waits until the last increment is in the ring.

@@ -55,6 +55,7 @@ class Pipeline {
  private:
   PipelinePlan plan_;
   EventQueue reader_events_, filter_events_;
+  SharedBooks reader_books_;
   IncrementQueue queue_;
   FilterStage filter_;
   HandOver hand_over_;

@@ -1,5 +1,6 @@
 #include "daemon/pipeline/reader.h"
 
+#include <thread>
 #include <utility>
 
 namespace ifog {
@@ -13,7 +14,7 @@ constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
                std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-               EventQueue& events)
+               SharedBooks& books, EventQueue& events)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
@@ -21,6 +22,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       incrementer_(facts),
       queue_(queue),
       hand_over_(hand_over),
+      books_(books),
       events_(events) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
@@ -81,19 +83,30 @@ void Reader::publish_counters() noexcept {
   counters_.clock_steps.set(counts.clock_steps);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();
-  counters_.frames_good.set(driver.frames_good);
   counters_.frames_crc.set(driver.frames_crc);
-  counters_.frames_format.set(driver.frames_format);
   counters_.bytes_skipped.set(driver.bytes_skipped);
   counters_.frames_repeated.set(driver.frames_repeated);
   counters_.samples_incomplete.set(driver.samples_incomplete);
   counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
                                     (outside_ != nullptr ? outside_->refused() : 0));
-  now_.bytes_read = transport_->counters().bytes;
+  counters_.channel_drops.set(outside_ != nullptr ? outside_->drops() : 0);
+  const TransportCounters line = transport_->counters();
+  now_.bytes_read = line.bytes;
   now_.bytes_framed = driver.bytes_framed;
   now_.bytes_skipped = driver.bytes_skipped;
   now_.bytes_pending = driver.bytes_pending;
+  now_.frames_read = line.frames;
+  now_.frames_good = driver.frames_good;
+  now_.frames_refused = driver.frames_format;
+  now_.frames_other = driver.frames_other;
   books_.write(now_);
+}
+
+void Reader::stand_back() noexcept {
+  const std::int64_t rest_ns = share_.rest_ns(turn_ns_, thread_time_ns);
+  if (rest_ns == 0) return;
+  counters_.stood_back.add(1);
+  std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
@@ -114,12 +127,15 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   publish_counters();
   hand_over_.delivered();
   counters_.turns.add(1);
+  // A source that waits to be read has nobody else's time.
+  if (!delivery.empty() && !transport_->holds_back()) stand_back();
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
 }
 
 void Reader::run() noexcept {
   while (turn(queue_.has_waiting() ? kImpatientTurn : kTurn)) {
   }
+  transport_->close_books();
   // The bytes of a frame that never came to its end count as passed over.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();

@@ -12,6 +12,7 @@
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/processor_share.h"
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
@@ -24,8 +25,9 @@ namespace ifog {
 // Any thread may read them; relaxed, for each stands for itself.
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
-  Counter saturated, implausible, channel_implausible;
-  Counter frames_good, frames_crc, frames_format, bytes_skipped, frames_repeated, samples_incomplete;
+  Counter saturated, implausible, channel_implausible, channel_drops;
+  Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
+  Counter stood_back;    // times it had used its share of a processor, see ProcessorShare
   Counter bytes_at_end;  // of a file that ends within a frame; also in bytes_skipped
   std::atomic<double> clock_offset_ppm{0.0};
 };
@@ -34,7 +36,7 @@ class Reader {
  public:
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
          std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-         EventQueue& events);
+         SharedBooks& books, EventQueue& events);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
   void run() noexcept;
@@ -45,13 +47,14 @@ class Reader {
   [[nodiscard]] const Transport& transport() const noexcept { return *transport_; }
   [[nodiscard]] const DriverInstance& driver() const noexcept { return driver_; }
   [[nodiscard]] const ReaderCounters& counters() const noexcept { return counters_; }
-  // Any thread.
+  // Any thread that may wait for the reader's.
   [[nodiscard]] ReaderBooks books() const noexcept { return books_.read(); }
 
  private:
   void take(const ifog_sample& sample) noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
   void publish_counters() noexcept;
+  void stand_back() noexcept;
 
   std::unique_ptr<Transport> transport_;
   DriverInstance driver_;
@@ -60,14 +63,15 @@ class Reader {
   Incrementer incrementer_;
   IncrementQueue& queue_;
   HandOver& hand_over_;
+  SharedBooks& books_;
   EventQueue& events_;
   Reading reading_;
   WallShift wall_shift_;
+  ProcessorShare share_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
   ReaderBooks now_;
   ReaderCounters counters_;
-  SharedBooks books_;
 };
 
 }  // namespace ifog

@@ -25,7 +25,7 @@
 extern "C" {
 #endif
 
-#define IFOG_DRIVER_ABI 3u
+#define IFOG_DRIVER_ABI 4u
 #define IFOG_MAX_AXES 3
 #define IFOG_MAX_ENVIRONMENT 16
 #define IFOG_NAME_LENGTH 48
@@ -89,6 +89,8 @@ typedef struct ifog_driver_counters {
       bytes_pending; /* the one that falls, too: bytes that may yet begin a frame. Every byte that was fed is
                         in bytes_framed, bytes_skipped or bytes_pending; the host checks it. 0 for CAN */
   uint64_t values_refused; /* environment values beyond what the format states; the last good one stays */
+  uint64_t frames_other;   /* CAN frames that are none of the sensor's. Every CAN frame that was fed is in
+                              frames_good, frames_format or frames_other; the host checks it */
 } ifog_driver_counters;
 
 /* What a configured instance will deliver. Filled by `describe`, constant afterwards. */

@@ -1,11 +1,13 @@
 #include "drivers/transport/can.h"
 #include "drivers/transport/clock.h"
 
+#include <linux/sock_diag.h>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
 
 #include "drivers/transport/can_socket.h"
 #include "drivers/transport/receiving_socket.h"
@@ -29,11 +31,15 @@ class CanTransport final : public Transport {
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
+  int receive_waiting() noexcept;
   std::span<const ifog_can_frame> accept(std::size_t received) noexcept;
+  void count_losses() noexcept override;
+  void count_drops(std::uint32_t drops) noexcept;
 
   CanSettings settings_;
   CanSocket socket_;
   std::uint32_t drops_ = 0;
+  int leaving_ = 0;  // the interface went away with this errno; what waits in the socket is still read
   KernelStamps stamps_;
   std::array<canfd_frame, kBatch> raw_{};
   std::array<iovec, kBatch> vectors_{};
@@ -51,6 +57,7 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   fresh.receive_only(settings_.ids, settings_.interface);
   socket_ = std::move(fresh);
   drops_ = 0;
+  leaving_ = 0;
   stamps_.begin(realtime_ns(), arrival_clock_ns());
   ask_for_drops(socket_.fd());
   ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
@@ -60,22 +67,58 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
 
 Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
   short happened = 0;
-  if (wait(socket_.fd(), POLLIN, until_ns, happened) != Wake::ready) return {};
-  for (mmsghdr& message : messages_) {
-    message.msg_hdr.msg_controllen = sizeof(ControlRoom);
-    message.msg_hdr.msg_flags = 0;
+  const Wake wake = leaving_ != 0 ? Wake::ready : wait(socket_.fd(), POLLIN, until_ns, happened);
+  if (wake != Wake::ready) {
+    count_losses();
+    return {};
   }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
+  const int n = receive_waiting();
   if (n > 0) {
     Delivery delivery;
     delivery.frames = accept(static_cast<std::size_t>(n));
     return delivery;
   }
-  const int error = n < 0 ? errno : ENODEV;
-  if (error == EINTR || error == EAGAIN) return {};
+  if (leaving_ == 0) return {};
+  count_losses();
   socket_.close();
-  lost(error);  // ENETDOWN: set down; ENODEV: taken away
+  lost(leaving_);
   return {};
+}
+
+// What is in the socket: frames, or none and, where the interface is gone, why. ENETDOWN (set down) and
+// ENODEV (taken away) are each said once; frames that came before are read after them.
+int CanTransport::receive_waiting() noexcept {
+  constexpr int kErrors = 4;  // more than can be said of one socket
+  for (int errors = 0; errors < kErrors;) {
+    for (mmsghdr& message : messages_) {
+      message.msg_hdr.msg_controllen = sizeof(ControlRoom);
+      message.msg_hdr.msg_flags = 0;
+    }
+    const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
+    if (n > 0) return n;
+    const int error = n < 0 ? errno : ENODEV;
+    if (error == EINTR || error == EAGAIN) return 0;
+    leaving_ = error;
+    ++errors;
+  }
+  return 0;
+}
+
+// Beside a frame the kernel says what it had no room for until then; after the last one it must be asked.
+void CanTransport::count_losses() noexcept {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> info{};
+  socklen_t size = sizeof info;
+  if (getsockopt(socket_.fd(), SOL_SOCKET, SO_MEMINFO, info.data(), &size) == 0 &&
+      size > SK_MEMINFO_DROPS * sizeof info[0])
+    count_drops(info[SK_MEMINFO_DROPS]);
+}
+
+// Modulo 2^32, as the kernel counts. A frame may say less than the socket: it waited since then.
+void CanTransport::count_drops(std::uint32_t drops) noexcept {
+  const std::uint32_t more = drops - drops_;
+  if (more == 0 || more > UINT32_MAX / 2) return;
+  kernel_drops_.add(more);
+  drops_ = drops;
 }
 
 std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexcept {
@@ -84,10 +127,7 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexc
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < received; ++i) {
     const ReceiveControl said = receive_control(messages_[i].msg_hdr);
-    if (said.has_drops) {
-      kernel_drops_.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
-      drops_ = said.drops;
-    }
+    if (said.has_drops) count_drops(said.drops);
     ifog_can_frame& frame = frames_[kept];
     switch (from_socket(raw_[i], messages_[i].msg_len, frame)) {
       case CanKind::data:

@@ -19,8 +19,9 @@ struct CanSettings {
 };
 
 // Arrival times are the kernel's (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS; else a warning and the
-// moment of the read). Frames the socket had no room for are kernel drops (SO_RXQ_OVFL). A plugin's opening
-// bytes have no place on a bus: open() refuses them.
+// moment of the read). Frames the socket had no room for are kernel drops (SO_RXQ_OVFL, and SO_MEMINFO after
+// the last frame). Frames that wait in the socket when the interface goes down or away are read all the same.
+// A plugin's opening bytes have no place on a bus: open() refuses them.
 std::unique_ptr<Transport> make_can_transport(const CanSettings& settings);
 
 }  // namespace ifog

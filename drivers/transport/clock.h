@@ -15,6 +15,9 @@ namespace ifog {
 std::int64_t realtime_ns() noexcept;
 std::int64_t monotonic_ns() noexcept;
 
+// Time that the calling thread has had of a processor, in the kernel, too, ns. A system call.
+std::int64_t thread_time_ns() noexcept;
+
 // The arrival clock, ns since the epoch as the wall clock had it when the process started.
 std::int64_t arrival_clock_ns() noexcept;
 

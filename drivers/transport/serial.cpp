@@ -1,9 +1,7 @@
 #include "drivers/transport/serial.h"
 #include "drivers/transport/clock.h"
 
-#include <linux/serial.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <array>
@@ -14,7 +12,10 @@
 namespace ifog {
 namespace {
 
-constexpr std::int64_t kSendLimit_ns = 1'000'000'000, kErrorPeriod_ns = 1'000'000'000;
+constexpr std::int64_t kSendLimit_ns = 1'000'000'000;
+// Once the device is gone its driver tells no more, so what the line has counted by then is as old as this at
+// most.
+constexpr std::int64_t kErrorPeriod_ns = 100'000'000;
 
 class SerialTransport final : public Transport {
  public:
@@ -29,12 +30,12 @@ class SerialTransport final : public Transport {
     return ::poll(&port, 1, 0) > 0;
   }
   void send_opening();
-  void count_line_errors(std::int64_t now_ns) noexcept;
+  void count_losses() noexcept override;
 
   SerialSettings settings_;
   SerialOpener open_port_;
   std::unique_ptr<SerialPort> port_;
-  serial_icounter_struct errors_{};
+  LineErrors errors_;
   bool errors_known_ = false;
   std::int64_t next_errors_ns_ = 0;
   std::array<std::uint8_t, 16384> buffer_{};
@@ -44,7 +45,7 @@ bool SerialTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   port_.reset();
   port_ = open_port_(settings_, warning);
   send_opening();
-  errors_known_ = ioctl(port_->fd(), TIOCGICOUNT, &errors_) == 0;
+  errors_known_ = port_->errors(errors_);
   next_errors_ns_ = monotonic_ns() + kErrorPeriod_ns;
   return true;
 }
@@ -73,10 +74,12 @@ void SerialTransport::send_opening() {
 Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
   short happened = 0;
   const Wake wake = wait(port_->fd(), POLLIN, until_ns, happened);
-  if (wake == Wake::stopped) return {};
   const std::int64_t now = monotonic_ns();
-  if (errors_known_ && now >= next_errors_ns_) count_line_errors(now);
-  if (wake == Wake::timeout) return {};
+  if (now >= next_errors_ns_) {
+    next_errors_ns_ = now + kErrorPeriod_ns;
+    count_losses();
+  }
+  if (wake != Wake::ready) return {};
 
   const ssize_t n = ::read(port_->fd(), buffer_.data(), buffer_.size());
   if (n > 0) {
@@ -89,25 +92,18 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
   const int error = n < 0 ? errno : 0;
   const bool hung_up = (happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) return {};
+  count_losses();
   // Closed at once: while it is held open the kernel gives a returning USB adapter another name.
   port_.reset();
   lost(error == 0 || error == EAGAIN ? ENODEV : error);
   return {};
 }
 
-void SerialTransport::count_line_errors(std::int64_t now_ns) noexcept {
-  next_errors_ns_ = now_ns + kErrorPeriod_ns;
-  serial_icounter_struct now{};
-  if (ioctl(port_->fd(), TIOCGICOUNT, &now) != 0) {
-    errors_known_ = false;
-    return;
-  }
-  // The kernel's counters are ints that wrap.
-  const auto more = [](int after, int before) {
-    return static_cast<std::uint64_t>(static_cast<unsigned>(after) - static_cast<unsigned>(before));
-  };
-  kernel_drops_.add(more(now.overrun, errors_.overrun) + more(now.buf_overrun, errors_.buf_overrun));
-  error_frames_.add(more(now.frame, errors_.frame) + more(now.parity, errors_.parity));
+void SerialTransport::count_losses() noexcept {
+  LineErrors now;
+  if (!errors_known_ || !port_->errors(now)) return;
+  kernel_drops_.add(now.lost - errors_.lost);  // modulo 2^32
+  error_frames_.add(now.damaged - errors_.damaged);
   errors_ = now;
 }
 

@@ -10,7 +10,8 @@
 namespace ifog {
 
 // Arrival times are taken right after the read. Overruns of the UART and of the kernel's buffer are counted
-// as kernel drops, framing and parity errors as error frames, where the driver tells them (TIOCGICOUNT).
+// as kernel drops, framing and parity errors and breaks as error frames, where the driver tells them
+// (TIOCGICOUNT): ten times a second, when the line hangs up and after the last read.
 // `open_port` is there for tests: libserialport accepts no pseudo terminal. Throws std::runtime_error on
 // settings outside what a line can be.
 std::unique_ptr<Transport> make_serial_transport(const SerialSettings& settings,

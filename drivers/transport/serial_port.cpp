@@ -141,6 +141,16 @@ void LibSerialPort::verify(const SerialSettings& settings) const {
 
 }  // namespace
 
+bool SerialPort::errors(LineErrors& out) const noexcept {
+  serial_icounter_struct counted{};
+  if (ioctl(fd(), TIOCGICOUNT, &counted) != 0) return false;
+  // The kernel's counters are ints that wrap.
+  const auto sum = [](auto... counts) { return (static_cast<std::uint32_t>(counts) + ...); };
+  out.lost = sum(counted.overrun, counted.buf_overrun);
+  out.damaged = sum(counted.frame, counted.parity, counted.brk);
+  return true;
+}
+
 std::unique_ptr<SerialPort> open_serial_port(const SerialSettings& settings, std::string& warning) {
   return std::make_unique<LibSerialPort>(settings, warning);
 }

@@ -23,11 +23,19 @@ struct SerialSettings {
   bool operator==(const SerialSettings&) const = default;
 };
 
+// What went wrong on a line since its driver was loaded, as TIOCGICOUNT tells it, modulo 2^32.
+struct LineErrors {
+  std::uint32_t lost = 0;     // bytes that the UART or the kernel's buffer had no room for
+  std::uint32_t damaged = 0;  // wrong framing or parity; a break is a framing error all along
+};
+
 // Owns the line; closed with it.
 class SerialPort {
  public:
   virtual ~SerialPort() = default;
   [[nodiscard]] virtual int fd() const = 0;  // non-blocking
+  // False: the driver does not count, or the device is gone.
+  virtual bool errors(LineErrors& out) const noexcept;
 };
 
 // Throws OpenError; `warning` gets what was asked for but can be done without.

@@ -58,8 +58,9 @@ struct TransportCounters {
   std::uint64_t bytes = 0;         // delivered
   std::uint64_t frames = 0;        // delivered, CAN
   std::uint64_t kernel_drops = 0;  // frames, datagrams or bytes the kernel had no room for
-  std::uint64_t error_frames = 0;  // CAN error frames; serial framing, parity and overrun errors
-  std::uint64_t reopened = 0;      // times the device came back
+  std::uint64_t error_frames =
+      0;                        // CAN error frames; serial bytes of wrong framing or parity, overruns, breaks
+  std::uint64_t reopened = 0;   // times the device came back
   std::uint64_t malformed = 0;  // lines of a log that are no frame, a file cut off in the middle, datagrams
                                 // from somebody else; see fault()
 };
@@ -85,6 +86,11 @@ class Transport {
   // Waits until something arrives, `timeout` has passed or stop() is called, and returns what is there, empty
   // for nothing. Never throws and, while the device is open, never allocates.
   Delivery read(std::chrono::nanoseconds timeout) noexcept;
+
+  // After the last read(): counts what the kernel has still to say of bytes and frames it had no room for.
+  void close_books() noexcept {
+    if (connected_) count_losses();
+  }
 
   // True: the source keeps until it is read, so a reader whose ring is full stops reading rather than lose
   // samples.
@@ -115,6 +121,8 @@ class Transport {
   // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
   // is no more.
   virtual Delivery receive(std::int64_t until_ns) noexcept = 0;
+  // Brings kernel_drops_ and error_frames_ up to what the kernel has counted against the open device.
+  virtual void count_losses() noexcept {}
   // Whether receive() would find something at once.
   [[nodiscard]] virtual bool more_waits() noexcept { return false; }
 

@@ -27,6 +27,7 @@ struct Count {
   std::int64_t merged = 0;          // messages that stand for several samples
   std::int64_t gap_flags = 0;       // messages the daemon flagged as following a gap
   std::int64_t time_backwards = 0;  // utime not above the one before
+  std::int64_t clock_steps = 0;     // messages the daemon flagged as following a set of the wall clock
   double angle_error = 0.0;         // largest |running angle - sum of increments|, rad: they may never part
   std::int64_t last_utime = 0;
   double angle = 0.0;
@@ -50,6 +51,7 @@ class Subscriber {
     }
     if (message->merged != 1) ++count.merged;
     if ((message->flags & ifog::rate_t::FLAG_GAP) != 0) ++count.gap_flags;
+    if ((message->flags & ifog::rate_t::FLAG_CLOCK_STEP) != 0) ++count.clock_steps;
     ++count.messages;
     count.last = message->seq;
     count.last_utime = message->utime;
@@ -67,6 +69,8 @@ class Subscriber {
                       {"merged", c.merged},
                       {"gap_flags", c.gap_flags},
                       {"time_backwards", c.time_backwards},
+                      {"clock_steps", c.clock_steps},
+                      {"angle", c.angle},
                       {"angle_error", c.angle_error}};
     return all;
   }

@@ -74,22 +74,22 @@ std::string rate_text(double radps) {
   return text.data();
 }
 
-// Environment channels by name; the age of one that is not fresh.
 // What came in and where it went, as status_t's identities have it.
 std::string books_text(const status_t& status) {
-  std::array<char, 320> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "  books: %lld bytes = %lld in frames + %lld skipped + %lld pending; %lld samples = %lld published + "
-      "%lld merged + %lld not sent + %lld waiting, %lld came twice",
-      static_cast<long long>(status.bytes_read), static_cast<long long>(status.bytes_framed),
-      static_cast<long long>(status.bytes_skipped), static_cast<long long>(status.bytes_pending),
-      static_cast<long long>(status.samples_in), static_cast<long long>(status.samples_published),
-      static_cast<long long>(status.samples_merged), static_cast<long long>(status.lcm_failures),
-      static_cast<long long>(status.samples_waiting), static_cast<long long>(status.samples_repeated));
-  return text.data();
+  const auto n = [](std::int64_t count) { return std::to_string(count); };
+  std::string text = "  books: ";
+  if (status.frames_read > 0)
+    text += n(status.frames_read) + " CAN frames = " + n(status.frames_good) + " decoded + " +
+            n(status.frames_format) + " refused + " + n(status.frames_other) + " not the sensor's; ";
+  else
+    text += n(status.bytes_read) + " bytes = " + n(status.bytes_framed) + " in frames + " +
+            n(status.bytes_skipped) + " skipped + " + n(status.bytes_pending) + " pending; ";
+  return text + n(status.samples_in) + " samples = " + n(status.samples_published) + " published + " +
+         n(status.samples_merged) + " merged + " + n(status.lcm_failures) + " not sent + " +
+         n(status.samples_waiting) + " waiting, " + n(status.samples_repeated) + " came twice";
 }
 
+// Environment channels by name; the age of one that is not fresh.
 std::string channels_text(const status_t& status) {
   constexpr double kFresh_s = 2.0;
   std::string out;
@@ -288,17 +288,19 @@ void Monitor::show(double interval_s) {
     }
     if (sensor.has_status) {
       std::array<char, 512> row{};
-      std::snprintf(row.data(), row.size(),
-                    "  latency p50 %.0f p99 %.0f max %.0f us  crc %lld  skipped %lld bytes  missing %lld  "
-                    "repeated %lld  incomplete %lld  merged %lld  kernel drops %lld  stale %lld  clock %s",
-                    status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
-                    static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
-                    static_cast<long long>(status.sequence_missing),
-                    static_cast<long long>(status.frames_repeated + status.samples_repeated),
-                    static_cast<long long>(status.samples_incomplete),
-                    static_cast<long long>(status.samples_merged),
-                    static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_stale),
-                    clock_text(status.clock_offset_ppm).c_str());
+      std::snprintf(
+          row.data(), row.size(),
+          "  latency p50 %.0f p99 %.0f max %.0f us  crc %lld  skipped %lld bytes  missing %lld  "
+          "repeated %lld  incomplete %lld  merged %lld  kernel drops %lld (channels %lld)  line errors "
+          "%lld  stale %lld  clock %s",
+          status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
+          static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
+          static_cast<long long>(status.sequence_missing),
+          static_cast<long long>(status.frames_repeated + status.samples_repeated),
+          static_cast<long long>(status.samples_incomplete), static_cast<long long>(status.samples_merged),
+          static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_drops),
+          static_cast<long long>(status.can_error_frames), static_cast<long long>(status.channel_stale),
+          clock_text(status.clock_offset_ppm).c_str());
       line(row.data());
       line(books_text(status));
       if (const std::string channels = channels_text(status); !channels.empty()) line("  " + channels);

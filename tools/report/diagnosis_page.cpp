@@ -167,7 +167,8 @@ std::string effect_section(const PageAxis& axis, std::size_t index) {
 
 std::string figures_table(const Diagnosis& d) {
   std::string out =
-      "<div class=\"scroll\"><table><caption>By the model as written, or on data held out of the fit: the larger</caption><thead><tr><th "
+      "<div class=\"scroll\"><table><caption>By the model as written, or on data held out of the fit: the "
+      "larger</caption><thead><tr><th "
       "scope=\"col\">figure</th>"
       "<th scope=\"col\" class=\"n\">before</th><th scope=\"col\" class=\"n\">after</th><th "
       "scope=\"col\">unit</th>"

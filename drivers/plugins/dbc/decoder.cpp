@@ -105,6 +105,7 @@ void Decoder::decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* s
       take(wanted, frame, emit, sink);
       return;
     }
+  ++counters_.frames_other;
 }
 
 void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit,
@@ -139,6 +140,7 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
     const bool other_count = counter != nullptr && counted_ && !same_count;
     if (present_ != 0 && (other_count || (present_ & brings) != 0)) give_up();
     if (present_ == 0 && (brings & beginning_axes_) == 0) {
+      ++counters_.frames_good;
       ++counters_.samples_incomplete;
       return;
     }

@@ -28,8 +28,9 @@ class Decoder {
   void decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
   void reset() noexcept;
 
-  // frames_format: frames too short for a signal. samples_incomplete: begun and given up, and frames whose
-  // sample's beginning was lost. frames_good: all others, with frames_repeated among them.
+  // frames_other: of an id that no signal is picked from. frames_format: too short for a signal. frames_good:
+  // all others, with frames_repeated among them. samples_incomplete: begun and given up, and frames whose
+  // sample's beginning was lost.
   [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
 
  private:

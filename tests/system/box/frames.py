@@ -40,6 +40,31 @@ def kvh1750(sample, hertz):
     return body + struct.pack(">I", crc32_mpeg2(body))
 
 
+def angle(begin, count, hertz):
+    """What `count` samples from number `begin` on turn, about axis x, each rate as its float32."""
+    return sum(struct.unpack(">f", struct.pack(">f", rate(n, hertz)))[0] / hertz for n in range(begin, begin + count))
+
+
+def misread(sent, sent_baud, read_baud):
+    """The bytes that a UART at read_baud makes of what another sends at sent_baud, 8N1: the line is looked at in the middle of
+    each of its bits. A byte whose stop bit is low has a framing error and is handed on all the same, as the 8250 does."""
+    line = bytearray()
+    for byte in sent:
+        line += bytes([0] + [byte >> bit & 1 for bit in range(8)] + [1])
+    step, at, got = sent_baud / read_baud, 0.0, bytearray()
+    while True:
+        start = line.find(0, int(at))
+        last = start + 9.5 * step
+        if start < 0 or last >= len(line):
+            return bytes(got)
+        got.append(sum(line[int(start + (1.5 + bit) * step)] << bit for bit in range(8)))
+        at = last
+        if line[int(last)] == 0:  # the next start bit follows the next high level
+            at = line.find(1, int(last))
+            if at < 0:
+                return bytes(got)
+
+
 def candump(samples, hertz, interface, start=1_700_000_000.0):
     """A candump log of the gyro DBC describes."""
     lines = []

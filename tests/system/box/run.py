@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """The Debian package under its real unit in an emulated navigation computer: kernel, systemd, SocketCAN, serial lines.
 
-usage: run.py BUILD PACKAGE.deb WORK [--pulls N] [--seconds S] [--only WORD]
+usage: run.py BUILD PACKAGE.deb WORK [--pulls N] [--kills N] [--seconds S] [--only WORD]...
 
 Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and what was seen. --pulls: how often the USB cable is
-pulled (5; 100 is the promise's number and takes some ten minutes); --seconds: how long the sensors run (60); --only: beside
-what every check needs, those whose name has this word.
+pulled (5; 100 is the promise's number and takes some ten minutes); --kills: how often the service is killed (3; the promise
+is 20); --seconds: how long the sensors run (60); --only: beside what every check needs, those whose name has this word.
 """
 import argparse
 import json
@@ -19,6 +19,7 @@ import time
 import traceback
 
 import frames
+from faults import Faults, complaints
 from machine import Failure, Machine, connect
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -64,9 +65,10 @@ class Line:
         return sending
 
 
-class Box:
-    def __init__(self, build, package, work, pulls, seconds):
-        self.build, self.package, self.work, self.pulls, self.seconds = build, package, work, pulls, seconds
+class Box(Faults):
+    def __init__(self, build, package, work, given):
+        self.build, self.package, self.work = build, package, work
+        self.pulls, self.kills, self.seconds = given.pulls, given.kills, given.seconds
         self.machine, self.lines = None, {}
         self.hertz = RATES[0]
 
@@ -291,33 +293,27 @@ class Box:
         return f"{count} frames, stopped at once, all published"
 
 
-def complaints(sent, got):
-    """What is wrong with a count, or nothing."""
-    wrong = []
-    if got["messages"] != sent:
-        wrong.append(f"{got['messages']} messages of {sent} sent")
-    wrong += [f"{name} {got[name]}" for name in ("missing", "out_of_order", "merged") if got.get(name)]
-    return ", ".join(wrong)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for what in ("build", "package", "work"):
         parser.add_argument(what)
     parser.add_argument("--pulls", type=int, default=5)
+    parser.add_argument("--kills", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=60)
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", action="append")
     given = parser.parse_args()
     build, package, work = given.build, given.package, given.work
     os.makedirs(work, exist_ok=True)
     image = os.path.join(work, "image")
     subprocess.run([os.path.join(HERE, "make_image"), image], check=True, timeout=900)
-    box = Box(build, package, work, given.pulls, given.seconds)
+    box = Box(build, package, work, given)
+    checks = [name for part in (Box, Faults) for name in vars(part) if name.startswith("check_")]
+    wanted = [name for name in checks if name in NEEDED or not given.only or any(word in name for word in given.only)]
     passed = failed = 0
     box.machine = Machine(image, box.overlay(), os.path.join(work, "machine"))
     try:
         box.lines = {"serial": Line(box.machine.path("ttyS1")), "usb": Line(box.machine.path("ttyUSB0"))}
-        for name in [name for name in vars(Box) if name.startswith("check_") and (name in NEEDED or given.only in name)]:
+        for name in wanted:
             title = name.removeprefix("check_").replace("_", " ")
             began = time.monotonic()
             try:

@@ -73,10 +73,14 @@ class Bus:
             raise Failure(ran.stdout.strip()[-1500:])
         return ran.stdout
 
-    def stream(self, folder, seconds, want, *player):
+    def stream_all(self, folder, seconds, want, *player):
+        """What was counted of each sensor, by its LCM channel."""
         self.boot(4 * seconds + 240, os.path.join(HERE, "stream"), self.build, folder, want, *player)
         with open(os.path.join(folder, "count.json")) as file:
-            return json.load(file).get("IFOG_GYRO", {"messages": 0})
+            return json.load(file)
+
+    def stream(self, folder, seconds, want, *player):
+        return self.stream_all(folder, seconds, want, *player).get("IFOG_GYRO", {"messages": 0})
 
     def every_sample(self, name, *player):
         folder = self.folder(name, 1e-9, 2, HERTZ)
@@ -103,6 +107,33 @@ class Bus:
 
     def check_every_sample_with_ifog_replay(self):
         return self.every_sample("replay", self.ifog, "replay", "LOG", "--to", "can:vcan0")
+
+    def check_sixty_four_sensors(self):
+        """64 gyros on one bus at 100 Hz, each a pipeline of its own: every sample of each."""
+        sensors, hertz, seconds = 64, 100, 10
+        folder = self.folder("many", 1e-9, 2, hertz)
+        ids = [0x200 + number for number in range(sensors)]
+        tables = [f'[daemon]\nplugin_folder = "{self.build}/plugins"']
+        for number, can_id in enumerate(ids):
+            with open(os.path.join(folder, f"gyro{number}.dbc"), "w") as file:
+                file.write(dbc(1e-9, 2).replace(f"BO_ {frames.CAN_ID} ", f"BO_ {can_id} "))
+            tables.append(f'[[sensor]]\nname = "g{number}"\ndriver = "dbc"\n[sensor.transport]\ntype = "can"\ninterface = "vcan0"\n'
+                          f'[sensor.options]\ndbc = "{folder}/gyro{number}.dbc"\nsignal = "Rate"\ncounter = "Counter"\nrate_hz = {hertz}\n'
+                          "[sensor.filter]\nprocess_noise = 1e-6\nmeasurement_noise = 1e-9\n")
+        with open(os.path.join(folder, "ifogd.toml"), "w") as file:
+            file.write("\n".join(tables))
+        log = os.path.join(folder, "can.log")
+        with open(log, "w") as file:
+            for number, line in enumerate(frames.candump(seconds * hertz, hertz, "vcan0").splitlines()):
+                for later, can_id in enumerate(ids):
+                    stamp = 1_700_000_000 + number / hertz + later * 1e-4
+                    file.write(f"({stamp:.6f}) vcan0 {can_id:03X}#{line.split('#')[1]}\n")
+        got = self.stream_all(folder, seconds, "count", "canplayer", "-I", log)
+        wrong = [f"{name}: {count['messages']} messages, {count['missing']} missing, {count['merged']} merged"
+                 for name, count in got.items() if count["messages"] != seconds * hertz or count["missing"] or count["merged"]]
+        if len(got) != sensors or wrong:
+            raise Failure(f"{len(got)} of {sensors} sensors published; of {seconds * hertz} samples: {'; '.join(wrong[:5])}")
+        return f"{sensors} sensors, {seconds * hertz} of {seconds * hertz} samples of each at {hertz} Hz"
 
     def check_a_channel_from_another_can_frame(self):
         """A temperature that another unit on the bus sends, as the sensor's status tells it."""

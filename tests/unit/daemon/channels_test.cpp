@@ -224,10 +224,14 @@ TEST(ChannelSources, AFileIsReadAgainAndAgain) {
 // Gives its frames once and then waits, as a bus does.
 class FakeBus final : public Transport {
  public:
-  explicit FakeBus(std::vector<ifog_can_frame> frames) : Transport("fake0"), frames_(std::move(frames)) {}
+  explicit FakeBus(std::vector<ifog_can_frame> frames, std::uint64_t drops = 0, std::uint64_t last = 0)
+      : Transport("fake0"), frames_(std::move(frames)), drops_(drops), last_(last) {}
   bool connect(std::string&, std::int64_t) override { return true; }
+  // Of these the kernel tells only when it is asked at the end.
+  void count_losses() noexcept override { kernel_drops_.add(std::exchange(last_, 0)); }
   Delivery receive(std::int64_t until_ns) noexcept override {
     Delivery out;
+    kernel_drops_.add(std::exchange(drops_, 0));
     out.frames = std::exchange(given_, true) ? std::span<const ifog_can_frame>() : frames_;
     short happened = 0;
     if (out.empty()) wait(-1, 0, until_ns, happened);
@@ -236,6 +240,7 @@ class FakeBus final : public Transport {
 
  private:
   std::vector<ifog_can_frame> frames_;
+  std::uint64_t drops_, last_;
   bool given_ = false;
 };
 
@@ -318,6 +323,30 @@ TEST(ChannelSources, ASignalOfAnotherCanFrame) {
   sources.start();
   EXPECT_EQ(await(*table, 36.25).value, 36.25);
   EXPECT_EQ(await(*supply, 11.5).value, 11.5);
+}
+
+// Two sensors have channels of one bus, one of them two: each is told once of what the kernel dropped, during
+// the run and at its end.
+TEST(ChannelSources, WhatTheKernelDropsOfAChannelsBusIsTheSensorsLoss) {
+  ChannelConfig one = config(ChannelConfig::Source::can);
+  one.interface = "fake0";
+  one.dbc = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/ifogd_gyro.dbc";
+  one.signal = "Environment.Temperature";
+  ChannelConfig other = one;
+  other.signal = "Supply";
+  const auto first = std::make_shared<ChannelTable>(2), second = std::make_shared<ChannelTable>(1);
+  ChannelSources sources(
+      {{one, first, 0}, {other, first, 1}, {one, second, 0}}, kUrl, [](const CanSettings&) {
+        return std::make_unique<FakeBus>(std::vector{environment(272, 36.25F, 11.5F)}, 40, 2);
+      });
+  sources.start();
+  EXPECT_EQ(await(*second, 36.25).value, 36.25);
+  while (second->drops() == 0 || first->drops() == 0) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(first->drops(), 40U);
+  EXPECT_EQ(second->drops(), 40U);
+  sources.stop();
+  EXPECT_EQ(first->drops(), 42U);
+  EXPECT_EQ(second->drops(), 42U);
 }
 
 TEST(ChannelSources, RefusesASignalThatIsNotThere) {

@@ -236,6 +236,20 @@ TEST(Config, AMissingFileIsOneLine) {
   }
 }
 
+// As the reference has them; without, everything that a sensor can measure passes.
+TEST(Config, TheUsersLimitsOfSensorAndChannel) {
+  const Config config = read_config(std::string(IFOG_SOURCE_DIR) + "/daemon/examples/reference.toml");
+  const SensorConfig& sensor = config.sensors.at(0);
+  EXPECT_EQ(sensor.limits, (Limits{.minimum = -5.0, .maximum = 5.0, .max_step = 1.0}));
+  ASSERT_EQ(sensor.channels.at(0).name, "temperature_degC");
+  EXPECT_EQ(sensor.channels.at(0).limits, (Limits{.minimum = -40.0, .maximum = 85.0, .max_step = 5.0}));
+  EXPECT_EQ(sensor.channels.at(1).limits, Limits{});
+  EXPECT_EQ(complaint("[[sensor]]\nname = \"a\"\ndriver = \"kvh1750\"\nminimum = 2.0\nmaximum = -2.0\n"
+                      "max_step = -1.0\n[sensor.transport]\ntype = \"file\"\npath = \"x\"\n"),
+            "f.toml:6: sensor.max_step = -1: expected a number 0 ... 20000\n"
+            "f.toml:5: sensor.maximum: not above minimum; expected minimum < maximum");
+}
+
 TEST(Config, TheExamplesAreGood) {
   int read = 0;
   for (const auto& entry :

@@ -169,7 +169,7 @@ TEST_F(Ifogd, AFaultInALogIsToldWhereItIs) {
   write("gyro.log", log);
   ifogd();
   EXPECT_GE(lines_with(path("gyro.log") + ":21: "), 1) << all_said();
-  EXPECT_EQ(lines_with("frames_format +1"), 1) << all_said();
+  EXPECT_EQ(lines_with("log_faults +1"), 1) << all_said();
   EXPECT_EQ(lines_with("250 samples read, 250 published"), 1) << all_said();
 }
 

@@ -1,161 +1,14 @@
-// Whole pipelines, from bytes to encoded messages: two real threads, the real plugin, a publisher that keeps
-// all.
+// Whole pipelines, from bytes to encoded messages.
 #include "daemon/pipeline/pipeline.h"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <ifog/rate_t.hpp>
-#include <mutex>
-#include <thread>
-#include <vector>
-
-#include "daemon/housekeeping/status_report.h"
-#include "drivers/host/driver_instance.h"
-#include "drivers/transport/clock.h"
+#include "tests/unit/daemon/rig.h"
 
 namespace ifog {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr std::size_t kFrame = 36;
-
-// Hands out what it was given, in portions, as fast as it is asked.
-class MemoryTransport final : public Transport {
- public:
-  MemoryTransport(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back)
-      : Transport("memory"), bytes_to_give_(std::move(bytes)), portion_(portion), holds_back_(holds_back) {}
-  bool connect(std::string&, std::int64_t) override { return true; }
-  Delivery receive(std::int64_t) noexcept override {
-    Delivery out;
-    const bool all_given = at_ >= bytes_to_give_.size();
-    if (all_given && !stays_open_.load()) end(0);
-    if (all_given || at_ >= allowed_.load()) {
-      if (state() != TransportState::ended) std::this_thread::sleep_for(1ms);
-      return out;
-    }
-    const std::size_t n = std::min(portion_, bytes_to_give_.size() - at_);
-    out.bytes = std::span(bytes_to_give_).subspan(at_, n);
-    out.arrival_ns = realtime_ns();
-    at_ += n;
-    given_.store(at_);
-    return out;
-  }
-  [[nodiscard]] bool holds_back() const override { return holds_back_; }
-
- private:
-  std::vector<std::uint8_t> bytes_to_give_;
-  std::size_t portion_, at_ = 0;
-  bool holds_back_;
-
- public:
-  std::atomic<std::size_t> given_{0};
-  std::atomic<std::size_t> allowed_{~std::size_t{0}};  // no more than this is given yet
-  std::atomic<bool> stays_open_{false};
-};
-
-class KeepingPublisher final : public Publisher {
- public:
-  explicit KeepingPublisher(std::chrono::microseconds pause = 0us) : pause_(pause) {}
-  bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
-    rate_t decoded{};
-    const bool good = decoded.decode(message.data(), 0, static_cast<int>(message.size())) > 0;
-    const std::lock_guard lock(mutex_);
-    if (good && std::string(channel) == "IFOG_TEST") messages_.push_back(decoded);
-    if (pause_ > 0us) std::this_thread::sleep_for(pause_);
-    return good;
-  }
-  std::vector<rate_t> messages() {
-    const std::lock_guard lock(mutex_);
-    return messages_;
-  }
-
- private:
-  std::chrono::microseconds pause_;
-  std::mutex mutex_;
-  std::vector<rate_t> messages_;
-};
-
-double rate_of(int n) { return 0.01 + 1e-4 * std::sin(0.01 * n); }
-
-double temperature_of(int n) { return n % 50; }
-
-std::vector<std::uint8_t> frames(int count) {
-  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
-  std::vector<std::uint8_t> out;
-  for (int n = 0; n < count; ++n) {
-    ifog_sample sample{};
-    sample.flags = IFOG_SAMPLE_SEQUENCE;
-    sample.sequence = static_cast<std::uint32_t>(n % 128);
-    sample.valid_axes = 7;
-    for (double& value : sample.value) value = rate_of(n);
-    for (double& value : sample.environment) value = temperature_of(n);
-    sample.environment_fresh = ~0U;
-    driver.encode_bytes(sample, out);
-  }
-  return out;
-}
-
-struct Rig {
-  Rig(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back, std::size_t slots = 1024,
-      std::chrono::microseconds pause = 0us, bool direct = true) {
-    DriverInstance driver = make_driver("kvh1750", {});
-    PipelinePlan plan;
-    plan.lcm_channel = "IFOG_TEST";
-    plan.facts = sensor_facts(driver.description(), 1000.0, 0);
-    plan.ring_slots = slots;
-    plan.direct = direct;
-    plan.reader.name = "read";
-    plan.filter.name = "filter";
-    chain.facts = plan.facts;
-    chain.axes = {"x", "y", "z"};
-    for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
-      chain.channels.emplace_back(driver.description().environment[i]);
-      chain.channel_max_age_s.push_back(10.0);
-    }
-    chain.filter.process_noise = 1e-10;
-    chain.filter.measurement_noise = 1e-8;
-    auto memory = std::make_unique<MemoryTransport>(std::move(bytes), portion, holds_back);
-    transport = memory.get();
-    auto keeping = std::make_unique<KeepingPublisher>(pause);
-    publisher = keeping.get();
-    pipeline = std::make_unique<Pipeline>(plan, std::move(memory), std::move(driver), nullptr,
-                                          std::make_unique<ChainParts>(chain), std::move(keeping));
-    pipeline->open();
-  }
-  void run_to_the_end() {
-    pipeline->start();
-    wait_for_the_end();
-  }
-  // One frame at a time until the reader has found the filter thread asleep, then the rest.
-  void run_from_rest_to_the_end() {
-    transport->allowed_ = 0;
-    pipeline->start();
-    while (pipeline->hand_over().done_here() == 0) {
-      transport->allowed_ += kFrame;
-      std::this_thread::sleep_for(5ms);
-    }
-    transport->allowed_ = ~std::size_t{0};
-    wait_for_the_end();
-  }
-  void wait_for_the_end() {
-    while (!pipeline->ended()) std::this_thread::sleep_for(1ms);
-    pipeline->stop();
-  }
-  ChainSettings chain;
-  MemoryTransport* transport;
-  KeepingPublisher* publisher;
-  std::unique_ptr<Pipeline> pipeline;
-};
-
-double sent_angle(int count) {
-  double sum = 0.0;
-  for (int n = 0; n < count; ++n) sum += static_cast<double>(static_cast<float>(rate_of(n))) * 1e-3;
-  return sum;
-}
 
 TEST(Pipeline, EverySampleIsPublishedInOrder) {
   constexpr int kCount = 5000;
@@ -172,7 +25,7 @@ TEST(Pipeline, EverySampleIsPublishedInOrder) {
     ASSERT_EQ(message.flags & rate_t::FLAG_GAP, 0);
   }
   EXPECT_NEAR(messages.back().angle[2], sent_angle(kCount), 1e-14);
-  EXPECT_EQ(rig.pipeline->reader().counters().frames_good.value(), static_cast<std::uint64_t>(kCount));
+  EXPECT_EQ(rig.pipeline->reader().books().frames_good, static_cast<std::uint64_t>(kCount));
 }
 
 TEST(Pipeline, TwoRunsGiveTheSameBits) {
@@ -338,82 +191,6 @@ TEST(Pipeline, AFileCutOffWithinAFrameIsCounted) {
   rig.run_to_the_end();
   EXPECT_EQ(rig.publisher->messages().size(), 49U);
   EXPECT_EQ(rig.pipeline->reader().counters().bytes_skipped.value(), kFrame - 10);
-}
-
-TEST(Pipeline, HousekeepingGetsASnapshotWhileSamplesFlow) {
-  Rig rig(frames(5000), kFrame, true, 64, 50us);
-  rig.pipeline->start();
-  FilterSnapshot snapshot;
-  int taken = 0;
-  while (!rig.pipeline->ended()) {
-    rig.pipeline->filter().ask();
-    std::this_thread::sleep_for(5ms);
-    if (rig.pipeline->filter().take_snapshot(snapshot)) ++taken;
-  }
-  rig.pipeline->stop();
-  EXPECT_GT(taken, 3);
-  EXPECT_TRUE(snapshot.has_health);
-  EXPECT_GT(snapshot.allan_octaves, 5);
-}
-
-// However late the last question was asked, and whether or not its answer was fetched: what housekeeping says
-// at the end of a file tells of the file's last sample, and is not the latency of an earlier second.
-TEST(Pipeline, TheLastWordTellsOfTheLastSample) {
-  constexpr int kCount = 1033, kHalf = 500;
-  Rig rig(frames(kCount), kFrame, true);
-  rig.transport->allowed_ = kHalf * kFrame;
-  rig.pipeline->start();
-  while (rig.publisher->messages().size() < kHalf) std::this_thread::sleep_for(1ms);
-  rig.pipeline->filter().ask();
-  std::this_thread::sleep_for(20ms);  // answered, and not fetched
-  rig.transport->allowed_ = ~std::size_t{0};
-  rig.wait_for_the_end();
-  FilterSnapshot snapshot;
-  ASSERT_TRUE(rig.pipeline->filter().take_snapshot(snapshot));
-  EXPECT_NEAR(snapshot.channel[0], temperature_of(kCount - 1), 1e-3);  // read in 1/100 °C
-  rig.pipeline->filter().ask();
-  ASSERT_TRUE(rig.pipeline->filter().take_snapshot(snapshot));
-  EXPECT_NEAR(snapshot.channel[0], temperature_of(kCount - 1), 1e-3);  // read in 1/100 °C
-  EXPECT_EQ(snapshot.latency.count(), 0U);
-}
-
-// By the definition (IEEE Std 952, overlapping) from what was published, at averaging times that the stream
-// evaluates at every sample.
-TEST(Pipeline, TheStatusCarriesTheAllanDeviation) {
-  constexpr int kCount = 4000;
-  Rig rig(frames(kCount), kFrame, true);
-  rig.transport->stays_open_ = true;
-  rig.pipeline->start();
-  while (rig.publisher->messages().size() < kCount) std::this_thread::sleep_for(5ms);
-  rig.pipeline->filter().ask();
-  FilterSnapshot snapshot;
-  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
-  rig.pipeline->stop();
-
-  StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"});
-  const status_t& sent = report.update(*rig.pipeline, snapshot, 1.0);
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(sent.getEncodedSize()));
-  ASSERT_EQ(sent.encode(bytes.data(), 0, sent.getEncodedSize()), sent.getEncodedSize());
-  status_t status{};
-  ASSERT_GT(status.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
-
-  const std::vector<rate_t> messages = rig.publisher->messages();
-  ASSERT_EQ(messages.size(), static_cast<std::size_t>(kCount));
-  ASSERT_GT(status.octaves, 8);
-  for (std::size_t octave = 0; octave < 3; ++octave) {
-    const std::size_t m = std::size_t{1} << octave;
-    double squares = 0.0, count = 0.0;
-    for (std::size_t i = 0; i + 2 * m <= messages.size(); ++i) {
-      double difference = 0.0;
-      for (std::size_t k = 0; k < m; ++k)
-        difference += messages[i + k].compensated[1] - messages[i + m + k].compensated[1];
-      squares += difference * difference / static_cast<double>(m * m);
-      count += 1.0;
-    }
-    const double deviation = std::sqrt(0.5 * squares / count);
-    EXPECT_NEAR(status.allan_rate_radps[1][octave], deviation, 1e-9 * deviation) << "octave " << octave;
-  }
-  EXPECT_NEAR(status.allan_tau0_s, 1e-3, 1e-15);
 }
 
 }  // namespace

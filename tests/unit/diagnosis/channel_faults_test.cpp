@@ -54,7 +54,8 @@ TEST(ChannelFaults, WhatStoodStillIsInterpolated) {
   for (std::size_t i = 1500; i < 2300; ++i) logged.channel[i] = logged.channel[1500];
   const RepairedRecords repaired = logged.repaired("temperature_degC");
   ASSERT_EQ(repaired.remarks.size(), 1U);
-  EXPECT_NE(repaired.remarks[0].find(" s to 2300 s and then jumps"), std::string::npos) << repaired.remarks[0];
+  EXPECT_NE(repaired.remarks[0].find(" s to 2300 s and then jumps"), std::string::npos)
+      << repaired.remarks[0];
   const auto values = repaired.records[0].channels[0].values;
   for (std::size_t i = 1500; i < 2300; ++i)
     EXPECT_NEAR(values[i], values[1500] + (values[2300] - values[1500]) * double(i - 1500) / 800.0, 1e-9);

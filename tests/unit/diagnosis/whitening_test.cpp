@@ -88,6 +88,28 @@ TEST(NoiseFit, FindsTheWalkItWasGiven) {
 
 // Integral of white noise less its mean over the alignment: N^2 (T + T^2/A); of a walk held from the end of
 // the alignment onwards K^2 (T^3/3 + T^2 A/3).
+// A search that climbs "while it is no worse" never ends where every comparison is false.
+TEST(NoiseFit, ComesToAnEndWhereTheLikelihoodIsNoNumber) {
+  constexpr std::size_t n = 200;
+  const BlockGrid grid = even_grid(n);
+  for (const double bad : {std::nan(""), HUGE_VAL, 1e200}) {
+    Columns columns(n, 2);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      columns(i, 0) = gaussian(i, 4);
+      columns(i, 1) = 1.0;
+    }
+    columns(n / 2, 0) = bad;
+    const NoiseShape with_markov{1e-3, 1e-2, 0.3, 8.0};
+    for (const NoiseFit& fit : {fit_noise(grid, columns), fit_noise(grid, columns, with_markov)}) {
+      for (const double value : {fit.shape.walk, fit.shape.flicker, fit.shape.markov, fit.shape.markov_s})
+        EXPECT_TRUE(value >= 0.0 && value <= 1e9) << value << " with " << bad;
+      if (!std::isfinite(bad)) {
+        EXPECT_FALSE(fit.log_likelihood > -1e300) << bad;  // none is claimed
+      }
+    }
+  }
+}
+
 TEST(Prediction, IsTheClosedFormOfWhiteNoiseAndWalk) {
   const double aligned = 200.0;
   const double horizon = 3600.0;

@@ -162,6 +162,7 @@ TEST(DbcDriver, IgnoresOtherIdsAndExtendedTwinsAndCountsShortFrames) {
   cut.length = 5;
   EXPECT_TRUE(decode(driver, {twin, axis_frame(999, 1.0F, 1), cut}).empty());
   EXPECT_EQ(driver.counters().frames_good, 0U);
+  EXPECT_EQ(driver.counters().frames_other, 2U);
   EXPECT_EQ(driver.counters().frames_format, 1U);
 }
 
@@ -257,6 +258,41 @@ TEST_F(DbcText, AnIntegerAngleWrapsAtItsRange) {
   EXPECT_DOUBLE_EQ(e.description().angle_wrap_rad, 2.0 * std::numbers::pi);
   ifog::DriverInstance f = driver(text, {{"signal", "Phi"}, {"kind", "angle"}, {"wrap", "none"}});
   EXPECT_EQ(f.description().angle_wrap_rad, 0.0);
+}
+
+// [min|max] as a Vector DBC file states it, [0|0] being none; limits themselves are in. Of a rate the larger
+// of the two is the full scale, which the host judges.
+TEST_F(DbcText, AValueBeyondTheStatedRangeIsNone) {
+  const std::string text =
+      "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (0.01,0) [-100|50] \"deg/s\" X\n SG_ T : 16|8@1- (1,0) [-40|85] "
+      "\"degC\" X\n"
+      " SG_ U : 24|8@1- (1,0) [0|0] \"V\" X\n";
+  ifog::DriverInstance d =
+      driver(text, {{"signal", "R"}, {"environment", "temperature_degC=T,supply_V=U"}, {"rate_hz", "100"}});
+  const auto sent = [](int hundredths, int temperature, int supply) {
+    return frame(
+        1, {hundredths & 0xFF, (hundredths >> 8) & 0xFF, temperature & 0xFF, supply & 0xFF, 0, 0, 0, 0});
+  };
+  struct Case {
+    int hundredths;
+    bool valid;
+    int temperature;
+    double held_degC;
+    std::uint64_t refused;
+  };
+  // Above the maximum and yet below full scale; at each limit; the temperature likewise.
+  for (const Case& c :
+       {Case{5000, true, 85, 85.0, 0}, Case{5001, false, 86, 85.0, 1}, Case{-9999, true, -40, -40.0, 1},
+        Case{0, true, -41, -40.0, 2}, Case{9999, false, 20, 20.0, 2}}) {
+    const std::vector<ifog_sample> s = decode(d, {sent(c.hundredths, c.temperature, -128)});
+    ASSERT_EQ(s.size(), 1U);
+    EXPECT_EQ(s[0].valid_axes, c.valid ? 1U : 0U) << c.hundredths;
+    EXPECT_EQ(s[0].environment[0], c.held_degC) << c.temperature;
+    EXPECT_EQ(s[0].environment_fresh & 1U, c.held_degC == c.temperature ? 1U : 0U) << c.temperature;
+    EXPECT_EQ(s[0].environment[1], -128.0);
+    EXPECT_EQ(d.counters().values_refused, c.refused) << c.temperature;
+  }
+  EXPECT_EQ(d.counters().frames_good, 5U);
 }
 
 // Axes in one message, told apart by a multiplexor; CAN FD; what is encoded decodes to the same sample.

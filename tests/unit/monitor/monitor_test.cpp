@@ -42,6 +42,15 @@ ifog::status_t status() {
   out.channel_age_s = {0.1};
   out.allan_rate_radps.resize(1);
   out.fault = "gone\r\x1b[1A";
+  out.frames_read = 60;
+  out.frames_good = 50;
+  out.frames_format = 7;
+  out.frames_other = 3;
+  out.samples_in = 50;
+  out.samples_published = 46;
+  out.samples_merged = 2;
+  out.lcm_failures = out.samples_waiting = out.channel_drops = 1;
+  out.kernel_drops = 11;
   return out;
 }
 
@@ -85,6 +94,9 @@ TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
         << static_cast<int>(c) << " in\n"
         << said;
   for (const char* part : {"NO\\x1b[31mSE,  ", "temp\\x1b[2J\\x9b31m\\nX_degC 20", "gone\\x0d\\x1b[1A",
+                           "kernel drops 11 (channels 1)",
+                           "books: 60 CAN frames = 50 decoded + 7 refused + 3 not the sensor's; 50 samples = "
+                           "46 published + 2 merged + 1 not sent + 1 waiting",
                            "model \\x1b]52", "messages that are none of ours"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " is not in\n" << said;
   // A row a message, each with the header's number of cells.

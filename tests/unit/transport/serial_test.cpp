@@ -24,8 +24,8 @@ constexpr auto kForever = 60s;
 
 class Terminal final : public ifog::SerialPort {
  public:
-  explicit Terminal(const std::string& path)
-      : fd_(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+  Terminal(const std::string& path, const ifog::LineErrors& errors)
+      : errors_(errors), fd_(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
     if (fd_ < 0) throw ifog::OpenError(path, "cannot open", errno, "a terminal");
     termios raw{};
     tcgetattr(fd_, &raw);
@@ -37,8 +37,14 @@ class Terminal final : public ifog::SerialPort {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
   [[nodiscard]] int fd() const override { return fd_; }
+  // A pseudo terminal counts none; these are a UART's.
+  bool errors(ifog::LineErrors& out) const noexcept override {
+    out = errors_;
+    return true;
+  }
 
  private:
+  const ifog::LineErrors& errors_;
   int fd_;
 };
 
@@ -79,9 +85,10 @@ class Gyro {
     return [this](const SerialSettings&, std::string& warning) -> std::unique_ptr<ifog::SerialPort> {
       if (!there_) throw ifog::OpenError("gyro", "cannot open", ENOENT, "a serial device");
       warning = "no low latency";
-      return std::make_unique<Terminal>(path_);
+      return std::make_unique<Terminal>(path_, errors);
     };
   }
+  ifog::LineErrors errors;
 
  private:
   int fd_ = -1;
@@ -146,6 +153,34 @@ TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
     EXPECT_TRUE(restarted);
   }
   EXPECT_EQ(transport->counters().reopened, 20U);
+}
+
+// What the UART had counted before the device was opened is none of its reader's losses; what it counts until
+// the moment it goes away is, and so is what it counts until the last read.
+TEST(SerialTransport, LossesUpToTheHangUpAndTheStopAreCounted) {
+  Gyro gyro;
+  gyro.errors = {.lost = 0xFFFFFFFEU, .damaged = 7};
+  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  transport->open({});
+  gyro.send("0");
+  EXPECT_EQ(read_some(*transport, 1), "0");
+  EXPECT_EQ(transport->counters().kernel_drops, 0U);
+  EXPECT_EQ(transport->counters().error_frames, 0U);
+  gyro.errors = {.lost = 3, .damaged = 9};  // five more, over the end of the kernel's 32 bits
+  gyro.pull();
+  while (transport->state() == TransportState::open) transport->read(kForever);
+  EXPECT_EQ(transport->counters().kernel_drops, 5U);
+  EXPECT_EQ(transport->counters().error_frames, 2U);
+  transport->close_books();  // of no open device
+  gyro.errors = {};          // the driver is loaded anew with the device
+  gyro.plug();
+  while (transport->state() == TransportState::gone) transport->read(1ms);
+  gyro.errors = {.lost = 1, .damaged = 1};
+  transport->stop();
+  EXPECT_TRUE(transport->read(kForever).empty());
+  transport->close_books();
+  EXPECT_EQ(transport->counters().kernel_drops, 6U);
+  EXPECT_EQ(transport->counters().error_frames, 3U);
 }
 
 TEST(SerialTransport, ADeviceThatIsNotThereYetIsAwaited) {

@@ -106,12 +106,42 @@ TEST_F(Vcan, CountsWhatTheKernelHadNoRoomFor) {
   send(std::vector<ifog_can_frame>(kFlood, frame(0x7, 1)));
   while (!transport->read(0ns).empty()) {
   }
-  // The counter comes beside the next frame that finds room.
-  send({frame(0x8, 2)});
-  receive(*transport, 1);
+  // No frame came after it that could have said so.
   const ifog::TransportCounters counted = transport->counters();
   EXPECT_GT(counted.kernel_drops, 0U);
-  EXPECT_EQ(counted.frames + counted.kernel_drops, kFlood + 1);
+  EXPECT_EQ(counted.frames + counted.kernel_drops, kFlood);
+  send({frame(0x8, 2)});
+  receive(*transport, 1);
+  EXPECT_EQ(transport->counters().kernel_drops, counted.kernel_drops);
+}
+
+// Frames that wait for the reader when their interface goes, and those that there was no room for.
+TEST_F(Vcan, WhatWaitedWhenTheInterfaceWentIsReadAndWhatDidNotFitIsCounted) {
+  constexpr std::size_t kFlood = 5000;
+  for (const bool removed : {false, true}) {
+    const auto transport = opened({.interface = "vcan0", .ids = {}, .receive_buffer_bytes = 262144});
+    send(std::vector<ifog_can_frame>(kFlood, frame(0x7, 1)));
+    ip(removed ? "del vcan0" : "set vcan0 down");
+    while (transport->state() == TransportState::open) transport->read(kForever);
+    EXPECT_EQ(transport->reason(), removed ? ENODEV : ENETDOWN);
+    const ifog::TransportCounters counted = transport->counters();
+    EXPECT_GT(counted.frames, 64U);  // more than one delivery
+    EXPECT_GT(counted.kernel_drops, 0U);
+    EXPECT_EQ(counted.frames + counted.kernel_drops, kFlood);
+    if (removed) ip("add vcan0 type vcan");
+    ip("set vcan0 up");
+  }
+}
+
+TEST_F(Vcan, WhatDidNotFitBeforeTheStopIsCounted) {
+  const auto transport = opened({.interface = "vcan0", .ids = {}, .receive_buffer_bytes = 65536});
+  constexpr std::size_t kFlood = 5000;
+  send(std::vector<ifog_can_frame>(kFlood, frame(0x7, 1)));
+  EXPECT_FALSE(transport->read(kForever).empty());
+  transport->stop();
+  EXPECT_TRUE(transport->read(kForever).empty());
+  transport->close_books();
+  EXPECT_GT(transport->counters().kernel_drops, kFlood / 2);
 }
 
 TEST_F(Vcan, CountsErrorFramesApart) {

@@ -1,0 +1,224 @@
+"""What befalls a navigation computer at sea: clocks that are set, interfaces and cables that go, sensors that babble, a full
+disk, a process that is stuck. Checks of the box (run.py), after those that set it up."""
+import random
+import re
+import threading
+import time
+
+import frames
+from machine import Failure
+
+# The largest difference of an angle from what was sent: float64 sums of some thousand increments.
+ANGLE_RAD = 1e-9
+
+
+def complaints(sent, got):
+    """What is wrong with a count, or nothing."""
+    wrong = []
+    if got["messages"] != sent:
+        wrong.append(f"{got['messages']} messages of {sent} sent")
+    wrong += [f"{name} {got[name]}" for name in ("missing", "out_of_order", "merged") if got.get(name)]
+    return ", ".join(wrong)
+
+
+class Faults:
+    """Needs of the box: machine, lines, counting(), send_can(), configure(), kills, pulls."""
+
+    # --- what the checks are made of -----------------------------------------------------------------------------
+
+    def journal_since(self):
+        """Returns a function that gives the service's log lines from now on."""
+        cursor = self.machine.run("journalctl -u ifogd -n 0 --show-cursor -o cat | sed -n 's/^-- cursor: //p'").strip()
+        return lambda: self.machine.run(f"journalctl -u ifogd --after-cursor '{cursor}' -o cat --no-pager")
+
+    def says(self, lines, text, seconds=10):
+        """Waits for a line in the log."""
+        deadline = time.monotonic() + seconds
+        while True:
+            said = lines()
+            if text in said:
+                return
+            if time.monotonic() > deadline:
+                raise Failure(f"the log does not say {text!r} within {seconds} s: {said.strip()[-1200:]}")
+            time.sleep(0.3)
+
+    def restart(self):
+        self.machine.run("systemctl restart ifogd", 60)
+        time.sleep(1)
+        return self.machine.run("systemctl show -P MainPID ifogd").strip()
+
+    def same_process(self, pid):
+        now = self.machine.run("systemctl show -P MainPID ifogd").strip()
+        if now != pid:
+            raise Failure(f"process {pid} has become {now}: {self.machine.run('journalctl -u ifogd -n 20 -o cat --no-pager')}")
+
+    def all_come(self, name, count, hertz=100):
+        """Sends some samples to one sensor: each must be published."""
+        counts = self.counting(name)
+        if name == "can":
+            start, ended = self.send_can(count, hertz, "canplayer")
+            start()
+            ended()
+        else:
+            self.lines[name].send(count, hertz).join(60)
+        time.sleep(1.5)
+        got = counts()[name]
+        if complaints(count, got):
+            raise Failure(f"{name}: {complaints(count, got)}")
+        return got
+
+    def end_of_rubbish(self):
+        """It may end with what looks like the beginning of a frame: some samples let the daemon find that it is none."""
+        self.lines["usb"].send(5, 100).join(10)
+        time.sleep(1)
+
+    # --- the checks, in order ------------------------------------------------------------------------------------
+
+    def check_date_set_both_ways(self):
+        """The angle is what was sent, nothing is missing, the times of day follow, and the step is told."""
+        self.configure(200)
+        self.restart()
+        lines, counts = self.journal_since(), self.counting("serial")
+        begin, count, hertz = self.lines["serial"].next, 2400, 200
+        sending = self.lines["serial"].send(count, hertz)
+        for step in ("+1 hour", "-3 hours", "+2 hours"):
+            time.sleep(2.5)
+            self.machine.run(f"date -s '{step}'")
+        sending.join(60)
+        time.sleep(1.5)
+        got = counts()["serial"]
+        expected = frames.angle(begin, count, hertz)
+        if complaints(count, got) or got["gap_flags"] or abs(got["angle"] - expected) > ANGLE_RAD:
+            raise Failure(f"{complaints(count, got)}; {got['gap_flags']} gaps; angle {got['angle']!r}, sent {expected!r}")
+        if got["clock_steps"] != 3 or got["time_backwards"] != 1:
+            raise Failure(f"{got['clock_steps']} messages flag a set clock, expected 3; {got['time_backwards']} times of day go back, expected 1")
+        told = lines().count("serial: the wall clock was set")
+        if told != 3:
+            raise Failure(f"the log tells of {told} sets of the clock, expected 3")
+        return f"3 sets, {count} of {count} samples, angle right within {abs(got['angle'] - expected):.1e} rad, flagged and told 3 times"
+
+    def check_interface_down_up_and_removed(self):
+        pid, lines = self.restart(), self.journal_since()
+        for number, (gone, back) in enumerate((("ip link set vcan0 down", "ip link set vcan0 up"),
+                                               ("ip link del vcan0", "ip link add vcan0 type vcan && ip link set vcan0 txqueuelen 1000 up"))):
+            self.all_come("can", 200)
+            self.machine.run(gone)
+            self.says(lines, ("Network is down", "No such device")[number])
+            self.machine.run(back)
+            # The kernel tells when the daemon listens again.
+            self.machine.run("for i in $(seq 100); do grep -q 'vcan0 *120' /proc/net/can/rcvlist_* && break; sleep 0.1; done; sleep 0.2; grep -q 120 /proc/net/can/rcvlist_*")
+        self.all_come("can", 200)
+        self.same_process(pid)
+        return "every sample before, between and after, the same process"
+
+    def check_bus_off(self):
+        """vcan has no bus that could be off; what a controller's driver then sends to every socket is an error frame, and
+        that can be sent: CAN_ERR_FLAG with CAN_ERR_BUSOFF, and with CAN_ERR_RESTARTED after it."""
+        pid, lines = self.restart(), self.journal_since()
+        self.machine.run("cansend vcan0 20000040#0000000000000000; cansend vcan0 20000100#0000000000000000")
+        self.says(lines, "can_error_frames +2")
+        self.all_come("can", 200)
+        self.same_process(pid)
+        return "2 error frames counted, every sample afterwards"
+
+    def check_babbling_sensors(self):
+        """Rubbish on the USB line and a flood of its own id on the CAN bus, each as fast as it goes: the third sensor loses
+        nothing, and the two are themselves again afterwards."""
+        pid, lines = self.restart(), self.journal_since()
+        rubbish = random.Random(3).randbytes(1 << 16)
+        stop = time.monotonic() + 8
+
+        def babble():
+            while time.monotonic() < stop:
+                self.lines["usb"].link.sendall(rubbish)
+
+        babbling = threading.Thread(target=babble, daemon=True)
+        babbling.start()
+        self.machine.run("timeout 8 cangen vcan0 -g 0 -I 120 -L 8 -D r -i </dev/null >/dev/null 2>&1 &")
+        self.lines["serial"].send(600, 100).join(60)
+        babbling.join(60)
+        self.says(lines, "bytes_skipped +", 15)
+        # Both emulated processors were busy with it: until the last of it is through.
+        said = None
+        while said != (said := lines()):
+            time.sleep(3)
+        self.same_process(pid)
+        self.end_of_rubbish()
+        for name in ("usb", "can"):
+            self.all_come(name, 200)
+        self.same_process(pid)
+        # Not by the messages: the flood's own fill the subscriber's socket.
+        self.machine.run("systemctl stop ifogd", 30)
+        self.says(lines, "serial: 600 samples read, 600 published, 0 missing")
+        self.restart()
+        flood = re.findall(r"can: (\d+) samples read", lines())[-1]
+        return f"600 of 600 samples of the sensor beside a flood of {flood} frames, and every one of the two afterwards"
+
+    def check_wrong_baud_rate(self):
+        """QEMU's lines have no speed, so the bytes are made here that a UART reads at half the sender's and at twice."""
+        pid, lines = self.restart(), self.journal_since()
+        line = self.lines["usb"]
+        good = b"".join(frames.kvh1750(n, 100) for n in range(300))
+        counts = self.counting("usb")
+        for read_baud in (460800, 1843200):
+            read = frames.misread(good, 921600, read_baud)
+            if len(read) < 1000:
+                raise Failure(f"only {len(read)} bytes are misread")
+            line.link.sendall(read)
+            time.sleep(1.5)
+        self.says(lines, "bytes_skipped +")
+        got = counts()["usb"]
+        if got["messages"] != 0:
+            raise Failure(f"{got['messages']} samples were made of misread bytes")
+        self.end_of_rubbish()
+        self.all_come("usb", 200)
+        self.same_process(pid)
+        return "no sample made of misread bytes, which are counted; every one afterwards"
+
+    def check_disk_full(self):
+        """The daemon writes its log: with the journal's disk full, which is its own folder's, too, it goes on."""
+        pid = self.restart()
+        self.machine.run("dd if=/dev/zero of=/run/ballast bs=1M 2>/dev/null; dd if=/dev/zero of=/run/ballast2 bs=1k 2>/dev/null; true", 300)
+        try:
+            left = int(self.machine.run("df --output=avail /run | tail -n 1"))
+            if left > 64:
+                raise Failure(f"/run still has {left} kB")
+            # Something to complain of, to a journal that cannot keep it.
+            self.lines["usb"].link.sendall(bytes(5000))
+            self.end_of_rubbish()
+            for name in ("serial", "usb", "can"):
+                self.all_come(name, 300)
+            self.same_process(pid)
+        finally:
+            self.machine.run("rm -f /run/ballast /run/ballast2; systemctl restart systemd-journald")
+        return f"/run full to the last {left} kB: every sample, the same process"
+
+    def check_watchdog_ends_a_stuck_process(self):
+        pid, lines = self.restart(), self.journal_since()
+        restarts = int(self.machine.run("systemctl show -P NRestarts ifogd"))
+        self.machine.run(f"kill -STOP {pid}")
+        self.says(lines, "Failed with result 'watchdog'", 30)
+        self.machine.run("for i in $(seq 100); do [ \"$(systemctl is-active ifogd)\" = active ] && break; sleep 0.1; done")
+        now, after = self.machine.run("systemctl show -P MainPID ifogd; systemctl show -P NRestarts ifogd").split()
+        if now in ("0", pid) or int(after) != restarts + 1:
+            raise Failure(f"process {now} after {pid}, {after} restarts after {restarts}")
+        time.sleep(1)
+        self.all_come("serial", 200)
+        return f"stopped process {pid}: result=watchdog, {now} reads on"
+
+    def check_killed_again_and_again(self):
+        """--kills: each time the service must be back and read on."""
+        took = []
+        for number in range(self.kills):
+            before = self.machine.run("systemctl show -P MainPID ifogd").strip()
+            said = self.machine.run(
+                f"t=$(date +%s%N); kill -9 {before}; for i in $(seq 300); do p=$(systemctl show -P MainPID ifogd); "
+                f"[ \"$(systemctl is-active ifogd)\" = active ] && [ $p != 0 ] && [ $p != {before} ] && break; sleep 0.05; done; "
+                "echo $p $((($(date +%s%N) - t) / 1000000))").split()
+            if said[0] in ("0", before):
+                raise Failure(f"kill {number + 1}: process {before} has become {said[0]}")
+            took.append(int(said[1]) / 1000)
+            time.sleep(0.5)
+            if number % 5 == 4 or number == self.kills - 1:
+                self.all_come("serial", 100)
+        return f"{self.kills} times; back after {sorted(took)[len(took) // 2]:.2f} s (median), {max(took):.2f} s at most, in emulated time"

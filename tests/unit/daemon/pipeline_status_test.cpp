@@ -1,0 +1,142 @@
+// What a running pipeline says of itself.
+#include "daemon/housekeeping/status_report.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/daemon/rig.h"
+
+namespace ifog {
+namespace {
+
+using namespace std::chrono_literals;
+
+// What the estimator has counted is the sensor's, not that of the parts a reload brings.
+TEST(PipelineStatus, CountersGoOnOverAReload) {
+  constexpr int kCount = 4000, kHalf = 2000;
+  const auto spikes = [](int n) { return n % 250 == 249 ? 0.5 : 0.0; };
+  Rig rig(frames(kCount, spikes), kFrame, true);
+  rig.transport->allowed_ = kHalf * kFrame;
+  rig.transport->stays_open_ = true;
+  rig.pipeline->start();
+  StatusReport report("test", rig.chain.channels, rig.chain.axes);
+  const auto look = [&](std::size_t messages) {
+    while (rig.publisher->messages().size() < messages) std::this_thread::sleep_for(1ms);
+    rig.pipeline->filter().ask();
+    FilterSnapshot snapshot;
+    while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+    return report.update(*rig.pipeline, snapshot, 1.0);
+  };
+  const status_t before = look(kHalf);
+  EXPECT_EQ(before.gated, kHalf / 250);
+  rig.pipeline->filter().offer(std::make_unique<ChainParts>(rig.chain));
+  rig.transport->allowed_ = (kHalf + 10) * kFrame;
+  const status_t after = look(kHalf + 10);
+  EXPECT_EQ(after.filter_resets, 1);
+  EXPECT_EQ(after.gated, before.gated);
+  EXPECT_GE(after.floor_hits, before.floor_hits);
+  EXPECT_EQ(report.moved().find("+-"), std::string::npos) << report.moved();
+  rig.transport->allowed_ = ~std::size_t{0};
+  EXPECT_GE(look(kCount).gated, kCount / 250);
+  rig.pipeline->stop();
+}
+
+TEST(PipelineStatus, HousekeepingGetsASnapshotWhileSamplesFlow) {
+  Rig rig(frames(5000), kFrame, true, 64, 50us);
+  rig.pipeline->start();
+  FilterSnapshot snapshot;
+  int taken = 0;
+  while (!rig.pipeline->ended()) {
+    rig.pipeline->filter().ask();
+    std::this_thread::sleep_for(5ms);
+    if (rig.pipeline->filter().take_snapshot(snapshot)) ++taken;
+  }
+  rig.pipeline->stop();
+  EXPECT_GT(taken, 3);
+  EXPECT_TRUE(snapshot.has_health);
+  EXPECT_GT(snapshot.allan_octaves, 5);
+}
+
+// Reader and filter are asked at one instant: what is read between the answer and the report is not waiting.
+TEST(PipelineStatus, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
+  Rig rig(frames(1000), kFrame, true);
+  rig.transport->allowed_ = 100 * kFrame;
+  rig.transport->stays_open_ = true;
+  rig.pipeline->start();
+  while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().bytes_read < 100 * kFrame)
+    std::this_thread::sleep_for(1ms);
+  rig.pipeline->filter().ask();
+  FilterSnapshot snapshot;
+  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  rig.transport->allowed_ = ~std::size_t{0};
+  while (rig.pipeline->reader().counters().samples.value() < 1000) std::this_thread::sleep_for(1ms);
+  StatusReport report("test", rig.chain.channels, rig.chain.axes);
+  const status_t& status = report.update(*rig.pipeline, snapshot, 1.0);
+  EXPECT_EQ(status.samples_waiting, 0);
+  EXPECT_EQ(status.samples_in, 100);
+  EXPECT_EQ(status.samples_published, 100);
+  EXPECT_EQ(status.bytes_read, static_cast<std::int64_t>(100 * kFrame));
+  rig.pipeline->stop();
+}
+
+// However late the last question was asked, and whether or not its answer was fetched: what housekeeping says
+// at the end of a file tells of the file's last sample, and is not the latency of an earlier second.
+TEST(PipelineStatus, TheLastWordTellsOfTheLastSample) {
+  constexpr int kCount = 1033, kHalf = 500;
+  Rig rig(frames(kCount), kFrame, true);
+  rig.transport->allowed_ = kHalf * kFrame;
+  rig.pipeline->start();
+  while (rig.publisher->messages().size() < kHalf) std::this_thread::sleep_for(1ms);
+  rig.pipeline->filter().ask();
+  std::this_thread::sleep_for(20ms);  // answered, and not fetched
+  rig.transport->allowed_ = ~std::size_t{0};
+  rig.wait_for_the_end();
+  FilterSnapshot snapshot;
+  ASSERT_TRUE(rig.pipeline->filter().take_snapshot(snapshot));
+  EXPECT_NEAR(snapshot.channel[0], temperature_of(kCount - 1), 1e-3);  // read in 1/100 °C
+  rig.pipeline->filter().ask();
+  ASSERT_TRUE(rig.pipeline->filter().take_snapshot(snapshot));
+  EXPECT_NEAR(snapshot.channel[0], temperature_of(kCount - 1), 1e-3);  // read in 1/100 °C
+  EXPECT_EQ(snapshot.latency.count(), 0U);
+}
+
+// By the definition (IEEE Std 952, overlapping) from what was published, at averaging times that the stream
+// evaluates at every sample.
+TEST(PipelineStatus, TheStatusCarriesTheAllanDeviation) {
+  constexpr int kCount = 4000;
+  Rig rig(frames(kCount), kFrame, true);
+  rig.transport->stays_open_ = true;
+  rig.pipeline->start();
+  while (rig.publisher->messages().size() < kCount) std::this_thread::sleep_for(5ms);
+  rig.pipeline->filter().ask();
+  FilterSnapshot snapshot;
+  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  rig.pipeline->stop();
+
+  StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"});
+  const status_t& sent = report.update(*rig.pipeline, snapshot, 1.0);
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(sent.getEncodedSize()));
+  ASSERT_EQ(sent.encode(bytes.data(), 0, sent.getEncodedSize()), sent.getEncodedSize());
+  status_t status{};
+  ASSERT_GT(status.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
+
+  const std::vector<rate_t> messages = rig.publisher->messages();
+  ASSERT_EQ(messages.size(), static_cast<std::size_t>(kCount));
+  ASSERT_GT(status.octaves, 8);
+  for (std::size_t octave = 0; octave < 3; ++octave) {
+    const std::size_t m = std::size_t{1} << octave;
+    double squares = 0.0, count = 0.0;
+    for (std::size_t i = 0; i + 2 * m <= messages.size(); ++i) {
+      double difference = 0.0;
+      for (std::size_t k = 0; k < m; ++k)
+        difference += messages[i + k].compensated[1] - messages[i + m + k].compensated[1];
+      squares += difference * difference / static_cast<double>(m * m);
+      count += 1.0;
+    }
+    const double deviation = std::sqrt(0.5 * squares / count);
+    EXPECT_NEAR(status.allan_rate_radps[1][octave], deviation, 1e-9 * deviation) << "octave " << octave;
+  }
+  EXPECT_NEAR(status.allan_tau0_s, 1e-3, 1e-15);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,158 @@
+// Whole pipelines, from bytes to encoded messages: two real threads, the real plugin, a publisher that keeps
+// all.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <ifog/rate_t.hpp>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "daemon/pipeline/pipeline.h"
+#include "drivers/host/driver_instance.h"
+#include "drivers/transport/clock.h"
+
+namespace ifog {
+
+inline constexpr std::size_t kFrame = 36;  // bytes, KVH 1750 format A
+
+// Hands out what it was given, in portions, as fast as it is asked.
+class MemoryTransport final : public Transport {
+ public:
+  MemoryTransport(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back)
+      : Transport("memory"), bytes_to_give_(std::move(bytes)), portion_(portion), holds_back_(holds_back) {}
+  bool connect(std::string&, std::int64_t) override { return true; }
+  Delivery receive(std::int64_t) noexcept override {
+    Delivery out;
+    const bool all_given = at_ >= bytes_to_give_.size();
+    if (all_given && !stays_open_.load()) end(0);
+    if (all_given || at_ >= allowed_.load()) {
+      if (state() != TransportState::ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return out;
+    }
+    const std::size_t n = std::min(portion_, bytes_to_give_.size() - at_);
+    out.bytes = std::span(bytes_to_give_).subspan(at_, n);
+    out.arrival_ns = realtime_ns();
+    at_ += n;
+    given_.store(at_);
+    return out;
+  }
+  [[nodiscard]] bool holds_back() const override { return holds_back_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_to_give_;
+  std::size_t portion_, at_ = 0;
+  bool holds_back_;
+
+ public:
+  std::atomic<std::size_t> given_{0};
+  std::atomic<std::size_t> allowed_{~std::size_t{0}};  // no more than this is given yet
+  std::atomic<bool> stays_open_{false};
+};
+
+class KeepingPublisher final : public Publisher {
+ public:
+  explicit KeepingPublisher(std::chrono::microseconds pause = std::chrono::microseconds(0)) : pause_(pause) {}
+  bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
+    rate_t decoded{};
+    const bool good = decoded.decode(message.data(), 0, static_cast<int>(message.size())) > 0;
+    const std::lock_guard lock(mutex_);
+    if (good && std::string(channel) == "IFOG_TEST") messages_.push_back(decoded);
+    if (pause_ > std::chrono::microseconds(0)) std::this_thread::sleep_for(pause_);
+    return good;
+  }
+  std::vector<rate_t> messages() {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+
+ private:
+  std::chrono::microseconds pause_;
+  std::mutex mutex_;
+  std::vector<rate_t> messages_;
+};
+
+inline double rate_of(int n) { return 0.01 + 1e-4 * std::sin(0.01 * n); }
+
+inline double temperature_of(int n) { return n % 50; }
+
+inline std::vector<std::uint8_t> frames(int count, const std::function<double(int)>& disturbed = {}) {
+  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
+  std::vector<std::uint8_t> out;
+  for (int n = 0; n < count; ++n) {
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (double& value : sample.value) value = rate_of(n) + (disturbed ? disturbed(n) : 0.0);
+    for (double& value : sample.environment) value = temperature_of(n);
+    sample.environment_fresh = ~0U;
+    driver.encode_bytes(sample, out);
+  }
+  return out;
+}
+
+struct Rig {
+  Rig(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back, std::size_t slots = 1024,
+      std::chrono::microseconds pause = std::chrono::microseconds(0), bool direct = true) {
+    DriverInstance driver = make_driver("kvh1750", {});
+    PipelinePlan plan;
+    plan.lcm_channel = "IFOG_TEST";
+    plan.facts = sensor_facts(driver.description(), 1000.0, 0);
+    plan.ring_slots = slots;
+    plan.direct = direct;
+    plan.reader.name = "read";
+    plan.filter.name = "filter";
+    chain.facts = plan.facts;
+    chain.axes = {"x", "y", "z"};
+    for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
+      chain.channels.emplace_back(driver.description().environment[i]);
+      chain.channel_max_age_s.push_back(10.0);
+    }
+    chain.filter.process_noise = 1e-10;
+    chain.filter.measurement_noise = 1e-8;
+    auto memory = std::make_unique<MemoryTransport>(std::move(bytes), portion, holds_back);
+    transport = memory.get();
+    auto keeping = std::make_unique<KeepingPublisher>(pause);
+    publisher = keeping.get();
+    pipeline = std::make_unique<Pipeline>(plan, std::move(memory), std::move(driver), nullptr,
+                                          std::make_unique<ChainParts>(chain), std::move(keeping));
+    pipeline->open();
+  }
+  void run_to_the_end() {
+    pipeline->start();
+    wait_for_the_end();
+  }
+  // One frame at a time until the reader has found the filter thread asleep, then the rest.
+  void run_from_rest_to_the_end() {
+    transport->allowed_ = 0;
+    pipeline->start();
+    while (pipeline->hand_over().done_here() == 0) {
+      transport->allowed_ += kFrame;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    transport->allowed_ = ~std::size_t{0};
+    wait_for_the_end();
+  }
+  void wait_for_the_end() {
+    while (!pipeline->ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    pipeline->stop();
+  }
+  ChainSettings chain;
+  MemoryTransport* transport;
+  KeepingPublisher* publisher;
+  std::unique_ptr<Pipeline> pipeline;
+};
+
+inline double sent_angle(int count) {
+  double sum = 0.0;
+  for (int n = 0; n < count; ++n) sum += static_cast<double>(static_cast<float>(rate_of(n))) * 1e-3;
+  return sum;
+}
+
+}  // namespace ifog
