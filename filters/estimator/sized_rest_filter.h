@@ -25,7 +25,7 @@ class SizedRestFilter final : public RestFilter {
         start_(process_noise * model_->stationary()) {
     // Large enough to be forgotten after one measurement, small enough to leave the covariance ten digits.
     constexpr double kDiffuse = 1e6;
-    start_.diagonal() += kDiffuse * measurement_noise * model_->diffuse();
+    start_.diagonal() += kDiffuse * measurement_noise * model_->start();
     for (Core& core : cores_) core.h = model_->measurement();
     rate_alone_ = readout_ == cores_[0].h;
     restart();

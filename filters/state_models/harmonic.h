@@ -25,6 +25,7 @@ class Harmonic final : public StateModel {
   [[nodiscard]] Eigen::VectorXd level() const override { return Eigen::Vector2d(1.0, 0.0); }
   [[nodiscard]] Eigen::MatrixXd stationary() const override { return Eigen::MatrixXd::Zero(2, 2); }
   [[nodiscard]] Eigen::VectorXd diffuse() const override { return Eigen::VectorXd::Ones(2); }
+  [[nodiscard]] Eigen::VectorXd start() const override { return Eigen::VectorXd::Constant(2, 1e-7); }
 
  private:
   double frequency_hz_;

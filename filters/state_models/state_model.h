@@ -53,6 +53,10 @@ class StateModel {
   // For each state that wanders without bound its variance before the first measurement, as a multiple of the
   // rate's; zero for the others.
   [[nodiscard]] virtual Eigen::VectorXd diffuse() const = 0;
+  // The same for a filter whose rate is published from the first sample on. A line then begins a million
+  // times smaller than the rate: were they alike, the first samples could not tell one from the other's
+  // phase, and both would begin far from either.
+  [[nodiscard]] virtual Eigen::VectorXd start() const { return diffuse(); }
 };
 
 // Throws std::invalid_argument naming the setting, its value and what was expected.

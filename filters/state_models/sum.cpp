@@ -86,4 +86,14 @@ Eigen::VectorXd Sum::diffuse() const {
   return all;
 }
 
+Eigen::VectorXd Sum::start() const {
+  Eigen::VectorXd all(states_);
+  int first = 0;
+  for (const Term& term : terms_) {
+    all.segment(first, term.model->states()) = term.model->start();
+    first += term.model->states();
+  }
+  return all;
+}
+
 }  // namespace ifog

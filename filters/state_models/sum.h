@@ -24,6 +24,7 @@ class Sum final : public StateModel {
   [[nodiscard]] bool carries_level() const noexcept override;
   [[nodiscard]] Eigen::MatrixXd stationary() const override;
   [[nodiscard]] Eigen::VectorXd diffuse() const override;
+  [[nodiscard]] Eigen::VectorXd start() const override;
 
  private:
   std::vector<Term> terms_;

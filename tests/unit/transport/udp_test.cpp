@@ -58,23 +58,31 @@ TEST_P(Udp, EachDeliveryIsADatagramWithTheKernelsTimeOfIt) {
   EXPECT_EQ(transport->state(), TransportState::open);
   EXPECT_FALSE(transport->holds_back());
   LoopbackSocket gyro(GetParam(), SOCK_DGRAM);
-  gyro.send_to(settings_.port, "warm up");  // the first one of a system may come before it stamps
-  EXPECT_EQ(text_of(transport->read(kForever)), "warm up");
+  // The kernel begins to stamp some time after the first socket of a system has asked it to.
+  std::uint64_t warm_ups = 0;
+  for (bool stamped = false; !stamped && warm_ups < 500; ++warm_ups) {
+    gyro.send_to(settings_.port, "warm up");
+    const Delivery delivery = transport->read(kForever);
+    EXPECT_EQ(text_of(delivery), "warm up");
+    stamped = delivery.stamped;
+    if (!stamped) std::this_thread::sleep_for(10ms);
+  }
   const std::int64_t before = arrival_clock_ns();
   gyro.send_to(settings_.port, "first");
-  const std::int64_t between = arrival_clock_ns();
   std::this_thread::sleep_for(20ms);  // both are read together, long after they came
+  const std::int64_t between = arrival_clock_ns();
   const std::string longest(65507 - 40, 'x');
   gyro.send_to(settings_.port, longest);
   const Delivery first = transport->read(kForever);
   EXPECT_EQ(text_of(first), "first");
   EXPECT_TRUE(first.stamped);
   EXPECT_GE(first.arrival_ns, before - 1'000'000);
-  EXPECT_LT(first.arrival_ns, between + 10'000'000);
+  EXPECT_LT(first.arrival_ns, between);
   const Delivery second = transport->read(kForever);
   EXPECT_EQ(text_of(second), longest);
-  EXPECT_GT(second.arrival_ns, between + 10'000'000);
-  EXPECT_EQ(transport->counters().bytes, 7U + 5U + longest.size());
+  EXPECT_GT(second.arrival_ns, first.arrival_ns);
+  EXPECT_GT(second.arrival_ns, between - 1'000'000);
+  EXPECT_EQ(transport->counters().bytes, 7U * warm_ups + 5U + longest.size());
 }
 
 // A reader that was held up finds datagrams of long ago, each with its own time.
@@ -82,8 +90,11 @@ TEST_P(Udp, ADatagramReadLateHasTheTimeItCame) {
   const auto transport = make_udp_transport(settings_);
   transport->open({});
   LoopbackSocket gyro(GetParam(), SOCK_DGRAM);
-  gyro.send_to(settings_.port, "warm up");
-  transport->read(kForever);
+  for (int i = 0; i < 500; ++i) {
+    gyro.send_to(settings_.port, "warm up");
+    if (transport->read(kForever).stamped) break;
+    std::this_thread::sleep_for(10ms);
+  }
   gyro.send_to(settings_.port, "a");
   std::this_thread::sleep_for(120ms);
   const Delivery late = transport->read(kForever);
