@@ -1,4 +1,4 @@
-// Missing and bad measurements, uneven time, a stuck or saturated sensor, a covariance that breaks.
+// Missing and bad measurements, uneven time, a stuck sensor, a covariance that breaks.
 #include <gtest/gtest.h>
 
 #include <cmath>
