@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -36,21 +37,23 @@ class FieldReader {
   const std::uint8_t* at_;
 };
 
-// Writes where there is room.
+// Writes into the bytes of a frame. Throws std::length_error where the frame has no room for the field.
 template <std::endian kOrder>
 class FieldWriter {
  public:
-  explicit FieldWriter(std::uint8_t* at) : at_(at) {}
+  explicit FieldWriter(std::span<std::uint8_t> room) : room_(room) {}
   // The lowest bytes of it.
   void number(std::uint32_t value, unsigned bytes) {
+    if (bytes > room_.size()) throw std::length_error("the frame has no room for what is to go into it");
     for (unsigned i = 0; i < bytes; ++i)
-      *at_++ = static_cast<std::uint8_t>(value >> 8U * (kOrder == std::endian::big ? bytes - 1 - i : i));
+      room_[i] = static_cast<std::uint8_t>(value >> 8U * (kOrder == std::endian::big ? bytes - 1 - i : i));
+    room_ = room_.subspan(bytes);
   }
   void whole(std::int32_t value, unsigned bytes) { number(std::bit_cast<std::uint32_t>(value), bytes); }
   void real(float value) { number(std::bit_cast<std::uint32_t>(value), 4); }
 
  private:
-  std::uint8_t* at_;
+  std::span<std::uint8_t> room_;
 };
 
 // The nearest count in two's complement of so many bits. Throws std::invalid_argument beyond them.

@@ -5,7 +5,9 @@
 // found. While a frame is not yet whole the positions behind its header are tried too: a header that damage
 // or chance has made, and that announces bytes which never come, holds back nothing. So an intact frame comes
 // out with its own last byte, never later. The price is that a whole frame, checksum and all, inside another
-// one's payload would be taken for itself; no device sends that.
+// one's payload is taken for itself and the outer one lost; no device sends that. Of frames that overlap the
+// one that ends first is taken, also where all bytes are there at once: a recording gives the frames that the
+// line gave, however either came in portions.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +19,8 @@
 #include <optional>
 #include <span>
 #include <utility>
+
+#include "ifog/driver.h"
 
 namespace ifog::framing {
 
@@ -35,9 +39,9 @@ struct Announced {
 };
 
 // A Protocol has
-//   static constexpr std::size_t kLongest;                                  of a frame, bytes
-//   Announced at(std::span<const std::uint8_t>) const noexcept;             of the header there; at least a
-//   byte bool intact(std::span<const std::uint8_t>) const noexcept;              checksum of a whole frame
+//   static constexpr std::size_t kLongest;                         of a frame, bytes
+//   Announced at(std::span<const std::uint8_t>) const noexcept;    of the header there; at least a byte
+//   bool intact(std::span<const std::uint8_t>) const noexcept;     checksum of a whole frame
 template <typename Protocol>
 class FrameFinder {
  public:
@@ -62,6 +66,16 @@ class FrameFinder {
     failed_.reset();
   }
 
+  // As the host wants them. `unused`: of the intact frames, those the driver was told not to take.
+  void copy_to(ifog_driver_counters& out, std::uint64_t unused = 0) const noexcept {
+    out = {};
+    out.frames_good = counters_.intact - unused;
+    out.frames_crc = counters_.checksum_failed;
+    out.frames_format = unused;
+    out.bytes_skipped = counters_.bytes_skipped;
+    out.bytes_framed = counters_.bytes_framed;
+    out.bytes_pending = waiting();
+  }
   [[nodiscard]] const FrameCounters& counters() const { return counters_; }
   [[nodiscard]] std::size_t waiting() const { return end_ - begin_; }  // bytes that may yet begin a frame
 
@@ -92,12 +106,11 @@ class FrameFinder {
       const std::span<const std::uint8_t> rest(buffer_.data() + at, end_ - at);
       const Announced announced = protocol_.at(rest);
       if (announced.is == Announced::Is::frame && rest.size() >= announced.length) {
-        if (protocol_.intact(rest.first(announced.length))) {
-          accept(at, announced.length);
-          return Place{at, announced.length};
+        if (intact(at, announced.length)) {
+          const Place first = ends_first({at, announced.length});
+          accept(first.at, first.length);
+          return first;
         }
-        ++counters_.checksum_failed;
-        failed_.set(at);  // the sum of a frame is tried once, however the stream comes in portions
       } else if (announced.is == Announced::Is::none) {
         failed_.set(at);
       } else {
@@ -111,6 +124,29 @@ class FrameFinder {
       failed_.reset();
     }
     return std::nullopt;
+  }
+
+  // The sum of a frame is tried once, however the stream comes in portions.
+  bool intact(std::size_t at, std::size_t length) noexcept {
+    if (protocol_.intact({buffer_.data() + at, length})) return true;
+    ++counters_.checksum_failed;
+    failed_.set(at);
+    return false;
+  }
+
+  // Of an intact frame and those inside it: what would have come out had the bytes come one by one.
+  Place ends_first(Place outer) noexcept {
+    std::size_t end = outer.at + outer.length;
+    Place first = outer;
+    for (std::size_t at = outer.at + 1; at < end; ++at) {
+      if (failed_.test(at)) continue;
+      const Announced announced = protocol_.at({buffer_.data() + at, end - at});
+      if (announced.is != Announced::Is::frame || at + announced.length >= end) continue;
+      if (!intact(at, announced.length)) continue;
+      first = {at, announced.length};
+      end = at + announced.length;
+    }
+    return first;
   }
 
   void accept(std::size_t at, std::size_t length) noexcept {

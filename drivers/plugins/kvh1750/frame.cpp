@@ -40,8 +40,8 @@ Frame unpack(Format format, std::span<const std::uint8_t> frame) noexcept {
   return out;
 }
 
-std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> bytes) noexcept {
-  Writer out(bytes.data());
+std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> bytes) {
+  Writer out(bytes);
   out.number(0xFE81FF00U | static_cast<std::uint32_t>(frame.format), 4);
   for (const float value : frame.gyro) out.real(value);
   for (const float value : frame.accelerometer) out.real(value);

@@ -56,6 +56,6 @@ bool crc_fits(std::span<const std::uint8_t> frame) noexcept;
 Frame unpack(Format format, std::span<const std::uint8_t> frame) noexcept;
 
 // Writes the frame, CRC included; returns its length.
-std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> out) noexcept;
+std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> out);
 
 }  // namespace ifog::kvh

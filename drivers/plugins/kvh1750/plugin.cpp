@@ -148,16 +148,7 @@ class Driver {
     time_.restart();
   }
 
-  void counters(ifog_driver_counters& out) const {
-    const framing::FrameCounters& found = finder_.counters();
-    out = {};
-    out.frames_good = found.intact - other_format_;
-    out.frames_crc = found.checksum_failed;
-    out.frames_format = other_format_;
-    out.bytes_skipped = found.bytes_skipped;
-    out.bytes_framed = found.bytes_framed;
-    out.bytes_pending = finder_.waiting();
-  }
+  void counters(ifog_driver_counters& out) const { finder_.copy_to(out, other_format_); }
 
   // Throws std::invalid_argument: a value the format has no room for.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {

@@ -87,7 +87,7 @@ std::size_t pack(const Imu& given, std::span<std::uint8_t, kLongestImuFrame> byt
                                 [](double rate) { return std::abs(rate) >= kMostAtStandardScale_radps; });
   if (brief && high) imu.status = static_cast<std::uint16_t>(imu.status | kHighScale);
   const std::size_t length = brief ? kImuShortLength : kImuDataLength;
-  Writer out(bytes.data());
+  Writer out(bytes);
   for (const std::uint8_t each : kSync) out.number(each, 1);
   out.number(imu.message, 1);
   out.number(0, 1);

@@ -72,15 +72,8 @@ class Driver {
     clock_.restart();
   }
 
-  void counters(ifog_driver_counters& out) const {
-    const framing::FrameCounters& found = finder_.counters();
-    out = {};
-    out.frames_good = found.intact;  // the device's other messages included
-    out.frames_crc = found.checksum_failed;
-    out.bytes_skipped = found.bytes_skipped;
-    out.bytes_framed = found.bytes_framed;
-    out.bytes_pending = finder_.waiting();
-  }
+  // The device's other messages are good frames, too.
+  void counters(ifog_driver_counters& out) const { finder_.copy_to(out); }
 
   // Throws std::invalid_argument: no time, or a value the message has no room for.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {

@@ -87,16 +87,7 @@ class Driver {
     clock_.restart();
   }
 
-  void counters(ifog_driver_counters& out) const {
-    const framing::FrameCounters& found = finder_.counters();
-    out = {};
-    out.frames_good = found.intact - without_rate_;
-    out.frames_crc = found.checksum_failed;
-    out.frames_format = without_rate_;
-    out.bytes_skipped = found.bytes_skipped;
-    out.bytes_framed = found.bytes_framed;
-    out.bytes_pending = finder_.waiting();
-  }
+  void counters(ifog_driver_counters& out) const { finder_.copy_to(out, without_rate_); }
 
   // Throws std::invalid_argument: no time, an axis missing, or a value no float holds.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {

@@ -105,7 +105,7 @@ Telegram unpack(std::span<const std::uint8_t> bytes) noexcept {
   return out;
 }
 
-std::size_t pack(const Telegram& telegram, std::span<std::uint8_t, kLongestTelegram> bytes) noexcept {
+std::size_t pack(const Telegram& telegram, std::span<std::uint8_t, kLongestTelegram> bytes) {
   const bool extended = telegram.version > 2 && telegram.raw_rate_degps.has_value();
   std::uint32_t mask = 0;
   const auto mark = [&](bool there, unsigned bit) { mask |= there ? 1U << bit : 0U; };
@@ -115,7 +115,7 @@ std::size_t pack(const Telegram& telegram, std::span<std::uint8_t, kLongestTeleg
   mark(telegram.raw_acceleration_mps2.has_value(), kRawAcceleration);
   const std::size_t blocks = sum_of(mask, kNavigation).length + (extended ? kExtended[kRawRate] : 0U);
   const std::size_t length = header_length(telegram.version) + blocks + kChecksum;
-  Writer out(bytes.data());
+  Writer out(bytes);
   out.number('I', 1);
   out.number('X', 1);
   out.number(telegram.version, 1);

@@ -41,7 +41,7 @@ inline constexpr std::size_t kLongestTelegram = 2048;
 // Reads an intact telegram.
 Telegram unpack(std::span<const std::uint8_t> bytes) noexcept;
 // With the blocks that are set, extended ones from version 3 on; returns its length.
-std::size_t pack(const Telegram& telegram, std::span<std::uint8_t, kLongestTelegram> out) noexcept;
+std::size_t pack(const Telegram& telegram, std::span<std::uint8_t, kLongestTelegram> out);
 
 // For the finder of intact frames.
 struct Protocol {

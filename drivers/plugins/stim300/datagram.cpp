@@ -10,23 +10,6 @@ namespace {
 using Reader = framing::FieldReader<std::endian::big>;
 using Writer = framing::FieldWriter<std::endian::big>;
 
-constexpr std::size_t kCrcLength = 4;
-
-// Table 5-21, then those with AUX.
-constexpr std::array<Content, 24> kContents{
-    {{0x90, false, false, false, false, false}, {0x91, true, false, false, false, false},
-     {0x92, false, true, false, false, false},  {0x93, true, true, false, false, false},
-     {0x94, false, false, true, false, false},  {0xA5, true, false, true, false, false},
-     {0xA6, false, true, true, false, false},   {0xA7, true, true, true, false, false},
-     {0xF0, false, false, false, true, false},  {0xF1, true, false, false, true, false},
-     {0xF2, false, true, false, true, false},   {0xF3, true, true, false, true, false},
-     {0xF4, false, false, true, true, false},   {0xF5, true, false, true, true, false},
-     {0xF6, false, true, true, true, false},    {0xF7, true, true, true, true, false},
-     {0x98, false, false, false, false, true},  {0x99, true, false, false, false, true},
-     {0x9A, false, true, false, false, true},   {0x9B, true, true, false, false, true},
-     {0x9C, false, false, true, false, true},   {0xAD, true, false, true, false, true},
-     {0xAE, false, true, true, false, true},    {0xAF, true, true, true, false, true}}};
-
 // Each triad of the datagram in its order, with the bytes of a count.
 template <typename Fields, typename Use>
 void each_triad(const Content& content, Fields& fields, Use&& use) {
@@ -54,12 +37,6 @@ std::optional<Content> content_of(std::uint8_t identifier) noexcept {
   return std::nullopt;
 }
 
-std::size_t length_of(const Content& content) noexcept {
-  const std::size_t triads = 1U + (content.acceleration ? 1U : 0U) + (content.inclination ? 1U : 0U);
-  return 1 + triads * (10 + (content.temperature ? 7U : 0U)) + (content.pps || content.aux ? 4U : 0U) + 3 +
-         kCrcLength;
-}
-
 Datagram unpack(const Content& content, std::span<const std::uint8_t> bytes) noexcept {
   Reader in(bytes.data() + 1);
   Datagram out;
@@ -77,9 +54,9 @@ Datagram unpack(const Content& content, std::span<const std::uint8_t> bytes) noe
   return out;
 }
 
-std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatagram> bytes) noexcept {
+std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatagram> bytes) {
   const Content& content = datagram.content;
-  Writer out(bytes.data());
+  Writer out(bytes);
   out.number(content.identifier, 1);
   each_triad(content, datagram, [&](const Triad& triad, unsigned width) {
     for (const std::int32_t count : triad.count) out.whole(count, width);

@@ -11,6 +11,7 @@
 // The CRC is CRC-32/MPEG-2 over all bytes before it and as many zeros, never sent, as make them full words.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +29,34 @@ struct Content {
   bool operator==(const Content&) const = default;
 };
 
-inline constexpr std::size_t kLongestDatagram = 62, kTermination = 2;
+// Table 5-21, then those with AUX.
+inline constexpr std::array<Content, 24> kContents{
+    {{0x90, false, false, false, false, false}, {0x91, true, false, false, false, false},
+     {0x92, false, true, false, false, false},  {0x93, true, true, false, false, false},
+     {0x94, false, false, true, false, false},  {0xA5, true, false, true, false, false},
+     {0xA6, false, true, true, false, false},   {0xA7, true, true, true, false, false},
+     {0xF0, false, false, false, true, false},  {0xF1, true, false, false, true, false},
+     {0xF2, false, true, false, true, false},   {0xF3, true, true, false, true, false},
+     {0xF4, false, false, true, true, false},   {0xF5, true, false, true, true, false},
+     {0xF6, false, true, true, true, false},    {0xF7, true, true, true, true, false},
+     {0x98, false, false, false, false, true},  {0x99, true, false, false, false, true},
+     {0x9A, false, true, false, false, true},   {0x9B, true, true, false, false, true},
+     {0x9C, false, false, true, false, true},   {0xAD, true, false, true, false, true},
+     {0xAE, false, true, true, false, true},    {0xAF, true, true, true, false, true}}};
+
+inline constexpr std::size_t kCrcLength = 4, kTermination = 2;
+
+// Of the datagram, without termination.
+constexpr std::size_t length_of(const Content& content) noexcept {
+  const std::size_t triads = 1U + (content.acceleration ? 1U : 0U) + (content.inclination ? 1U : 0U);
+  return 1 + triads * (10 + (content.temperature ? 7U : 0U)) + (content.pps || content.aux ? 4U : 0U) + 3 +
+         kCrcLength;
+}
+inline constexpr std::size_t kLongestDatagram = [] {
+  std::size_t longest = 0;
+  for (const Content& content : kContents) longest = std::max(longest, length_of(content));
+  return longest;
+}();
 
 // Status byte, table 5-23.
 inline constexpr std::uint8_t kIntegrityError = 0x80, kStartUp = 0x40, kOverload = 0x10, kChannelError = 0x08;
@@ -52,12 +80,10 @@ struct Datagram {
 
 // What the identifier announces; nothing if it is none.
 std::optional<Content> content_of(std::uint8_t identifier) noexcept;
-// Of the datagram, without termination.
-std::size_t length_of(const Content& content) noexcept;
 
 Datagram unpack(const Content& content, std::span<const std::uint8_t> bytes) noexcept;
 // CRC included; returns its length.
-std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatagram> out) noexcept;
+std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatagram> out);
 bool crc_fits(std::span<const std::uint8_t> datagram) noexcept;
 
 // For the finder of intact frames.

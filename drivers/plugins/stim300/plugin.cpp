@@ -162,15 +162,10 @@ class Driver {
   void reset() noexcept { finder_.reset(); }
 
   void counters(ifog_driver_counters& out) const {
-    const framing::FrameCounters& found = finder_.counters();
-    out = {};
-    out.frames_good = found.intact - other_datagram_;
-    out.frames_format = other_datagram_;
-    out.bytes_skipped = found.bytes_skipped;
-    out.bytes_framed = found.bytes_framed;
-    out.bytes_pending = finder_.waiting();
+    finder_.copy_to(out, other_datagram_);
     // A header is a single byte that any other byte may equal: a sum that fails tells of no frame. What is
     // lost shows in the bytes skipped and in the sequence.
+    out.frames_crc = 0;
   }
 
   // Throws std::invalid_argument: a value the datagram has no room for.

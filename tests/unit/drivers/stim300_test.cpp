@@ -2,7 +2,9 @@
 // their ends come from long division done outside this program.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -202,6 +204,51 @@ constexpr std::pair<int, std::size_t> kLengths[] = {
     {0x90, 14}, {0x91, 24}, {0x92, 24}, {0x93, 34}, {0x94, 21}, {0xA5, 38}, {0xA6, 38}, {0xA7, 55},
     {0xF0, 18}, {0xF1, 28}, {0xF2, 28}, {0xF3, 38}, {0xF4, 25}, {0xF5, 42}, {0xF6, 42}, {0xF7, 59},
     {0x98, 18}, {0x99, 28}, {0x9A, 28}, {0x9B, 38}, {0x9C, 25}, {0xAD, 42}, {0xAE, 42}, {0xAF, 59}};
+
+// The longest has 63 bytes: PPS or AUX, and all temperatures.
+TEST(Stim300, EncodesEveryDatagramThereIs) {
+  for (const auto& [id, covered] : kLengths) {
+    std::array<char, 8> name{};
+    std::snprintf(name.data(), name.size(), "0x%02X", static_cast<unsigned>(id));
+    for (const bool terminated : {false, true}) {
+      DriverInstance driver =
+          make_driver("stim300", {{"datagram", name.data()}, {"termination", terminated ? "crlf" : "none"}});
+      ifog_sample sample{};
+      sample.valid_axes = 7;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sample.value[axis] = static_cast<double>(axis + 1) * kDegree;
+      Bytes bytes;
+      driver.encode_bytes(sample, bytes);
+      ASSERT_EQ(bytes.size(), covered + 4 + (terminated ? 2U : 0U)) << name.data();
+      Bytes again(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(covered));
+      append_crc(again);
+      EXPECT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << name.data();
+      const std::vector<ifog_sample> samples = decode(driver, bytes);
+      ASSERT_EQ(samples.size(), 1U) << name.data();
+      EXPECT_NEAR(samples[0].value[2], 3 * kDegree, 1e-6) << name.data();
+    }
+  }
+}
+
+// No device sends this; but what a line gave byte by byte its recording gives again, read at once.
+TEST(Stim300, ADatagramInsideAnotherIsTheSameHoweverItComes) {
+  Bytes outer{0xA7};
+  const Bytes inner = hex_bytes(k90);
+  outer.insert(outer.end(), 5, std::uint8_t{0});
+  outer.insert(outer.end(), inner.begin(), inner.end());
+  outer.resize(55);
+  append_crc(outer);
+  DriverInstance whole = make_driver("stim300", {}), bytewise = make_driver("stim300", {});
+  const std::vector<ifog_sample> at_once = decode(whole, outer);
+  std::vector<ifog_sample> one_by_one;
+  for (const std::uint8_t byte : outer)
+    for (const ifog_sample& sample : decode(bytewise, {byte})) one_by_one.push_back(sample);
+  ASSERT_EQ(at_once.size(), 1U);
+  ASSERT_EQ(one_by_one.size(), 1U);
+  EXPECT_DOUBLE_EQ(at_once[0].value[0], one_by_one[0].value[0]);
+  EXPECT_EQ(whole.counters().bytes_skipped, bytewise.counters().bytes_skipped);
+  EXPECT_EQ(whole.counters().bytes_framed, inner.size());
+}
 
 TEST(Stim300, EveryIntactDatagramComesOutOfADamagedStream) {
   for (const bool terminated : {false, true}) {
