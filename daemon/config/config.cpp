@@ -198,6 +198,7 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   TableReader in(table, "sensor", context.file, context.errors);
   SensorConfig out;
   out.line = table.source().begin.line;
+  out.folder = context.folder.string();
   out.name = in.required_text("name", "a name, letters, digits, _ and -");
   if (!out.name.empty() && !good_name(out.name))
     in.complain("name", " = " + in_quotes(out.name) + ": expected at most 32 letters, digits, _ and -");

@@ -74,6 +74,7 @@ struct SensorConfig {
   double start_up_s = 4.0;
   TransportConfig transport;
   std::map<std::string, std::string> options;  // of the driver
+  std::string folder;                          // of the file, where relative paths in the options begin
   FilterChoice filter;
   RealtimeConfig realtime;
   std::vector<ChannelConfig> channels;

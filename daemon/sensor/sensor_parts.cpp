@@ -60,7 +60,7 @@ std::unique_ptr<Transport> file_transport(const SensorConfig& sensor, const Driv
 
 DriverInstance make_sensor_driver(const SensorConfig& sensor,
                                   const std::vector<std::string>& plugin_folders_first) {
-  return make_driver(sensor.driver, sensor.options, plugin_folders(plugin_folders_first));
+  return make_driver(sensor.driver, sensor.options, plugin_folders(plugin_folders_first), sensor.folder);
 }
 
 SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver) {

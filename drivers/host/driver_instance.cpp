@@ -139,8 +139,16 @@ void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_
 }
 
 DriverInstance make_driver(const std::string& name, const DriverSettings& settings,
-                           const std::vector<std::string>& folders) {
-  return DriverInstance(find_plugin(name, folders), settings);
+                           const std::vector<std::string>& folders, const std::filesystem::path& files_from) {
+  std::shared_ptr<const Plugin> plugin = find_plugin(name, folders);
+  DriverSettings placed = settings;
+  for (const ifog_option* option = plugin->table().options; option->key != nullptr; ++option) {
+    const auto given = placed.find(option->key);
+    if (given == placed.end() || given->second.empty() || std::strcmp(option->values, IFOG_OPTION_FILE) != 0)
+      continue;
+    given->second = (files_from / given->second).lexically_normal().string();
+  }
+  return DriverInstance(std::move(plugin), placed);
 }
 
 }  // namespace ifog

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -73,8 +74,10 @@ class DriverInstance {
   std::vector<std::string> warnings_;
 };
 
-// Finds, loads and creates in one go.
+// Finds, loads and creates in one go. Relative paths in the settings begin in `files_from`; "": where the
+// process is.
 DriverInstance make_driver(const std::string& name, const DriverSettings& settings,
-                           const std::vector<std::string>& folders = plugin_folders());
+                           const std::vector<std::string>& folders = plugin_folders(),
+                           const std::filesystem::path& files_from = {});
 
 }  // namespace ifog

@@ -18,9 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first required function the table lacks, or null.
+// The first thing required that the table lacks, or null.
 const char* missing_function(const ifog_driver& table) {
   if (table.options == nullptr) return "options";
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option)
+    if (option->values == nullptr || option->help == nullptr) return "values and help of an option";
   if (table.create == nullptr) return "create";
   if (table.destroy == nullptr) return "destroy";
   if (table.describe == nullptr) return "describe";

@@ -126,6 +126,8 @@ typedef struct ifog_setting {
 
 /* An option the plugin knows; the list is what `ifog drivers` prints and what unknown keys are checked
  * against. */
+#define IFOG_OPTION_FILE \
+  "a file" /* `values` of an option that is a path: relative to the configuration file */
 typedef struct ifog_option {
   const char* key;
   const char* values;        /* what is allowed, for people: "rate | delta" or "a number > 0" */

@@ -26,6 +26,9 @@ std::uint64_t at_least_one(double samples) {
   return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(samples)) : 1;
 }
 
+// Also of axes that are marked not usable, whose value is no number.
+bool same(double a, double b) noexcept { return a == b || (std::isnan(a) && std::isnan(b)); }
+
 }  // namespace
 
 void merge(Increment& into, const Increment& later) noexcept {
@@ -80,7 +83,7 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading, double el
     step.repeated = true;
     for (int i = 0; i < facts_.axes; ++i) {
       const auto axis = static_cast<std::size_t>(i);
-      if (reading.value[axis] != last_.value[axis]) step.repeated = false;
+      if (!same(reading.value[axis], last_.value[axis])) step.repeated = false;
     }
     step.samples = 1;
     step.gap = true;

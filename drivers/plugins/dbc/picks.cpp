@@ -15,7 +15,7 @@ namespace ifog::dbc {
 namespace {
 
 constexpr std::array kOptions{
-    ifog_option{"dbc", "a file", nullptr, "Vector DBC file that describes the bus"},
+    ifog_option{"dbc", IFOG_OPTION_FILE, nullptr, "Vector DBC file that describes the bus"},
     ifog_option{"signal", "[MESSAGE.]SIGNAL", "", "what a single-axis sensor measures; instead of x, y, z"},
     ifog_option{"x", "[MESSAGE.]SIGNAL", "", "what the sensor measures about its x axis"},
     ifog_option{"y", "[MESSAGE.]SIGNAL", "", "about its y axis"},

@@ -102,6 +102,17 @@ TEST(Incrementer, AFrameDeliveredTwiceIsLeftOutAndCounted) {
   EXPECT_EQ(incrementer.counts().repeated, 1U);
 }
 
+TEST(Incrementer, SoIsOneWhoseAxisIsNotUsable) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  ASSERT_TRUE(incrementer.next(sample(0, 1.0), increment));
+  ASSERT_TRUE(incrementer.next(sample(1, kNone), increment));
+  EXPECT_FALSE(incrementer.next(sample(1, kNone), increment));
+  EXPECT_EQ(incrementer.counts().repeated, 1U);
+  EXPECT_EQ(incrementer.counts().samples, 2U);
+}
+
 TEST(Incrementer, ACounterThatStartsAgainIsARestartNotAHugeGap) {
   SensorFacts facts = counting_rate_sensor();
   facts.sequence_modulus = 1U << 31;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "daemon/sensor/sensor_parts.h"
@@ -59,6 +60,31 @@ scale = 1e-3
   EXPECT_EQ(sensor.realtime.filter_priority, 60);
   ASSERT_EQ(sensor.channels.size(), 1U);
   EXPECT_EQ(sensor.channels[0].scale, 1e-3);
+}
+
+// Wherever the daemon was started: a service starts in the root folder.
+TEST(Config, AFileNamedAmongTheDriversOptionsLiesBesideTheConfiguration) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "config_beside";
+  fs::create_directories(folder / "bus");
+  std::ofstream(folder / "bus" / "gyro.dbc")
+      << "BU_: G\nBO_ 1 Rate: 8 G\n SG_ Rate_z : 0|16@1- (0.01,0) [-300|300] \"deg/s\" G\n";
+  const Config config = parse_config(R"(
+[[sensor]]
+name = "nose"
+driver = "dbc"
+nominal_rate_hz = 100
+[sensor.transport]
+type = "can"
+interface = "can0"
+[sensor.options]
+dbc = "bus/gyro.dbc"
+z = "Rate_z"
+)",
+                                     (folder / "ifogd.toml").string());
+  const DriverInstance driver = make_sensor_driver(config.sensors.at(0), {});
+  EXPECT_EQ(driver.description().axes, 1U);
+  fs::remove_all(folder);
 }
 
 SensorConfig serial_sensor(const std::string& keys, const std::string& driver = "kvh1750") {

@@ -65,6 +65,7 @@ TEST(DriverHost, WhatIsNoDriverIsRefused) {
   EXPECT_EQ(refused_plugin("without_entry"), "is no ifogd plugin: it has no function ifog_driver_entry");
   EXPECT_EQ(refused_plugin("misnamed"), "calls itself 'something_else', expected the name of its file");
   EXPECT_EQ(refused_plugin("without_create"), "its table lacks 'create'");
+  EXPECT_EQ(refused_plugin("option_unsaid"), "its table lacks 'values and help of an option'");
   EXPECT_EQ(refused_plugin("too_many_axes"),
             "driver too_many_axes: describes a number of axes outside 1 … 3");
 }
@@ -72,8 +73,8 @@ TEST(DriverHost, WhatIsNoDriverIsRefused) {
 TEST(DriverHost, AMissingDriverIsNamedWithThoseThereAre) {
   const std::string line = refusal("kvh", {}, {kRefused});
   EXPECT_EQ(line,
-            "driver is 'kvh', expected one of: misnamed, other_version, too_many_axes, without_create, "
-            "without_entry (looked in " +
+            "driver is 'kvh', expected one of: misnamed, option_unsaid, other_version, too_many_axes, "
+            "without_create, without_entry (looked in " +
                 kRefused + ")");
   EXPECT_NE(refusal("../plugins/kvh1750", {}).find("driver is '../plugins/kvh1750'"), std::string::npos);
 }

@@ -2,7 +2,11 @@
 #include <ifog/driver.h>
 #include <stddef.h>
 
+#ifdef OPTION_UNSAID
+static const ifog_option options[] = {{"format", NULL, "a", "no word of what is allowed"}, {NULL, NULL, NULL, NULL}};
+#else
 static const ifog_option options[] = {{NULL, NULL, NULL, NULL}};
+#endif
 #ifndef WITHOUT_CREATE
 static void* create(const ifog_setting* settings, size_t count, char* error, size_t error_size) {
   (void)settings, (void)count, (void)error, (void)error_size;
