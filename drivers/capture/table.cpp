@@ -242,6 +242,7 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
   const std::size_t time = place_of(layout.time.value_or(CsvTime{}).header, names, path, table.header_line);
   reserve_rows(columns, text.substr(static_cast<std::size_t>(line.data() - text.data())));
 
+  bool decimals = false;  // in the first time
   while (lines.next(line)) {
     if (trimmed(line).empty() || line.front() == '#') {
       if (line.starts_with('#')) table.comments.emplace_back(trimmed(line.substr(1)));
@@ -250,6 +251,8 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
     }
     add_row(columns, line, layout.separator, path, lines.number());
     const double now = table.time_s.back();
+    if (table.time_s.size() == 1)
+      decimals = cell_at(line, time, layout.separator).find('.') != std::string_view::npos;
     if (std::isnan(now))
       fail_at(path, lines.number(), printable(names[time]) + " is missing, expected a time");
     if (table.time_s.size() > 1 && now <= table.time_s[table.time_s.size() - 2])
@@ -259,7 +262,7 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
   }
   if (table.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
   as_chosen(table, layout, path);
-  if (!layout.time) notice_milliseconds(table, path);
+  if (!layout.time && !decimals) notice_milliseconds(table, path);
   return table;
 }
 

@@ -141,10 +141,11 @@ TEST(CsvLayout, TheSuggestionReadsTheFile) {
 }
 
 TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {
-  std::string milliseconds = "time_s,rate_radps\n", seconds = milliseconds;
+  std::string milliseconds = "time_s,rate_radps\n", seconds = milliseconds, dwells = milliseconds;
   for (int i = 0; i < 20; ++i) {
     milliseconds += std::to_string(5 * i) + ",0\n";
     seconds += std::to_string(i / 200.0) + ",0\n";
+    dwells += std::to_string(16 * i) + ".0,0\n";  // a rate table's: nobody writes tenths of milliseconds
   }
   const Capture c = parse_capture(milliseconds, "a.csv");
   EXPECT_EQ(c.time_s.back(), 95.0);  // not changed
@@ -152,6 +153,7 @@ TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {
             (std::vector<std::string>{"a.csv: time_s is whole numbers, 5 s apart in the mean; if these are "
                                       "milliseconds: --time time_s:ms"}));
   EXPECT_TRUE(parse_capture(seconds, "a.csv").notices.empty());
+  EXPECT_TRUE(parse_capture(dwells, "a.csv").notices.empty());
   EXPECT_TRUE(parse_capture(milliseconds, "a.csv", layout({}, "time_s:ms")).notices.empty());
 }
 
