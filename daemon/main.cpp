@@ -13,6 +13,7 @@
 #include "daemon/config/config.h"
 #include "daemon/housekeeping/housekeeping.h"
 #include "daemon/housekeeping/log.h"
+#include "drivers/ifog/driver.h"
 
 namespace {
 
@@ -37,7 +38,8 @@ void keep_standard_streams() {
 int main(int argc, char** argv) {
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
-  app.set_version_flag("--version", IFOG_VERSION);
+  app.set_version_flag("--version",
+                       "ifogd " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");
   std::string file;
   bool check = false;
   app.add_option("--config", file, "configuration (TOML)")->required()->type_name("FILE");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
 
@@ -186,8 +187,10 @@ void TableReader::refuse_the_rest() {
     if (asked_.contains(key.str())) continue;
     std::string known;
     for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
+    const std::string meant = did_you_mean(key.str(), asked_);
     errors_.push_back(file_ + ":" + std::to_string(key.source().begin.line) + ": " +
-                      printable(path(key.str())) + ": unknown key; known here: " + known);
+                      printable(path(key.str())) + ": unknown key" + meant +
+                      (meant.empty() ? "; known here: " : " Known here: ") + known);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/model.h"
@@ -136,7 +137,7 @@ class Table {
       const std::string name(key.str());
       bool known = false;
       for (const std::string& k : known_) known = known || k == name;
-      if (!known) fail(name, &node, "unknown key");
+      if (!known) fail(name, &node, "unknown key" + did_you_mean(name, known_));
     }
   }
 

@@ -2,17 +2,20 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <sstream>
+#include <string>
 
-#include "drivers/ifog/quoted.h"
+#include "drivers/ifog/driver.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/usage_error.h"
 
 int main(int argc, char** argv) {
   ifog::tools::prepare_standard_streams();
   CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
                "ifog"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", IFOG_VERSION);
+  app.set_version_flag("--version",
+                       "ifog " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");
 
   ifog::tools::add_allan(app);
   ifog::tools::add_compare(app);
@@ -32,11 +35,10 @@ int main(int argc, char** argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      // As CLI11 would print it, but fit for a terminal: it quotes the arguments.
-      std::ostringstream out, complaint;
+      std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
       status = app.exit(error, out, complaint) == 0 ? 0 : 2;
       ifog::tools::say("%s", out.str().c_str());
-      ifog::tools::warn("%s", complaint.str().c_str());
+      if (status != 0) ifog::tools::warn("%s", ifog::tools::usage_error(app, argc, argv, error).c_str());
     } catch (const ifog::tools::Failed&) {
       status = 1;
     }

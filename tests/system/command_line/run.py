@@ -276,7 +276,11 @@ class Checks:
     def check_usage(self):
         refused(2, "allan", says=["capture"])
         refused(2, "allan", self.capture, "--nonsense", says=["--nonsense"])
-        refused(2, "nonsense", says=[])
+        refused(2, "nonsense", says=["unknown command 'nonsense'", "diagnose"])
+        refused(2, "dignose", self.capture, says=["did you mean 'diagnose'?"])
+        # The parser itself says only that --output is missing.
+        refused(2, "denoise", self.capture, "--outptu=a.csv", says=["unknown option '--outptu'", "'--output'"])
+        refused(2, says=["expected one of", "allan"])
         refused(2, "diagnose", self.capture, "--significance", "2", says=["--significance"])
         assert ran("--help").returncode == 0
 

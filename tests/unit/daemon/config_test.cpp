@@ -225,7 +225,8 @@ TEST(Config, GathersAllErrors) {
             "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
             "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
             "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
-            "f.toml:3: sensor.modle: unknown key; known here: channel, driver, filter, max_step, maximum, "
+            "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, "
+            "max_step, maximum, "
             "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, transport");
 }
 

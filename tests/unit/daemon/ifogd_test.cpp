@@ -112,7 +112,7 @@ TEST_F(Ifogd, AWrongConfigurationIsRefusedInOneLine) {
   for (const auto& [more, what] :
        {std::pair{"speed = 3\n", ":7: sensor.speed: unknown key; known here: "},
         {"[$ensor]\n", ":7: Error while parsing key: "},
-        {"\"mo\\ndel\" = 3\n", ":7: sensor.mo\\ndel: unknown key; known here: "},
+        {"\"mo\\ndel\" = 3\n", ":7: sensor.mo\\ndel: unknown key, did you mean 'model'? Known here: "},
         {"x\n", ":7: Error while parsing key-value pair: expected '=', saw '\\n'"}}) {
     configure(more);
     EXPECT_EQ(ifogd(), 2);

@@ -86,7 +86,7 @@ TEST(ModelFile, BadInputIsNamedByLineAndKey) {
             "m.toml:1: version = 2: expected version = 1, the only one this program knows");
   EXPECT_EQ(complaint("version = 1\ncolour = 3\n"), "m.toml:2: colour = 3: unknown key");
   EXPECT_EQ(complaint("version = 1\n[[effect]]\nform = \"linear\"\nchanel = \"t\"\n"),
-            "m.toml:4: effect[1].chanel = 't': unknown key");
+            "m.toml:4: effect[1].chanel = 't': unknown key, did you mean 'channel'?");
   EXPECT_EQ(complaint("version = 1\n[[noise]]\nN = -1.0\n"),
             "m.toml:3: noise[1].N = -1.0: expected at least 0");
   EXPECT_NE(

@@ -1,0 +1,47 @@
+// "Did you mean": the name that somebody may have wanted to write.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace ifog {
+
+// Fewest single characters to put in, take out, exchange or swap with their neighbour (Damerau's distance, in
+// the form that edits no part twice).
+inline std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_last, last(b.size() + 1), now(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    now[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      now[j] = std::min({last[j] + 1, now[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0U : 1U)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        now[j] = std::min(now[j], before_last[j - 2] + 1);
+    }
+    before_last = std::exchange(last, now);
+  }
+  return last[b.size()];
+}
+
+// ", did you mean 'allan'?" where one of the names is near, else "". The first of the nearest.
+template <typename Names>
+std::string did_you_mean(std::string_view written, const Names& names) {
+  constexpr std::size_t kLongest = 64;  // what is longer was no slip of the finger
+  const std::size_t most = std::min<std::size_t>(2, written.size() / 3);
+  std::size_t fewest = most + 1;
+  std::string_view nearest;
+  if (written.size() <= kLongest)
+    for (const auto& name : names)
+      if (const std::size_t edits = edits_between(written, name); edits < fewest) {
+        fewest = edits;
+        nearest = name;
+      }
+  return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
+}
+
+}  // namespace ifog

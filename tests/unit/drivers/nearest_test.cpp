@@ -1,0 +1,32 @@
+// The name that may have been meant. Distances by hand.
+#include "drivers/ifog/nearest.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace ifog {
+namespace {
+
+TEST(Nearest, Distances) {
+  EXPECT_EQ(edits_between("", ""), 0U);
+  EXPECT_EQ(edits_between("", "abc"), 3U);
+  EXPECT_EQ(edits_between("allan", "alan"), 1U);
+  EXPECT_EQ(edits_between("modle", "model"), 1U);  // neighbours swapped
+  EXPECT_EQ(edits_between("kitten", "sitting"), 3U);
+  EXPECT_EQ(edits_between("ca", "abc"), 3U);  // no part is edited twice
+}
+
+TEST(Nearest, TheFirstOfTheNearestAndNothingThatIsFar) {
+  const std::vector<std::string> names{"denoise", "diagnose", "drivers", "tune"};
+  EXPECT_EQ(did_you_mean("denoize", names), ", did you mean 'denoise'?");
+  EXPECT_EQ(did_you_mean("dignose", names), ", did you mean 'diagnose'?");
+  EXPECT_EQ(did_you_mean("tnue", names), ", did you mean 'tune'?");
+  EXPECT_EQ(did_you_mean("plot", names), "");
+  EXPECT_EQ(did_you_mean("t", names), "");  // of one letter anything could be meant
+  EXPECT_EQ(did_you_mean("", names), "");
+  EXPECT_EQ(did_you_mean(std::string(1000, 'd'), names), "");
+}
+
+}  // namespace
+}  // namespace ifog

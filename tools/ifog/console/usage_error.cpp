@@ -1,0 +1,65 @@
+#include "tools/ifog/console/usage_error.h"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "drivers/ifog/nearest.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog::tools {
+namespace {
+
+std::vector<std::string> commands_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+// With their dashes.
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+// The parser tells of an option that is missing before one that it does not know: mostly the same one.
+std::string unknown_option(const CLI::App& command, int argc, const char* const* argv) {
+  const std::vector<std::string> known = options_of(command);
+  for (int i = 2; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--") break;
+    if (!word.starts_with("--") || word.size() < 4) continue;
+    const std::string name(word.substr(0, word.find('=')));
+    if (command.get_option_no_throw(name) != nullptr) continue;
+    return "unknown option " + in_quotes(name) + did_you_mean(name, known);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string usage_error(const CLI::App& app, int argc, const char* const* argv,
+                        const CLI::ParseError& error) {
+  std::string who = "ifog", what = printable(error.what(), kLongestMessage);
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  const std::vector<std::string> commands = commands_of(app);
+  const bool is_command = std::find(commands.begin(), commands.end(), first) != commands.end();
+  if (is_command) {
+    who += " " + std::string(first);
+    const CLI::App& command = *app.get_subcommand(std::string(first));
+    if (const std::string unknown = unknown_option(command, argc, argv); !unknown.empty()) what = unknown;
+  } else if (!first.starts_with('-')) {
+    what =
+        first.empty() ? "no command" : "unknown command " + in_quotes(first) + did_you_mean(first, commands);
+    if (what.back() != '?')
+      for (std::size_t i = 0; i < commands.size(); ++i)
+        what += (i == 0 ? ", expected one of: " : ", ") + commands[i];
+  }
+  return who + ": " + what + "\n" + "`" + who + " --help` says what there is.\n";
+}
+
+}  // namespace ifog::tools
