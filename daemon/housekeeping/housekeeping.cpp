@@ -274,6 +274,19 @@ void Housekeeping::stop_all() {
   }
 }
 
+void Housekeeping::each_second(double interval_s) {
+  double rate = 0.0;
+  for (const auto& sensor : sensors_) {
+    report_second(*sensor, interval_s);
+    rate += sensor->report.message().output_rate_hz;
+  }
+  if (!all_alive() && std::exchange(watchdog_, false))
+    log_->critical("a pipeline is stuck: no more signs of life");
+  if (watchdog_)
+    notify("WATCHDOG=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s), " +
+           std::to_string(std::lround(rate)) + " samples/s published");
+}
+
 int Housekeeping::run() {
   if (!open_all()) {
     log_->error("no sensor can run");
@@ -284,7 +297,6 @@ int Housekeeping::run() {
   const Signals signals;
   start_all();
   notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
-  bool watchdog = true;
   bool ended = false, reload_asked = false;
   std::int64_t deadline_ns = monotonic_ns();
   std::int64_t reloaded_ns = deadline_ns - kReloadEvery_ns;
@@ -316,19 +328,9 @@ int Housekeeping::run() {
     }
     if (tick % kTicksPerSecond != 0 || ended) continue;
     const std::int64_t now_ns = monotonic_ns();
-    double rate = 0.0;
-    for (const auto& sensor : sensors_) {
-      report_second(*sensor, static_cast<double>(now_ns - second_ns) * 1e-9);
-      rate += sensor->report.message().output_rate_hz;
-    }
-    second_ns = now_ns;
+    each_second(static_cast<double>(now_ns - std::exchange(second_ns, now_ns)) * 1e-9);
     // After a long halt of the machine, no burst of overdue seconds.
     deadline_ns = std::max(deadline_ns, now_ns - kTick_ns);
-    if (!all_alive() && std::exchange(watchdog, false))
-      log_->critical("a pipeline is stuck: no more signs of life");
-    if (watchdog)
-      notify("WATCHDOG=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s), " +
-             std::to_string(std::lround(rate)) + " samples/s published");
   }
   stop_all();
   const bool failed = std::any_of(sensors_.begin(), sensors_.end(), [](const auto& sensor) {

@@ -48,6 +48,8 @@ class Housekeeping {
   void drain_events(Sensor& sensor);
   void report_second(Sensor& sensor, double interval_s);
   void publish(Sensor& sensor);
+  // The status of every sensor, and the service manager's sign of life.
+  void each_second(double interval_s);
   [[nodiscard]] bool all_alive() const;
   // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
   void reload();
@@ -61,6 +63,7 @@ class Housekeeping {
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
   std::vector<std::uint8_t> buffer_;
+  bool watchdog_ = true;  // signs of life are given: none after a pipeline was once stuck
 };
 
 }  // namespace ifog

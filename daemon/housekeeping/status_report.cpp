@@ -105,72 +105,65 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
   return status_t::STATE_RUNNING;
 }
 
-const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
-  before_ = now_;
-  const ReaderCounters& reader = pipeline.reader().counters();
-  const FilterCounters& filter = pipeline.filter().counters();
-  const Transport& transport = pipeline.reader().transport();
-  const TransportCounters line = transport.counters();
-  now_.utime = realtime_ns() / 1000;
-  now_.model = snapshot.model.data();
-  const ReaderBooks& books = snapshot.reader;
-  now_.fault = imbalance(books, snapshot.books);
-  if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
-  now_.bytes_read = as_signed(books.bytes_read);
-  now_.bytes_framed = as_signed(books.bytes_framed);
-  now_.bytes_skipped = as_signed(books.bytes_skipped);
-  now_.bytes_pending = as_signed(books.bytes_pending);
-  now_.samples_decoded = as_signed(books.decoded);
-  now_.samples_in = as_signed(books.samples);
-  now_.samples_repeated = as_signed(books.repeated);
+// What the books balance: of one moment, the filter's.
+void StatusReport::take_books(const FilterSnapshot& snapshot) {
+  const ReaderBooks& read = snapshot.reader;
+  now_.bytes_read = as_signed(read.bytes_read);
+  now_.bytes_framed = as_signed(read.bytes_framed);
+  now_.bytes_skipped = as_signed(read.bytes_skipped);
+  now_.bytes_pending = as_signed(read.bytes_pending);
+  now_.frames_read = as_signed(read.frames_read);
+  now_.frames_other = as_signed(read.frames_other);
+  now_.frames_good = as_signed(read.frames_good);
+  now_.frames_format = as_signed(read.frames_refused);
+  now_.samples_decoded = as_signed(read.decoded);
+  now_.samples_in = as_signed(read.samples);
+  now_.samples_repeated = as_signed(read.repeated);
+  now_.samples_waiting = as_signed(read.samples - snapshot.books.samples);
   now_.samples_published = as_signed(snapshot.books.sent);
   now_.samples_merged = as_signed(snapshot.books.merged);
   now_.lcm_failures = as_signed(snapshot.books.failed);
-  now_.samples_waiting = as_signed(books.samples - snapshot.books.samples);
-  now_.frames_read = as_signed(books.frames_read);
-  now_.frames_other = as_signed(books.frames_other);
-  now_.frames_good = as_signed(books.frames_good);
-  now_.frames_crc = as_signed(reader.frames_crc.value());
-  now_.frames_format = as_signed(books.frames_refused);
+}
+
+void StatusReport::take_line(const TransportCounters& line) {
   now_.log_faults = as_signed(line.malformed);
+  now_.kernel_drops = as_signed(line.kernel_drops);
+  now_.can_error_frames = as_signed(line.error_frames);
+  now_.reopened = as_signed(line.reopened);
+}
+
+void StatusReport::take_counters(const ReaderCounters& reader, const FilterCounters& filter) {
+  now_.frames_crc = as_signed(reader.frames_crc.value());
   now_.frames_repeated = as_signed(reader.frames_repeated.value());
   now_.samples_incomplete = as_signed(reader.samples_incomplete.value());
   now_.sequence_gaps = as_signed(reader.gaps.value());
   now_.sequence_missing = as_signed(reader.missing.value());
-  now_.ring_overflows = as_signed(pipeline.queue().overflows());
-  now_.kernel_drops = as_signed(line.kernel_drops);
   now_.stood_back = as_signed(reader.stood_back.value() + filter.stood_back.value());
-  now_.can_error_frames = as_signed(line.error_frames);
-  now_.reopened = as_signed(line.reopened);
   now_.invalid_samples = as_signed(reader.invalid.value());
   now_.saturated_samples = as_signed(reader.saturated.value());
   now_.implausible_samples = as_signed(reader.implausible.value());
   now_.channel_drops = as_signed(reader.channel_drops.value());
   now_.channel_implausible = as_signed(reader.channel_implausible.value());
-  now_.gated = as_signed(snapshot.health.gated);
   now_.channel_stale = as_signed(filter.channel_stale.value());
   now_.out_of_range = as_signed(filter.out_of_range.value());
   now_.corrections_refused = as_signed(filter.corrections_refused.value());
-  now_.events_lost = as_signed(pipeline.events_lost());
+  now_.filter_resets = as_signed(filter.filter_resets.value());
+  now_.clock_offset_ppm = reader.clock_offset_ppm.load(std::memory_order_relaxed);
+}
+
+void StatusReport::take_health(const FilterSnapshot& snapshot) {
+  now_.gated = as_signed(snapshot.health.gated);
   now_.floor_hits = as_signed(snapshot.health.floor_hits);
   now_.manoeuvres = as_signed(snapshot.health.manoeuvres);
   now_.divergences = as_signed(snapshot.health.divergences);
-  now_.filter_resets = as_signed(filter.filter_resets.value());
-  now_.state = state_of(pipeline);
-  if (interval_s > 0.0) {
-    now_.input_rate_hz = static_cast<double>(now_.samples_in - before_.samples_in) / interval_s;
-    now_.output_rate_hz =
-        static_cast<double>(now_.samples_published - before_.samples_published) / interval_s;
-  }
-  now_.clock_offset_ppm = reader.clock_offset_ppm.load(std::memory_order_relaxed);
-  now_.latency_p50_us = snapshot.latency.percentile_us(0.5);
-  now_.latency_p99_us = snapshot.latency.percentile_us(0.99);
-  now_.latency_max_us = snapshot.latency.max_us();
   for (std::size_t i = 0; i < now_.nis_mean.size(); ++i) {
     now_.nis_mean[i] = snapshot.health.nis_mean[i];
     now_.whiteness[i] = snapshot.health.whiteness[i];
     now_.measurement_noise[i] = snapshot.health.measurement_noise[i];
   }
+  now_.latency_p50_us = snapshot.latency.percentile_us(0.5);
+  now_.latency_p99_us = snapshot.latency.percentile_us(0.99);
+  now_.latency_max_us = snapshot.latency.max_us();
   now_.octaves = snapshot.allan_octaves;
   now_.allan_tau0_s = snapshot.allan_period_s;
   for (std::size_t i = 0; i < now_.allan_rate_radps.size(); ++i)
@@ -179,6 +172,26 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   for (std::size_t i = 0; i < now_.channel_value.size(); ++i) {
     now_.channel_value[i] = snapshot.channel[i];
     now_.channel_age_s[i] = static_cast<double>(snapshot.channel_age_s[i]);
+  }
+}
+
+const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
+  before_ = now_;
+  now_.utime = realtime_ns() / 1000;
+  now_.model = snapshot.model.data();
+  now_.fault = imbalance(snapshot.reader, snapshot.books);
+  if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
+  take_books(snapshot);
+  take_line(pipeline.reader().transport().counters());
+  take_counters(pipeline.reader().counters(), pipeline.filter().counters());
+  take_health(snapshot);
+  now_.ring_overflows = as_signed(pipeline.queue().overflows());
+  now_.events_lost = as_signed(pipeline.events_lost());
+  now_.state = state_of(pipeline);
+  if (interval_s > 0.0) {
+    now_.input_rate_hz = static_cast<double>(now_.samples_in - before_.samples_in) / interval_s;
+    now_.output_rate_hz =
+        static_cast<double>(now_.samples_published - before_.samples_published) / interval_s;
   }
   return now_;
 }

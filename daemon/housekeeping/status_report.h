@@ -25,6 +25,10 @@ class StatusReport {
   [[nodiscard]] const ifog::status_t& message() const { return now_; }
 
  private:
+  void take_books(const FilterSnapshot& snapshot);
+  void take_line(const TransportCounters& line);
+  void take_counters(const ReaderCounters& reader, const FilterCounters& filter);
+  void take_health(const FilterSnapshot& snapshot);
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
 
   ifog::status_t before_, now_;

@@ -73,8 +73,8 @@ void Engine::restart() noexcept {
   outliers_.restart();
   for (NoiseScale& noise : noise_) noise.break_off();
   started_ = 0;
-  first_ = true;
-  in_manoeuvre_ = waiting_ = begun_ = false;
+  knowledge_ = Knowledge::nothing;
+  motion_ = Motion::at_rest;
   untested_ = {};
   since_moved_ = at_rest_for_ = 0.0;
   until_lag_ = 0;
@@ -86,7 +86,7 @@ Axes Engine::owed() const noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     angle[a] = ledger_.owed(a);
     // Outliers or a jump: nobody will tell any more, and measured they were.
-    if (!in_manoeuvre_ && !outliers_.run().empty()) angle[a] += kept_out_[a];
+    if (!in_manoeuvre() && !outliers_.run().empty()) angle[a] += kept_out_[a];
   }
   return angle;
 }
@@ -129,12 +129,13 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
     return;
   }
   // The first measurement sets the state; its innovation is zero by construction and no evidence.
-  rest_->update(m.in.rate_radps, m.valid, m.noise_scale, m.in.sequence, learn && !first_);
-  first_ = false;
+  rest_->update(m.in.rate_radps, m.valid, m.noise_scale, m.in.sequence,
+                learn && knowledge_ != Knowledge::nothing);
+  if (knowledge_ == Knowledge::nothing) knowledge_ = Knowledge::told;
   since_moved_ += 1.0;
   // Where it goes under way, in the tail of a motion, or while its gain is that of a filter that was moved,
   // its lag will not return.
-  at_rest_for_ = in_manoeuvre_ ? 0.0 : at_rest_for_ + 1.0;
+  at_rest_for_ = in_manoeuvre() ? 0.0 : at_rest_for_ + 1.0;
   const bool settled = at_rest_for_ * rest_->gain() > kSettledLags;
   for (std::size_t a = 0; !settled && a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
   // Under way, too, a filter that has had time to settle and was not found wrong is to be as far from the
@@ -169,7 +170,7 @@ Surprise Engine::surprise(const Measurement& m) const noexcept {
 void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
   trackers_.predict(m.dt_s / period_s_);
   const Surprise now = surprise(m);
-  if (in_manoeuvre_) {
+  if (in_manoeuvre()) {
     follow_manoeuvre(m, now, out);
   } else {
     follow_rest(m, now, out);
@@ -204,8 +205,8 @@ void Engine::learn_noise(const Measurement& m) noexcept {
   }
   if (steady_ == nullptr || !all) return;
   const double axes = std::popcount(m.valid);
-  if (!begun_) steady_->begin(rest / axes, kRestMemory);
-  begun_ = true;
+  if (knowledge_ != Knowledge::heard) steady_->begin(rest / axes, kRestMemory);
+  knowledge_ = Knowledge::heard;
   steady_->limit(greatest / axes);
 }
 
@@ -241,10 +242,12 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     rest_->skip();
   } else {
     const double predicted = rest_->measurement_variance();
-    const bool learns = since_moved_ > kRestMemory || !begun_;
+    const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
     update_rest(m, learns);
-    if (m.valid != 0 && !first_) learn_noise(m);
-    if (learns) rest_variance_ += (begun_ ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
+    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m);
+    if (learns)
+      rest_variance_ +=
+          (knowledge_ == Knowledge::heard ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
   }
   publish_rest();
   // Until the next measurement says which, it may be the first of a jump.
@@ -303,7 +306,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
       const double short_by =
           has(m.valid, a) && !published_.passed_over ? m.in.rate_radps[a] - published_.rate[a] : 0.0;
-      const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), in_manoeuvre_);
+      const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), in_manoeuvre());
       // What was fallen short of before its noise was known no test has seen: a filter that begins under way
       // finds that out late, and owes it to the manoeuvre.
       if (!has(m.tested, a)) {
@@ -325,7 +328,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     refresh_lag();
   }
   // A tracker has no lag in a rate, slope or curvature that lasts.
-  health_.group_delay_s = in_manoeuvre_ ? mix_.rest_weight() * lag_s_ : lag_s_;
+  health_.group_delay_s = in_manoeuvre() ? mix_.rest_weight() * lag_s_ : lag_s_;
 }
 
 // Normalised innovation squared and lag-1 autocorrelation, over the last kHealthMemory samples or so.
@@ -351,7 +354,7 @@ void Engine::refresh_lag() noexcept {
   // A filter that has taken in nothing yet has neither.
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
   const double lag = std::max(0.0, now.lag);
-  if (follow_manoeuvres_ && lag_s_ > 0.0 && (in_manoeuvre_ || since_moved_ < longest_lag_) &&
+  if (follow_manoeuvres_ && lag_s_ > 0.0 && (in_manoeuvre() || since_moved_ < longest_lag_) &&
       lag < longest_lag_)
     return;
   lag_s_ = lag * period_s_;

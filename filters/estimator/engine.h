@@ -37,6 +37,18 @@ class Engine {
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
 
  private:
+  enum class Motion {
+    at_rest,
+    manoeuvre,   // followed by the trackers
+    unforeseen,  // a manoeuvre whose last measurement was foreseen by nobody: an outlier, or it begins anew
+  };
+  enum class Knowledge {
+    nothing,  // no measurement has come
+    told,     // R is what the filter was told
+    heard,    // R is what was heard at rest
+  };
+  [[nodiscard]] bool in_manoeuvre() const noexcept { return motion_ != Motion::at_rest; }
+
   // What one step knows of its measurement.
   struct Measurement {
     const EstimatorInput& in;
@@ -102,8 +114,9 @@ class Engine {
 
   Published published_;
   std::uint32_t started_ = 0;  // axes that have a state
-  bool first_ = true, in_manoeuvre_ = false, lost_ = false, begun_ = false;
-  bool waiting_ = false;        // in a manoeuvre: the last measurement was foreseen by nobody
+  Knowledge knowledge_ = Knowledge::nothing;
+  Motion motion_ = Motion::at_rest;
+  bool lost_ = false;           // was found so, and has not been well since: guard()
   Axes tested_for_{};           // measurements since the noise was known
   Axes untested_{};             // angle fallen short of while the noise was not known
   Axes kept_out_{};             // angle of the measurements kept out in a row

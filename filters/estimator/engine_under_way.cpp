@@ -48,8 +48,7 @@ void Engine::jump(EstimatorOutput& out) noexcept {
   rest_->skip();
   outliers_.clear();
   mix_.begin(0.0);
-  in_manoeuvre_ = true;
-  waiting_ = false;
+  motion_ = Motion::manoeuvre;
   surprised_ = {};
   published_.gain = 1.0 / count;
   for (std::size_t a = 0; a < axes_; ++a) {
@@ -73,10 +72,9 @@ void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, Estimato
   double scale = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) scale = std::max(scale, noise_[a].now());
   move_rest(rate, trackers_.output_factor(tracker) * scale);
-  in_manoeuvre_ = true;
+  motion_ = Motion::manoeuvre;
   update_rest(m, false);
   outliers_.clear();
-  waiting_ = false;
   surprised_ = {};
   publish_rest();
 }
@@ -110,7 +108,7 @@ void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
   }
   move_rest(m.in.rate_radps, scale);
   mix_.begin(0.0);
-  waiting_ = false;
+  motion_ = Motion::manoeuvre;
   rest_->skip();
   mix_.weigh(trackers_);
 }
@@ -120,10 +118,10 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   Axes least{};
   const bool unforeseen_now = unforeseen(m, now, least);
   hear(m);
-  if (unforeseen_now && !waiting_) {
+  if (unforeseen_now && motion_ != Motion::unforeseen) {
     out.flags |= kGated;
     ++health_.gated;
-    waiting_ = true;
+    motion_ = Motion::unforeseen;
     waiting_rate_ = m.in.rate_radps;
     rest_->skip();
     for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += m.innovation[a] * m.innovation[a];
@@ -134,7 +132,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     publish_mix(now);
     return;
   }
-  waiting_ = false;
+  motion_ = Motion::manoeuvre;
   if (m.valid == 0) {
     rest_->skip();
     publish_mix(now);
@@ -165,7 +163,7 @@ void Engine::judge_manoeuvre() noexcept {
   if (const std::size_t broken = mix_.broken(trackers_); broken < trackers_.size())
     trackers_.begin_from(broken, broken - 1);
   if (mix_.rest_is_right()) {
-    in_manoeuvre_ = false;
+    motion_ = Motion::at_rest;
     change_.restart();
     outliers_.clear();
     publish_rest();

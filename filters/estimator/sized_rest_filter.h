@@ -138,7 +138,7 @@ class SizedRestFilter final : public RestFilter {
   static constexpr double kWeightMemory = 4096.0;
 
   Settled settled(const Core& core) const noexcept {
-    return ifog::settled<n>(transition_, core.h, readout_, core.gain, core.p);
+    return ifog::settled(transition_, core.h, readout_, core.gain, core.p);
   }
 
   void shift(const typename Core::Vector& of, const Axes& to, std::uint32_t which) noexcept {

@@ -1,7 +1,9 @@
 // What a filter whose gain stays as it is does to a slow signal: x(k) = F x(k-1) + K z(k), F = (I - K h')A.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "filters/state_models/state_model.h"
 
 namespace ifog {
 
@@ -11,22 +13,16 @@ struct Settled {
   double correlation = 0.0;  // sum of the autocorrelation of the error r'x - rate over lags from 0
 };
 
+// As many states as there are, up to kMaxStates, and no allocation.
+using FewStatesMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxStates, kMaxStates>;
+using FewStatesVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStates, 1>;
+
 // The output is r'x, the part of h'x that is the rate. With G(q) = r'(I - F/q)^-1 K: G(1) = r'(I-F)^-1 K,
 // delay = r'(I-F)^-1 F (I-F)^-1 K / G(1). The error obeys e(k) = F e(k-1) + noise, so its autocovariance is
 // r'F^j P r and sums to r'(I-F)^-1 P r.
-template <int n>
-[[nodiscard]] Settled settled(const Eigen::Matrix<double, n, n>& transition,
-                              const Eigen::Matrix<double, n, 1>& h, const Eigen::Matrix<double, n, 1>& r,
-                              const Eigen::Matrix<double, n, 1>& gain,
-                              const Eigen::Matrix<double, n, n>& covariance) noexcept {
-  using Matrix = Eigen::Matrix<double, n, n>;
-  using Vector = Eigen::Matrix<double, n, 1>;
-  const Matrix f = (Matrix::Identity() - gain * h.transpose()) * transition;
-  const Eigen::PartialPivLU<Matrix> lu(Matrix::Identity() - f);
-  const Vector once = lu.solve(gain);
-  const Vector twice = lu.solve(f * once);
-  const Vector pr = covariance * r;
-  return {r.dot(twice) / r.dot(once), r.dot(lu.solve(pr)) / r.dot(pr)};
-}
+[[nodiscard]] Settled settled(const FewStatesMatrix& transition, const FewStatesVector& h,
+                              const FewStatesVector& r, const FewStatesVector& gain,
+                              const FewStatesMatrix& covariance) noexcept;
 
 }  // namespace ifog

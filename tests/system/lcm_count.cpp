@@ -1,9 +1,8 @@
 // A subscriber as an INS would be: counts what arrives on IFOG_<NAME> channels, and whether each message
 // follows the one before it.  usage: lcm_count SECONDS CHANNEL...
 //
-// Prints one JSON object when the time is over, or on SIGTERM, or as soon as the standard output's reader
-// asks by SIGUSR1: by channel the messages, the first and last sequence number, and every way in which a
-// message did not follow.
+// Prints one JSON object when the time is over, or on SIGTERM or SIGINT: by channel the messages, the first
+// and last sequence number, and every way in which a message did not follow.
 #include <unistd.h>
 
 #include <chrono>

@@ -144,16 +144,10 @@ const std::vector<Kind>& effect_kinds() {
   return kKinds;
 }
 
-Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vector<Key>& common) {
-  const auto kind =
-      std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return recipe.kind == k.name; });
-  if (kind == kinds.end()) {
-    std::string known;
-    for (const Kind& k : kinds) known += (known.empty() ? "" : ", ") + std::string(k.name);
-    throw std::invalid_argument(in_quotes(recipe.kind) + " is unknown, expected one of " + known);
-  }
-  std::vector<Key> keys = kind->keys;
-  keys.insert(keys.end(), common.begin(), common.end());
+namespace {
+
+// Every number known and within its range; what was not given takes its fallback.
+void complete_numbers(Recipe& recipe, const std::vector<Key>& keys) {
   for (const auto& [name, value] : recipe.number) {
     const auto key =
         std::find_if(keys.begin(), keys.end(), [&n = name](const Key& k) { return n == k.name; });
@@ -177,25 +171,48 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
                                   (*key.unit != '\0' ? " (" + std::string(key.unit) + ")" : ""));
     recipe.number[key.name] = key.fallback;
   }
+}
+
+void check_lists(const Recipe& recipe, const Kind& kind) {
   for (const auto& [name, values] : recipe.list) {
-    if (std::none_of(kind->lists.begin(), kind->lists.end(), [&n = name](const char* l) { return n == l; }))
+    if (std::none_of(kind.lists.begin(), kind.lists.end(), [&n = name](const char* l) { return n == l; }))
       throw std::invalid_argument("key " + in_quotes(name) + " is unknown for " + recipe.kind);
     if (values.empty()) throw std::invalid_argument(name + " is empty, expected numbers");
   }
-  for (const char* list : kind->lists)
+  for (const char* list : kind.lists)
     if (recipe.list.count(list) == 0)
       throw std::invalid_argument("key " + in_quotes(std::string(list)) + " is missing for " + recipe.kind +
                                   ", expected a list of numbers");
-  if (kind->channels >= 1 && recipe.channel.empty())
+}
+
+void check_channels(const Recipe& recipe, const Kind& kind) {
+  if (kind.channels >= 1 && recipe.channel.empty())
     throw std::invalid_argument("key 'channel' is missing for " + recipe.kind +
                                 ", expected a channel's name, or 'rate'");
-  if (kind->channels >= 2 && recipe.with_channel.empty())
+  if (kind.channels >= 2 && recipe.with_channel.empty())
     throw std::invalid_argument("key 'with_channel' is missing for " + recipe.kind +
                                 ", expected a channel's name, or 'rate'");
-  if (kind->channels < 1 && !recipe.channel.empty())
+  if (kind.channels < 1 && !recipe.channel.empty())
     throw std::invalid_argument("key 'channel' is unknown for " + recipe.kind);
-  if (kind->channels < 2 && !recipe.with_channel.empty())
+  if (kind.channels < 2 && !recipe.with_channel.empty())
     throw std::invalid_argument("key 'with_channel' is unknown for " + recipe.kind);
+}
+
+}  // namespace
+
+Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vector<Key>& common) {
+  const auto kind =
+      std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return recipe.kind == k.name; });
+  if (kind == kinds.end()) {
+    std::string known;
+    for (const Kind& k : kinds) known += (known.empty() ? "" : ", ") + std::string(k.name);
+    throw std::invalid_argument(in_quotes(recipe.kind) + " is unknown, expected one of " + known);
+  }
+  std::vector<Key> keys = kind->keys;
+  keys.insert(keys.end(), common.begin(), common.end());
+  complete_numbers(recipe, keys);
+  check_lists(recipe, *kind);
+  check_channels(recipe, *kind);
   if (recipe.kind == "lookup") {
     const auto& x = recipe.list.at("x");
     if (x.size() != recipe.list.at("values").size() || x.size() < 2 || !std::is_sorted(x.begin(), x.end()) ||

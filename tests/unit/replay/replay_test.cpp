@@ -79,8 +79,7 @@ class Replay : public testing::Test {
   }
   // Exit status; what it prints goes to the file `out`.
   int ifog(const std::string& arguments) const {
-    const std::string command =
-        IFOG_BINARY_DIR "/tools/ifog/ifog replay " + arguments + " >" + path("out") + " 2>&1";
+    const std::string command = IFOG_PROGRAM " replay " + arguments + " >" + path("out") + " 2>&1";
     return WEXITSTATUS(std::system(command.c_str()));
   }
   // 100 frames, 1 ms apart.

@@ -36,28 +36,36 @@ struct Example {
 inline constexpr double kPerDegree = 2e-8;  // rad/s per degC
 inline double ramp_angle(double counts) { return 2e-7 * std::sin(2.0 * std::numbers::pi * counts / 32768.0); }
 
-inline Example make() {
-  Example e;
-  const std::size_t n = 40000;
-  const double dt = 0.05;
+inline constexpr std::size_t kSamples = 40000;
+inline constexpr double kPeriod_s = 0.05;
+
+// What the rate is made of beside its mean.
+struct Parts {
+  std::vector<double> noise, temperature, ramp;
+};
+
+inline Parts make_record(Example& e) {
+  Parts parts;
   double counts = 100.0, previous = ramp_angle(counts);
-  std::vector<double> after(n), part_t(n), part_r(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double t = static_cast<double>(k) * dt;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const double t = static_cast<double>(k) * kPeriod_s;
     e.time_s.push_back(t);
     e.temperature.push_back(25.0 + 12.0 * std::sin(t / 300.0));
     counts = std::fmod(counts + 701.3, 32768.0);
     e.ramp.push_back(counts);
-    after[k] = 6e-7 * noise(static_cast<std::uint32_t>(k));
-    part_t[k] = kPerDegree * (e.temperature[k] - 25.0);
-    part_r[k] = (ramp_angle(counts) - previous) / dt;
+    parts.noise.push_back(6e-7 * noise(static_cast<std::uint32_t>(k)));
+    parts.temperature.push_back(kPerDegree * (e.temperature[k] - 25.0));
+    parts.ramp.push_back((ramp_angle(counts) - previous) / kPeriod_s);
     previous = ramp_angle(counts);
-    e.rate.push_back(after[k] + part_t[k] + part_r[k] + 5e-5);
+    e.rate.push_back(parts.noise[k] + parts.temperature[k] + parts.ramp[k] + 5e-5);
   }
-  Diagnosis& d = e.diagnosis;
-  d.samples = n;
-  d.sample_rate_hz = 1.0 / dt;
-  d.noise.N = 6e-7 * std::sqrt(dt);
+  return parts;
+}
+
+inline void make_findings(Diagnosis& d) {
+  d.samples = kSamples;
+  d.sample_rate_hz = 1.0 / kPeriod_s;
+  d.noise.N = 6e-7 * std::sqrt(kPeriod_s);
   FoundEffect linear;
   linear.effect.form = "linear";
   linear.effect.channel = "temperature_degC";
@@ -96,13 +104,16 @@ inline Example make() {
     d.heading.after_s.push_back(60.0 * i);
     d.heading.sigma_rad.push_back(3e-8 * 60.0 * i + 2e-7 * std::sqrt(60.0 * i));
   }
-  DiagnosisSeries& s = d.series;
+}
+
+inline void make_series(DiagnosisSeries& s, const Example& e, const Parts& parts) {
   const std::size_t block = 20;
   s.names = {"linear temperature_degC", "lookup ramp_counts"};
   s.contribution_radps.resize(2);
-  for (std::size_t k = 0; k + block <= n; k += block) {
+  for (std::size_t k = 0; k + block <= kSamples; k += block) {
     double a = 0.0, t = 0.0, q = 0.0;
-    for (std::size_t i = k; i < k + block; ++i) a += after[i], t += part_t[i], q += part_r[i];
+    for (std::size_t i = k; i < k + block; ++i)
+      a += parts.noise[i], t += parts.temperature[i], q += parts.ramp[i];
     const auto m = static_cast<double>(block);
     s.time_s.push_back(e.time_s[k]);
     s.after_radps.push_back(a / m);
@@ -122,6 +133,13 @@ inline Example make() {
     s.after_adev_radps.push_back(1.34e-7 / std::sqrt(tau));
     s.before_adev_radps.push_back(std::hypot(1.34e-7 / std::sqrt(tau), 8e-10 * tau));
   }
+}
+
+inline Example make() {
+  Example e;
+  const Parts parts = make_record(e);
+  make_findings(e.diagnosis);
+  make_series(e.diagnosis.series, e, parts);
   return e;
 }
 

@@ -1,0 +1,44 @@
+#include "tools/ifog/console/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <sstream>
+#include <string>
+
+#include "drivers/ifog/driver.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/console/usage_error.h"
+
+namespace ifog::tools {
+
+int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
+  prepare_standard_streams();
+  CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
+               "ifog"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version",
+                       "ifog " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");
+  for (const AddCommand add : commands) add(app);
+
+  int status = 0;
+  try {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
+      status = app.exit(error, out, complaint) == 0 ? 0 : 2;
+      say("%s", out.str().c_str());
+      if (status != 0) warn("%s", usage_error(app, argc, argv, error).c_str());
+    } catch (const Failed&) {
+      status = 1;
+    }
+    finish_saying();
+  } catch (const std::exception& error) {
+    warn("ifog: %s\n", error.what());
+    status = 1;
+  }
+  return status;
+}
+
+}  // namespace ifog::tools
