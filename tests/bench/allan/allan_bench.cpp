@@ -1,9 +1,8 @@
 // Overlapping Allan deviation of a file of doubles (rad/s, native byte order) at the averaging times of a
-// second file (whole numbers as text). Prints user seconds of the analysis alone, its seconds by the clock,
-// bytes of the samples and peak bytes of the process, then one deviation a line.
+// second file (whole numbers as text). Prints processor seconds of the analysis alone, user's
+// and all, bytes of the samples and peak bytes of the process, then one deviation a line.
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -26,10 +25,17 @@ long peak_kib() {
 }
 
 // A busy machine's other work does not count.
-double user_seconds() {
+struct ProcessorTime {
+  double user = 0.0, all = 0.0;  // s
+};
+
+ProcessorTime processor_time() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
-  return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return {seconds(used.ru_utime), seconds(used.ru_utime) + seconds(used.ru_stime)};
 }
 
 }  // namespace
@@ -54,13 +60,12 @@ int main(int argc, char** argv) {
     return 1;
   }
 
-  const double user = user_seconds();
-  const auto start = std::chrono::steady_clock::now();
+  const ProcessorTime start = processor_time();
   const std::vector<ifog::Stretch> all{{0, rate.size()}};
   const ifog::AngleSum sum(std::move(rate), all);
   const auto points = ifog::deviation(sum, m);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%.6f %.6f %zu %ld\n", user_seconds() - user, seconds, count * sizeof(double),
+  const ProcessorTime end = processor_time();
+  std::printf("%.6f %.6f %zu %ld\n", end.user - start.user, end.all - start.all, count * sizeof(double),
               peak_kib() * 1024);
   for (const auto& point : points) std::printf("%.17g\n", std::sqrt(point.variance));
 }
