@@ -14,16 +14,20 @@
 namespace ifog {
 namespace {
 
-// What a term costs in twice the log-likelihood, and how much cheaper the best set of terms with it has to be
-// than the best without. Together: a term that is not there passes 6 in 0.72 % of records (half of a χ² of
-// one degree, Self and Liang, J. Am. Stat. Assoc. 82, 1987). The margin alone stands between two sets of as
-// many terms, where one can stand for the other.
-constexpr double kCost = 3.0, kMargin = 3.0;
+// By how much of twice the log-likelihood the best set of terms with a term has to be better than one without
+// it, by how many terms more the latter has. One fewer: a term that is not there passes 6 in 0.72 % of
+// records (half of a χ² of one degree, Self and Liang, J. Am. Stat. Assoc. 82, 1987). As many: one stands in
+// for another. More: several stand in for one, and may even do a little better.
+constexpr double kNested = 6.0, kInstead = 3.5, kSeveral = -5.0;
+double asked(std::size_t without, std::size_t with) {
+  const double more = static_cast<double>(without) - static_cast<double>(with);
+  return more < 0.0 ? -kNested * more : more > 0.0 ? kSeveral * more : kInstead;
+}
 // In the average over sets of terms, from which values and error bars come.
 constexpr double kCostInAverage = 7.0;
 // A bound that is printed only where the term stayed unseen must allow for that choice: what would have been
 // seen, had it been above.
-constexpr double kBound = kCost + kMargin;
+constexpr double kBound = kNested;
 // A ramp competes with a random walk estimated from few numbers, so its likelihood ratio has a long tail.
 constexpr double kRampPresent = 10.0;
 constexpr double kOneSided = 1.959964;
@@ -97,16 +101,19 @@ class TermSets {
   }
   [[nodiscard]] const NoiseLikelihood::Maximum& all() const { return sets_.front().fit; }
 
-  // What the best set without the term costs more than the best with it.
+  // How far the best set with the term passes what is asked of it against every set without; below zero the
+  // record can do without it.
   [[nodiscard]] double need(std::size_t term) const {
-    std::array<double, 2> best;
-    best.fill(std::numeric_limits<double>::infinity());
-    for (const Entry& e : sets_) {
-      if (!e.whole) continue;
-      double& cheapest = best[e.set[term] ? 1 : 0];
-      cheapest = std::min(cheapest, e.cost + kCost * static_cast<double>(e.set.count()));
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Entry& with : sets_) {
+      if (!with.whole || !with.set[term]) continue;
+      double passes = std::numeric_limits<double>::infinity();
+      for (const Entry& without : sets_)
+        if (without.whole && !without.set[term])
+          passes = std::min(passes, without.cost - with.cost - asked(without.set.count(), with.set.count()));
+      best = std::max(best, passes);
     }
-    return std::isfinite(best[1]) ? best[0] - best[1] : -kCost;
+    return std::max(best, -kNested);
   }
 
   // Weighted mean of the coefficient over the sets that have the term, and the spread within and among them.
@@ -202,8 +209,8 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
   for (std::size_t t = 0; t < kTerms; ++t) {
     NoiseCoefficient& c = *target[t];
     const double need = sets.need(t);
-    c.score = std::sqrt(std::max(0.0, need + kCost));
-    c.present = need > kMargin;
+    c.score = std::sqrt(std::max(0.0, need + kNested));
+    c.present = need > 0.0;
     if (c.present) {
       const TermSets::Average average = sets.average(t);
       c.value = average.value * scale[t];

@@ -5,31 +5,22 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
+#include <span>
 #include <unsupported/Eigen/FFT>
+
+#include "filters/allan/angle_means.h"
 
 namespace ifog {
 namespace {
 
-constexpr std::size_t kSegment = 512;          // samples of a level
-constexpr std::size_t kMostSegments = 8192;    // of a level
-constexpr std::size_t kSlow = 32;              // cosines of a stretch
-constexpr std::size_t kSlowSamples = 256;      // averages they are taken of, at least: fewer than twice this
-constexpr std::size_t kMostSlowParts = 4;      // stretches
-constexpr double kTopOfLevel = 1.0 / 16.0;     // cycles a sample of the level; above, the level below has it:
+constexpr std::size_t kSegment = 480;  // steps of a level; one fits where twice the slow part's least do
+constexpr std::size_t kMostSegments = 8192;  // of a level
+constexpr std::size_t kSlow = 32;            // cosines of a stretch
+constexpr std::size_t kSlowMeans = 256;     // of the angle they are taken of, at least: fewer than twice this
+constexpr std::size_t kMostSlowParts = 4;   // stretches
+constexpr double kTopOfLevel = 1.0 / 16.0;  // cycles a sample of the level; above, the level below has it:
 constexpr double kBottomOfLevel = 1.0 / 32.0;  // averaging folds next to nothing onto frequencies this low
-
-// Covariance of averages at a lag of whole samples.
-TermVariances covariance_of_rate(double lag) {
-  TermVariances c = covariance_of_angle(lag);
-  const TermVariances above = covariance_of_angle(lag + 1.0), below = covariance_of_angle(lag - 1.0);
-  for (std::size_t t = 0; t < kTerms; ++t) c[t] = 2.0 * c[t] - above[t] - below[t];
-  return c;
-}
-
-// Variances of the averages' terms for one unit of the samples' own.
-TermVariances scale_of(double averaged) {
-  return {1.0 / (averaged * averaged), 1.0 / averaged, 1.0, averaged};
-}
 
 // A windowed segment: its power, and what each term makes of it.
 class Segment {
@@ -41,7 +32,13 @@ class Segment {
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] const TermVariances& expected(std::size_t bin) const { return expected_[bin]; }
+  // For one unit of each term's variance.
+  [[nodiscard]] TermVariances expected(int level, std::size_t bin) const {
+    const auto table = std::min(static_cast<std::size_t>(level), expected_.size() - 1);
+    TermVariances out = level_unit(level);
+    for (std::size_t t = 0; t < kTerms; ++t) out[t] *= expected_[table][bin][t];
+    return out;
+  }
 
   // rate: size() samples, spoilt. Adds the power of every bin below the Nyquist frequency.
   void add_power(std::vector<double>& rate, std::vector<double>& power) {
@@ -80,15 +77,13 @@ class Segment {
   }
 
   // A bin is |u'x|² with u the windowed wave less its own mean and slope: expected is Σ over lags of the
-  // covariance times u's autocorrelation.
+  // covariance times u's autocorrelation. Levels above the last differ by their unit only.
   void fill_expected() {
-    const std::size_t twice = 2 * size_;
-    std::vector<TermVariances> covariance(size_);
-    for (std::size_t lag = 0; lag < size_; ++lag)
-      covariance[lag] = covariance_of_rate(static_cast<double>(lag));
-    expected_.resize(size_ / 2);
+    constexpr int kLevels = 7;
+    const std::size_t twice = 2 * size_, bins = size_ / 2;
+    expected_.assign(kLevels, std::vector<TermVariances>(bins));
     std::vector<std::complex<double>> u(size_), spectrum, correlation;
-    for (std::size_t k = 1; k < expected_.size(); ++k) {
+    for (std::size_t k = 1; k < bins; ++k) {
       u.assign(size_, {});
       for (std::size_t i = 0; i < size_; ++i)
         u[i] = std::polar(window_[i], 2.0 * std::numbers::pi * static_cast<double>(k * i % size_) /
@@ -98,32 +93,29 @@ class Segment {
       fft_.fwd(spectrum, u);
       for (auto& s : spectrum) s = std::norm(s);
       fft_.inv(correlation, spectrum);
-      for (std::size_t lag = 0; lag < size_; ++lag)
-        for (std::size_t t = 0; t < kTerms; ++t)
-          expected_[k][t] += (lag == 0 ? 1.0 : 2.0) * covariance[lag][t] * correlation[lag].real();
+      for (int level = 0; level < kLevels; ++level) {
+        // Above the lowest, low frequencies only are looked at.
+        if (level > 0 && static_cast<double>(k) > kTopOfLevel * static_cast<double>(size_)) break;
+        const std::span<const TermVariances> covariance = level_covariance(level);
+        TermVariances& expected = expected_[static_cast<std::size_t>(level)][k];
+        for (std::size_t lag = 0; lag < size_; ++lag)
+          for (std::size_t t = 0; t < kTerms; ++t)
+            expected[t] += (lag == 0 ? 1.0 : 2.0) * covariance[lag][t] * correlation[lag].real();
+      }
     }
   }
 
   std::size_t size_;
   std::vector<double> window_, from_;
   std::vector<std::complex<double>> into_;
-  std::vector<TermVariances> expected_;
+  std::vector<std::vector<TermVariances>> expected_;  // by level and bin
   Eigen::FFT<double> fft_;
-};
-
-// The averages of 2^level samples of a stretch, from the angle.
-struct Averages {
-  const double* angle;
-  std::size_t step, count;
-  [[nodiscard]] double at(std::size_t i) const {
-    return (angle[(i + 1) * step] - angle[i * step]) / static_cast<double>(step);
-  }
 };
 
 // How far up a stretch is averaged before its slow part is taken.
 int last_level(std::size_t samples) {
   int level = 0;
-  while ((samples >> (level + 1)) >= kSlowSamples) ++level;
+  while (((samples + 1) >> (level + 1)) >= kSlowMeans) ++level;
   return level;
 }
 
@@ -134,7 +126,7 @@ int last_spectrum(std::size_t samples) { return std::max(0, last_level(samples) 
 
 // Lowest bin frequency that the slow part leaves to the last spectrum, cycles a sample of that level.
 double slow_edge(std::size_t samples) {
-  const std::size_t averages = samples >> last_level(samples);
+  const std::size_t averages = ((samples + 1) >> last_level(samples)) - 1;
   const double edge =
       (static_cast<double>(slow_count(averages)) + 0.5) / (2.0 * static_cast<double>(averages));
   return edge * std::exp2(last_spectrum(samples) - last_level(samples));
@@ -152,45 +144,47 @@ Eigen::MatrixXd cosines(std::size_t n, std::size_t count) {
 }
 
 // w'Γw of the Toeplitz matrix of a term.
-Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::size_t term) {
+Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariances> covariance,
+                          std::size_t term) {
   const Eigen::Index n = w.rows();
-  if (term == kN) return w.transpose() * w;
-  if (term == kQ) {  // 2 on the diagonal, −1 beside it
-    const Eigen::MatrixXd beside = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
-    return 2.0 * w.transpose() * w - beside - beside.transpose();
+  const auto at = [&](Eigen::Index lag) { return covariance[static_cast<std::size_t>(lag)][term]; };
+  if (term == kB) {
+    Eigen::VectorXd lag(n);
+    for (Eigen::Index i = 0; i < n; ++i) lag[i] = at(i);
+    Eigen::MatrixXd product(n, w.cols());
+    for (Eigen::Index i = 0; i < n; ++i)
+      product.row(i) = lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
+                       lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i);
+    return w.transpose() * product;
   }
+  // Quantisation and white noise end at a lag of one; a random walk's is −|lag|/2 from two on, that of a
+  // running sum up to constants, which columns without a mean do not see.
+  const double walk = term == kK ? 1.0 : 0.0;
+  const Eigen::MatrixXd beside = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
+  Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (beside + beside.transpose());
   if (term == kK) {
-    // −|lag|/2 is the covariance of a running sum, up to constants, which columns without a mean do not see;
-    // the averages take a sixth off at lag zero.
     Eigen::MatrixXd sums = w;
     for (Eigen::Index i = 1; i < n; ++i) sums.row(i) += sums.row(i - 1);
-    return sums.transpose() * sums - w.transpose() * w / 6.0;
+    out += sums.transpose() * sums;
   }
-  Eigen::VectorXd lag(n);
-  for (Eigen::Index i = 0; i < n; ++i) lag[i] = covariance_of_rate(static_cast<double>(i))[term];
-  Eigen::MatrixXd product(n, w.cols());
-  for (Eigen::Index i = 0; i < n; ++i)
-    product.row(i) = lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
-                     lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i);
-  return w.transpose() * product;
+  return out;
 }
 
-SlowPart slow_part(const double* angle, std::size_t samples) {
+SlowPart slow_part(const AngleMeans& means, std::size_t samples) {
   const int level = last_level(samples);
-  const Averages averages{angle, std::size_t{1} << level, samples >> level};
-  const auto n = static_cast<Eigen::Index>(averages.count);
-  const Eigen::MatrixXd w = cosines(averages.count, slow_count(averages.count));
+  const std::size_t count = means.rates(level);
+  const auto n = static_cast<Eigen::Index>(count);
+  const Eigen::MatrixXd w = cosines(count, slow_count(count));
   Eigen::VectorXd rate(n), ramp(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    rate[i] = averages.at(static_cast<std::size_t>(i));
-    ramp[i] =
-        (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)) * static_cast<double>(averages.step);
-  }
+  means.rates(level, 0, {rate.data(), count});
+  for (Eigen::Index i = 0; i < n; ++i)
+    ramp[i] = (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)) * std::exp2(level);
   SlowPart part;
   part.value = w.transpose() * rate;
   part.ramp = w.transpose() * ramp;
-  const TermVariances scale = scale_of(static_cast<double>(averages.step));
-  for (std::size_t t = 0; t < kTerms; ++t) part.covariance[t] = scale[t] * projected(w, t);
+  const TermVariances unit = level_unit(level);
+  for (std::size_t t = 0; t < kTerms; ++t)
+    part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
   return part;
 }
 
@@ -201,20 +195,19 @@ class Level {
     bins_.resize(power_.size());
   }
 
-  void add(const double* angle, std::size_t samples) {
-    const Averages averages{angle, std::size_t{1} << level_, samples >> level_};
-    const std::size_t size = segment_.size();
-    if (averages.count < size || level_ > last_spectrum(samples)) return;
+  void add(const AngleMeans& means, std::size_t samples) {
+    const std::size_t size = segment_.size(), count = means.rates(level_);
+    if (count < size || level_ > last_spectrum(samples)) return;
     // As many as overlap by half, spread from the first sample to the last.
-    std::size_t segments = (averages.count - size + size / 2 - 1) / (size / 2) + 1;
+    std::size_t segments = (count - size + size / 2 - 1) / (size / 2) + 1;
     segments = std::min(segments, kMostSegments);
     const double hop =
-        segments > 1 ? static_cast<double>(averages.count - size) / static_cast<double>(segments - 1) : 0.0;
+        segments > 1 ? static_cast<double>(count - size) / static_cast<double>(segments - 1) : 0.0;
     std::fill(power_.begin(), power_.end(), 0.0);
     std::vector<double> rate(size);
     for (std::size_t s = 0; s < segments; ++s) {
       const auto begin = static_cast<std::size_t>(hop * static_cast<double>(s));
-      for (std::size_t i = 0; i < size; ++i) rate[i] = averages.at(begin + i);
+      means.rates(level_, begin, rate);
       segment_.add_power(rate, power_);
     }
     const double degrees =
@@ -232,14 +225,13 @@ class Level {
 
   // Ascending in frequency.
   [[nodiscard]] std::vector<SpectralBin> bins() const {
-    const TermVariances scale = scale_of(std::exp2(level_));
     std::vector<SpectralBin> out;
     for (std::size_t k = 1; k < bins_.size(); ++k) {
       SpectralBin bin = bins_[k];
       if (bin.degrees == 0.0) continue;
       bin.frequency = static_cast<double>(k) / static_cast<double>(segment_.size()) / std::exp2(level_);
       bin.power /= bin.degrees;
-      for (std::size_t t = 0; t < kTerms; ++t) bin.expected[t] = scale[t] * segment_.expected(k)[t];
+      bin.expected = segment_.expected(level_, k);
       out.push_back(bin);
     }
     return out;
@@ -259,20 +251,23 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   // Most records have room for whole segments, whose table is made once.
   static const Segment kWhole(kSegment);
   Segment segment = sum.longest() >= kSegment ? kWhole : Segment(std::bit_floor(sum.longest()));
+  std::vector<AngleMeans> means;
+  for (const AngleSum::Part& part : sum.parts())
+    means.emplace_back(std::span(sum.angle()).subspan(part.first, part.angles));
   for (int l = last_spectrum(sum.longest()); l >= 0; --l) {
     Level level(segment, l);
-    for (const AngleSum::Part& part : sum.parts())
-      level.add(sum.angle().data() + part.first, part.angles - 1);
+    for (std::size_t p = 0; p < means.size(); ++p) level.add(means[p], sum.parts()[p].angles - 1);
     for (const SpectralBin& bin : level.bins()) spectrum.bins.push_back(bin);
   }
   std::sort(spectrum.bins.begin(), spectrum.bins.end(),
             [](const SpectralBin& a, const SpectralBin& b) { return a.frequency < b.frequency; });
-  std::vector<AngleSum::Part> slow = sum.parts();
-  std::sort(slow.begin(), slow.end(), [](const auto& a, const auto& b) { return a.angles > b.angles; });
+  std::vector<std::size_t> slow(means.size());
+  std::iota(slow.begin(), slow.end(), std::size_t{0});
+  const auto samples = [&](std::size_t p) { return sum.parts()[p].angles - 1; };
+  std::sort(slow.begin(), slow.end(), [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
   slow.resize(std::min(slow.size(), kMostSlowParts));
-  for (const AngleSum::Part& part : slow)
-    if (part.angles > kShortestStretch)
-      spectrum.slow.push_back(slow_part(sum.angle().data() + part.first, part.angles - 1));
+  for (const std::size_t p : slow)
+    if (samples(p) >= kShortestStretch) spectrum.slow.push_back(slow_part(means[p], samples(p)));
   leave_out_lines(spectrum);
   return spectrum;
 }

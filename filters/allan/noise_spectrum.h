@@ -1,12 +1,13 @@
 // What a record says about its noise terms, in numbers whose distribution under any mixture of them is known:
-//   - bins of spectra of the record averaged over 1, 2, 4, … samples: sine-windowed segments that overlap by
+//   - bins of spectra of the record at steps of 1, 2, 4, … samples (angle_means.h): sine-windowed segments
+//   that overlap by
 //     half, which use every sample alike, each less its mean and slope. A bin is gamma distributed about a
 //     mean that is linear in the terms' variances, computed from the terms' covariance, leakage and aliasing
 //     included;
-//   - below 16 cycles a stretch, the cosine transform (DCT-II) of its averages: Gaussian with a covariance
+//   - below 16 cycles a stretch, the cosine transform (DCT-II) of it at the coarsest step: Gaussian with a
+//   covariance
 //     that is exact, so that what happens once in a record counts for once.
 //
-// Averages of Q, N, B, K noise are such noise again (power_law.h), so one table of means serves every level.
 // Unlike a difference variance a bin is narrow: a line or a resonance spoils a few bins, which are seen to
 // stand out from their neighbours and left out.
 #pragma once

@@ -230,8 +230,8 @@ std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) cons
             : is_guide ? "guide "
                        : "line ") +
            name + "\" d=\"" + d + "\"/>\n";
-    if (is_guide && sx.drawable(s.word.x) && sy.drawable(s.word.y))
-      named += words("word", sx(s.word.x), sy(s.word.y), s.word.anchor, s.word.text);
+    if (is_guide && !s.word.text.empty() && sx.drawable(s.word.x) && sy.drawable(s.word.y))
+      named += words(("word " + name).c_str(), sx(s.word.x), sy(s.word.y), s.word.anchor, s.word.text);
   }
   return out + named + "</svg>\n";
 }

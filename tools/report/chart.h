@@ -25,7 +25,8 @@ class Chart {
   void line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high);
-  // A thin dashed curve that is no data and does not widen the axes, with a word at a place of its own.
+  // A thin dashed curve that is no data and does not widen the axes, with a word of its colour at a place of
+  // its own, or without one.
   struct Word {
     std::string text;
     double x = 0.0, y = 0.0;        // in data

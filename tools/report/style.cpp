@@ -26,6 +26,13 @@ constexpr const char* kChartRules = R"css(
 .chart .band.raw{fill:var(--raw)}
 .chart .band.third{fill:var(--third)}
 .chart .band.fourth{fill:var(--fourth)}
+.chart .word.before{fill:var(--before)}
+.chart .word.after{fill:var(--after)}
+.chart .word.fit{fill:var(--fit)}
+.chart .word.second{fill:var(--second)}
+.chart .word.raw{fill:var(--raw)}
+.chart .word.third{fill:var(--third)}
+.chart .word.fourth{fill:var(--fourth)}
 .chart .dots{fill:none;stroke-linecap:round;stroke-width:4.2}
 .chart .line.before,.chart .guide.before,.chart .dots.before{stroke:var(--before)}
 .chart .line.before{stroke-width:1.1}

@@ -81,7 +81,7 @@ ifog::TermVariances squares_of(const Case& c) {
 
 struct Tally {
   std::array<std::array<std::vector<int>, 2>, 3> inside;  // by estimator, confidence, octave
-  std::array<int, kTerms> present{}, bound_holds{}, absent{};
+  std::array<int, kTerms> present{}, bound_holds{}, absent{}, upper_holds{};
   std::array<double, kTerms> square{}, sum{};
   std::array<int, kTerms> within{};
   int ramps = 0;
@@ -127,6 +127,7 @@ void judge_terms(const Case& c, const ifog::NoiseCoefficients& found, Tally& tal
   tally.ramps += found.R.present ? 1 : 0;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const ifog::NoiseCoefficient& term = *terms[t];
+    tally.upper_holds[t] += term.upper >= c.truth[t] ? 1 : 0;
     if (!term.present) {
       ++tally.absent[t];
       tally.bound_holds[t] += term.upper >= c.truth[t] ? 1 : 0;
@@ -181,11 +182,17 @@ void print(const Case& c, const Tally& tally, const std::vector<std::size_t>& m,
   std::fflush(stdout);
 }
 
+// Of error over error bar, in one case.
+double width_of(const Tally& tally, std::size_t term) {
+  const double found = tally.present[term], mean = tally.sum[term] / found;
+  return std::sqrt(std::max(0.0, tally.square[term] / found - mean * mean));
+}
+
 // Over all cases.
 struct Summary {
   int should = 0, did = 0, false_chances = 0, false_terms = 0, ramps = 0, ramp_chances = 0, bounds = 0,
-      held = 0;
-  double z_square = 0.0, z_count = 0.0;
+      held = 0, uppers = 0, uppers_held = 0, widths = 0, widths_kept = 0;
+  double least_held = 1.0, narrowest = 10.0, widest = 0.0;
   struct Coverage {
     double lowest = 1.0, highest = 0.0, sum = 0.0, octaves = 0.0, far = 0.0;  // far: by more than 4 points
   };
@@ -195,15 +202,26 @@ struct Summary {
     ramps += tally.ramps;
     ramp_chances += records;
     for (std::size_t t = 0; t < kTerms; ++t) {
-      bounds += tally.absent[t];
-      held += tally.bound_holds[t];
       if (c.truth[t] == 0.0) {
         false_chances += records;
         false_terms += tally.present[t];
         continue;
       }
-      z_square += tally.square[t];
-      z_count += tally.present[t];
+      // Where there is a term to fall below; nothing falls below zero.
+      bounds += tally.absent[t];
+      held += tally.bound_holds[t];
+      uppers += records;
+      uppers_held += tally.upper_holds[t];
+      least_held = std::min(least_held, static_cast<double>(tally.upper_holds[t]) / records);
+      // Where the term is seen in few records, those that show too much of it are chosen, and no error bar is
+      // kept.
+      if (2 * tally.present[t] >= records) {
+        const double width = width_of(tally, t);
+        ++widths;
+        widths_kept += width >= 0.9 && width <= 1.1 ? 1 : 0;
+        narrowest = std::min(narrowest, width);
+        widest = std::max(widest, width);
+      }
       if (largest_share(c, m, t) < 0.3) continue;
       should += records;
       did += tally.present[t];
@@ -237,8 +255,13 @@ struct Summary {
                 percent(false_terms, false_chances), false_chances, percent(ramps, ramp_chances),
                 ramp_chances);
     std::printf(
-        "Printed bounds at or above the truth: %.2f %% of %d. Error over error bar: root mean square %.2f.\n",
-        percent(held, bounds), bounds, std::sqrt(z_square / std::max(1.0, z_count)));
+        "Bounds printed for terms that are there and not seen, at or above the truth: %.2f %% of %d. Upper "
+        "limits of all terms that are there, seen or not: %.2f %% of %d, least of a case %.1f %%.\n",
+        percent(held, bounds), bounds, percent(uppers_held, uppers), uppers, 100.0 * least_held);
+    std::printf(
+        "Width of error over error bar, by case and term seen in half of the records or more: %.2f … %.2f, "
+        "within 0.9 to 1.1 in %d of %d.\n",
+        narrowest, widest, widths_kept, widths);
   }
 };
 

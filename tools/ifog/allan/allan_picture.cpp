@@ -16,6 +16,8 @@ namespace {
 
 using report::Chart;
 
+constexpr std::size_t kMostWithLines = 3;
+
 struct Curve {
   std::vector<double> tau_s, sigma, low, high;  // °/h, τ ascending
 };
@@ -82,11 +84,18 @@ double height_at(const Curve& curve, double tau) {
   return curve.sigma[i - 1] * std::pow(curve.sigma[i] / curve.sigma[i - 1], part);
 }
 
-// The fitted terms as the straight lines that they are, each with its letter and value where the word is
-// farthest from every line and every other word.
+std::string in_words(const NoiseCoefficients& fit, const NamedCoefficient& named) {
+  const double value = (fit.*named.member).value * named.factor;
+  return std::string(named.letter) + " = " + report::number(value) + " " + named.unit;
+}
+
+// The fitted terms as the straight lines that they are. Of one record each has its letter and value where the
+// word is farthest from every line and every other word; of several there is no such room, and their values
+// stand beside the curves' names.
 class TermLines {
  public:
-  TermLines(const std::vector<Curve>& curves, const Extent& extent) : extent_(extent), obstacles_(curves) {}
+  TermLines(const std::vector<Curve>& curves, const Extent& extent)
+      : extent_(extent), obstacles_(curves), worded_(curves.size() == 1) {}
 
   void add(report::Role role, const NoiseCoefficients& fit, const NamedCoefficient& named) {
     NoiseCoefficients alone;
@@ -101,16 +110,14 @@ class TermLines {
       line.sigma.push_back(term / kDegreePerHour);
     }
     if (line.tau_s.size() < 2) return;
-    const double value = (fit.*named.member).value * named.factor;
-    terms_.push_back({role, obstacles_.size(),
-                      std::string(named.letter) + " = " + report::number(value) + " " + named.unit});
+    terms_.push_back({role, obstacles_.size(), worded_ ? in_words(fit, named) : ""});
     obstacles_.push_back(std::move(line));
   }
 
   void draw(Chart& chart) {
     for (const Term& term : terms_) {
       const Curve line = obstacles_[term.line];  // a copy: the words placed are added to the obstacles
-      chart.guide(term.role, line.tau_s, line.sigma, place(term.words, line));
+      chart.guide(term.role, line.tau_s, line.sigma, worded_ ? place(term.words, line) : Chart::Word{});
     }
   }
 
@@ -158,6 +165,7 @@ class TermLines {
 
   const Extent& extent_;
   std::vector<Curve> obstacles_;
+  bool worded_;
   std::vector<Term> terms_;
 };
 
@@ -179,23 +187,28 @@ Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& reco
   for (std::size_t r = 0; r < records.size(); ++r)
     chart.band(report::role_of(r), curves[r].tau_s, curves[r].low, curves[r].high);
   TermLines terms(curves, extent);
-  // For as many records as the eye can take.
-  for (std::size_t r = 0; r < std::min<std::size_t>(records.size(), 3); ++r) {
+  std::vector<std::string> labels;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    labels.push_back(records.size() == 1 ? "" : title_of(records[r], several));
     // A filter's output is not made of the standard's terms, and a curve that covers another needs no second
     // set of words.
     const bool covered = r > 0 && curves[r].sigma == curves[r - 1].sigma;
     if (!records[r].fit || records[r].signal == "denoised" || covered) continue;
-    for (const NamedCoefficient& named : named_coefficients())
-      if (((*records[r].fit).*named.member).present) terms.add(report::role_of(r), *records[r].fit, named);
+    const char* before = ": ";
+    for (const NamedCoefficient& named : named_coefficients()) {
+      if (!((*records[r].fit).*named.member).present) continue;
+      // Lines for as many records as the eye can take.
+      if (r < kMostWithLines) terms.add(report::role_of(r), *records[r].fit, named);
+      if (records.size() == 1) continue;
+      labels[r] += std::exchange(before, ", ") + in_words(*records[r].fit, named);
+    }
   }
   terms.draw(chart);
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::string name = title_of(records[r], several);
-    const std::string label = records.size() == 1 ? "" : name;
     if (curves[r].tau_s.size() > 12)
-      chart.line(report::role_of(r), label, curves[r].tau_s, curves[r].sigma);
+      chart.line(report::role_of(r), labels[r], curves[r].tau_s, curves[r].sigma);
     else
-      chart.points(report::role_of(r), label, curves[r].tau_s, curves[r].sigma);
+      chart.points(report::role_of(r), labels[r], curves[r].tau_s, curves[r].sigma);
   }
   return chart;
 }
