@@ -16,6 +16,7 @@
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/smoother.h"
+#include "filters/model_file/kept_noise.h"
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
@@ -31,7 +32,7 @@ namespace ifog::tools {
 namespace {
 
 struct Options {
-  std::string capture, output, model, config, sensor, json, picture;
+  std::string capture, output, model, config, sensor, json, picture, noise;
   double nominal_rate_hz = 0.0, start_up_s = 0.0;
   CaptureInput input;
   FilterChoice filter;
@@ -193,6 +194,7 @@ OfflineSettings settings_of(Options& options, const InputFile& capture) {
   if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
   if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;
   out.model = read_sensor_model(out.sensor);
+  if (!options.noise.empty()) out.learned = read_kept_noise(options.noise).noise;
   return out;
 }
 
@@ -294,6 +296,11 @@ void add_denoise(CLI::App& app) {
   command->add_flag("--smooth", options->smooth,
                     "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
   command->add_option("--model", options->model, "Model file of the sensor")->type_name("FILE");
+  command
+      ->add_option(
+          "--noise", options->noise,
+          "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
+      ->type_name("FILE");
   command->add_option("--config", options->config, "Take all settings from the daemon's configuration")
       ->type_name("FILE");
   command->add_option("--sensor", options->sensor, "Which sensor of the configuration")->type_name("NAME");

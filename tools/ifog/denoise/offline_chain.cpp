@@ -93,6 +93,7 @@ OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& set
   chain_settings.filter = settings.sensor.filter;
   chain_settings.start_up_s = settings.sensor.start_up_s;
   chain_settings.model = settings.model;
+  chain_settings.learned = settings.learned;
   Chain chain(chain_settings);
   Reading reading;
   ChainOutput out;
@@ -117,8 +118,8 @@ OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& set
 
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink) {
-  const ChainSettings chain_settings =
-      sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  chain_settings.learned = settings.learned;
   const SensorFacts& facts = chain_settings.facts;
   Chain chain(chain_settings);
   Reading reading;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,9 @@
 namespace ifog::tools {
 
 struct OfflineSettings {
-  SensorConfig sensor;                 // model, filter, options, channels; its transport is not used
-  std::shared_ptr<const Model> model;  // null: none
+  SensorConfig sensor;                  // model, filter, options, channels; its transport is not used
+  std::shared_ptr<const Model> model;   // null: none
+  std::optional<LearnedNoise> learned;  // ChainSettings::learned
 };
 
 // One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step times.
