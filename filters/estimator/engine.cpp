@@ -16,8 +16,9 @@ constexpr double kHealthMemory = 512.0;
 constexpr double kBeyond = 3.0;
 constexpr double kLost = 0.5;
 constexpr double kWell = 0.1;
-// Steps between refreshes of the settled filter's lag, a small linear solve.
-constexpr int kLagEvery = 256;
+// Samples between refreshes of the settled filter's lag, a small linear solve; by the sequence, so that a
+// part of a recording has them where the whole has.
+constexpr std::uint64_t kLagEvery = 256;
 // Samples: what was not tested at the beginning belongs to no manoeuvre that begins later.
 constexpr double kUntestedKept = 256.0;
 // So many lags after it was moved the filter at rest has settled. Of n measurements it takes the mean, with
@@ -80,7 +81,7 @@ void Engine::restart() noexcept {
   motion_ = Motion::at_rest;
   untested_ = {};
   since_moved_ = at_rest_for_ = 0.0;
-  until_lag_ = 0;
+  lag_turn_ = kNoTurn;
 }
 
 void Engine::recall_colour(const Axes& colour) noexcept {
@@ -345,8 +346,8 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     health_.colour[a] = noise_[a].colour();
   }
   health_.floor_hits = rest_->rule().floor_hits();
-  if (--until_lag_ <= 0) {
-    until_lag_ = kLagEvery;
+  if (const std::uint64_t turn = m.in.sequence / kLagEvery; turn != lag_turn_) {
+    lag_turn_ = turn;
     refresh_lag();
   }
   // A tracker has no lag in a rate, slope or curvature that lasts.

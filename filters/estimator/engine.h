@@ -130,7 +130,8 @@ class Engine {
   double heard_scale_ = 1.0;    // Measurement::noise_scale of the last one
   double lag_s_ = 0.0;
   double longest_lag_ = 0.0;  // samples
-  int until_lag_ = 0;
+  static constexpr std::uint64_t kNoTurn = ~std::uint64_t{0};
+  std::uint64_t lag_turn_ = kNoTurn;  // of the last refresh of the lag
 };
 
 }  // namespace ifog
