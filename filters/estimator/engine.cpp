@@ -264,7 +264,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
 }
 
 bool Engine::rests(const Measurement& m) const noexcept {
-  if (!follow_manoeuvres_ || in_manoeuvre_ || lost_ || published_.passed_over || m.valid == 0 ||
+  if (!follow_manoeuvres_ || in_manoeuvre() || lost_ || published_.passed_over || m.valid == 0 ||
       (m.valid & ~m.tested) != 0 || at_rest_for_ < kRestMemory || change_.suspected())
     return false;
   for (std::size_t a = 0; a < axes_; ++a)
