@@ -243,6 +243,7 @@ void read_daemon(const toml::table& table, Config& out, Context& context) {
   take(in.text("lcm_url"), out.lcm_url);
   take(in.choice("log_level", {"debug", "info", "warning", "error"}), out.log_level);
   take(in.boolean("lock_memory"), out.lock_memory);
+  if (const auto folder = in.text("state_folder")) out.state_folder = context.absolute(*folder);
   in.refuse_the_rest();
 }
 
@@ -288,7 +289,8 @@ std::string Config::restart_for(const Config& other) const {
   return differing({{"plugin_folder", plugin_folders == other.plugin_folders},
                     {"lcm_url", lcm_url == other.lcm_url},
                     {"log_level", log_level == other.log_level},
-                    {"lock_memory", lock_memory == other.lock_memory}});
+                    {"lock_memory", lock_memory == other.lock_memory},
+                    {"state_folder", state_folder == other.state_folder}});
 }
 
 Config parse_config(const std::string& text, const std::string& path) {

@@ -91,6 +91,7 @@ struct Config {
   std::vector<std::string> plugin_folders;
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   std::string log_level = "info";
+  std::string state_folder;  // where learned noise is kept; "": the service manager's STATE_DIRECTORY, if any
   bool lock_memory = true;
   std::vector<SensorConfig> sensors;
 

@@ -123,6 +123,8 @@ bool Housekeeping::open_all() {
 void Housekeeping::start_all() {
   for (const auto& sensor : sensors_) {
     for (const std::string& effect : sensor->parts.left_out) sensor->log->warn("not corrected: {}", effect);
+    if (const NoiseMemory& noise = sensor->parts.noise; !noise.remark().empty())
+      sensor->log->log(noise.good() ? spdlog::level::info : spdlog::level::warn, "{}", noise.remark());
     try {
       if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
         sensor->log->warn("{}", missed);
@@ -189,6 +191,13 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   sensor.fault = message.fault;
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
   publish(sensor);
+  keep_noise(sensor, false);
+}
+
+void Housekeeping::keep_noise(Sensor& sensor, bool at_once) {
+  if (!sensor.snapshot.learned) return;
+  const std::string complaint = sensor.parts.noise.keep(*sensor.snapshot.learned, monotonic_ns(), at_once);
+  if (!complaint.empty()) sensor.log->warn("{}", complaint);
 }
 
 bool Housekeeping::all_alive() const {
@@ -237,8 +246,10 @@ void Housekeeping::reload() {
     config.filter = found->filter;
     config.start_up_s = found->start_up_s;
     try {
-      auto parts = std::make_unique<ChainParts>(sensor_chain_settings(
-          config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config)));
+      ChainSettings settings = sensor_chain_settings(
+          config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
+      settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
+      auto parts = std::make_unique<ChainParts>(settings);
       renewed.push_back({sensor.get(), std::move(config), std::move(parts)});
     } catch (const std::exception& error) {
       errors.push_back("sensor \"" + printable(config.name) + "\": " + error.what());
@@ -268,6 +279,7 @@ void Housekeeping::stop_all() {
   for (const auto& sensor : sensors_) {
     drain_events(*sensor);
     report_second(*sensor, 0.0);
+    keep_noise(*sensor, true);
     const status_t& message = sensor->report.message();
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);

@@ -50,6 +50,7 @@ class Housekeeping {
   void publish(Sensor& sensor);
   // The status of every sensor, and the service manager's sign of life.
   void each_second(double interval_s);
+  static void keep_noise(Sensor& sensor, bool at_once);
   [[nodiscard]] bool all_alive() const;
   // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
   void reload();

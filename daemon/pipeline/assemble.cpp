@@ -10,11 +10,12 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
                          std::unique_ptr<Publisher> publisher) {
   DriverInstance driver = make_sensor_driver(sensor, config.plugin_folders);
   std::unique_ptr<Transport> transport = make_sensor_transport(sensor, driver);
-  const ChainSettings settings =
-      sensor_chain_settings(sensor, driver.description(), read_sensor_model(sensor));
+  ChainSettings settings = sensor_chain_settings(sensor, driver.description(), read_sensor_model(sensor));
   AssembledSensor out;
   out.channels = settings.channels;
   out.outside = std::make_shared<ChannelTable>(settings.facts.channels - settings.facts.frame_channels);
+  out.noise = NoiseMemory(state_folder(config.state_folder), sensor.name, sensor.driver, settings.facts);
+  settings.learned = out.noise.recalled();
   auto parts = std::make_unique<ChainParts>(settings);
   out.left_out = parts->left_out();
   PipelinePlan plan;

@@ -7,6 +7,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/pipeline/pipeline.h"
+#include "daemon/sensor/noise_memory.h"
 
 namespace ifog {
 
@@ -14,6 +15,7 @@ struct AssembledSensor {
   std::unique_ptr<Pipeline> pipeline;
   std::shared_ptr<ChannelTable> outside;
   std::vector<std::string> channels;  // names, as in ChainSettings
+  NoiseMemory noise;
   std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
 };
 

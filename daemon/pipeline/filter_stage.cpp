@@ -159,6 +159,7 @@ bool FilterStage::answer() noexcept {
   const ChainParts& parts = chain_.parts();
   current_.has_health = parts.health() != nullptr;
   current_.health = chain_.health();
+  current_.learned = parts.learned();
   current_.books = {.samples = counters_.device_samples.value(),
                     .sent = counters_.published.value(),
                     .failed = counters_.lcm_failures.value(),

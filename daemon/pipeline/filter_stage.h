@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "daemon/health/books.h"
@@ -31,8 +32,9 @@ struct FilterSnapshot {
     channel_age_s.fill(std::numeric_limits<float>::infinity());
   }
   EstimatorHealth health;
-  bool has_health = false;   // false during start-up
-  LatencyHistogram latency;  // since the snapshot before
+  bool has_health = false;              // false during start-up
+  std::optional<LearnedNoise> learned;  // ChainParts::learned()
+  LatencyHistogram latency;             // since the snapshot before
   std::array<double, kMaxChannels> channel;
   std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};

@@ -27,6 +27,7 @@ std::int32_t flags(const Increment& in, const ChainOutput& out) noexcept {
   pass(out.estimate.flags, kManoeuvre, rate_t::FLAG_MANOEUVRE);
   pass(out.estimate.flags, kRestarted, rate_t::FLAG_FILTER_RESET);
   pass(out.estimate.flags, kStuck, rate_t::FLAG_STUCK);
+  pass(out.estimate.flags, kAtRest, rate_t::FLAG_AT_REST);
   return flags;
 }
 

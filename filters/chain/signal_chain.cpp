@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::size_t kLeastStartUp = 256;
 constexpr std::size_t kMostStartUp = 20000;
+// Of the driving noise of a sample over the measurement's, of start-up data, where changes of rate are
+// followed. Ten thousand times any gyro's: what looks quicker was a motion, and a filter that is quicker than
+// the trackers of motions would never be found at rest again, nor learn better.
+constexpr double kMostStartUpRatio = 1e-3;
 
 }  // namespace
 
@@ -35,8 +39,11 @@ ChainParts::ChainParts(const ChainSettings& settings)
   }
   filter_ = settings_in_force(settings.filter, std::move(base));
   learns_process_noise_ = filter_.process_noise <= 0.0 && filter_.state == "random-walk";
+  learns_measurement_noise_ = filter_.measurement_noise <= 0.0;
+  if (settings.learned) recall(*settings.learned);
   if (filter_.process_noise > 0.0 && filter_.measurement_noise > 0.0) {
     estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+    if (settings.learned && learns_measurement_noise_) estimator_->recall_colour(settings.learned->colour);
     return;
   }
   // Built once for its complaints: a wrong setting is told at start, not after the start-up seconds.
@@ -51,6 +58,25 @@ ChainParts::ChainParts(const ChainSettings& settings)
 }
 
 ChainParts::~ChainParts() = default;
+
+// A density learned of a random walk is none of another state model's.
+void ChainParts::recall(const LearnedNoise& learned) noexcept {
+  if (filter_.state != "random-walk") return;
+  if (learns_measurement_noise_) filter_.measurement_noise = learned.measurement_noise;
+  if (!learns_process_noise_) return;
+  filter_.process_noise = learned.process_noise;
+  rest_measurement_noise_ = learned.measurement_noise;
+  rest_noise_.recall(learned.octaves);
+}
+
+std::optional<LearnedNoise> ChainParts::learned() const noexcept {
+  if (!learns_process_noise_ || !estimator_ || !(rest_measurement_noise_ > 0.0)) return std::nullopt;
+  const EstimatorHealth& health = estimator_->health();
+  return LearnedNoise{.process_noise = filter_.process_noise,
+                      .measurement_noise = rest_measurement_noise_,
+                      .colour = health.colour,
+                      .octaves = rest_noise_.known()};
+}
 
 void ChainParts::use_effects(const ChainSettings& settings) {
   // Each channel has a limit of its own: the compensator is given ages in units of it.
@@ -120,8 +146,13 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
     start_up_[axis * start_up_size_ + collected_] = out.compensated_radps[axis];
   if (++collected_ < start_up_size_) return;
   const NoiseEstimate noise = estimate_noise(start_up_, facts_.axes, period_s_);
-  if (filter_.process_noise <= 0.0) filter_.process_noise = noise.process_noise;
-  if (filter_.measurement_noise <= 0.0) filter_.measurement_noise = noise.measurement_noise;
+  if (learns_measurement_noise_) filter_.measurement_noise = noise.measurement_noise;
+  if (filter_.process_noise <= 0.0) {
+    filter_.process_noise = noise.process_noise;
+    if (learns_process_noise_ && filter_.follow_manoeuvres)
+      filter_.process_noise =
+          std::min(noise.process_noise, kMostStartUpRatio * filter_.measurement_noise / period_s_);
+  }
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
   estimator_->owe(owed_);
 } catch (const std::exception&) {
@@ -133,11 +164,13 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
 // The random walk shows itself slowly: what start-up data said of it, perhaps under way, is corrected
 // whenever the sensor has rested long enough to say more.
 void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept {
-  const bool rests = (out.estimate.flags & (kManoeuvre | kGated)) == 0;
-  rest_noise_.take(out.compensated_radps, in.valid_axes, rests && (in.flags & kGapBefore) == 0);
+  RestSample is = (out.estimate.flags & kAtRest) != 0 ? RestSample::kRest : RestSample::kPassedOver;
+  if ((out.estimate.flags & kManoeuvre) != 0 || (in.flags & kGapBefore) != 0) is = RestSample::kMotion;
+  rest_noise_.take(out.compensated_radps, in.valid_axes, is);
   const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
   if (!found) return;
   filter_.process_noise = found->process_noise;
+  rest_measurement_noise_ = found->measurement_noise;
   estimator_->retune(found->process_noise);
 }
 

@@ -17,6 +17,7 @@
 #include "filters/effects/compensator.h"
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/first_samples.h"
+#include "filters/estimator/learned_noise.h"
 #include "filters/estimator/rest_noise.h"
 #include "filters/model_file/model.h"
 #include "filters/settings/filter_settings.h"
@@ -30,6 +31,8 @@ struct ChainSettings {
   std::vector<double> channel_max_age_s;  // older is stale; one a channel, 0: never
   FilterChoice filter;      // over the model's; process or measurement noise 0 or not said: from start-up
   double start_up_s = 4.0;  // of data for that
+  // By an earlier run of the same sensor: in place of start-up data where neither settings nor model say.
+  std::optional<LearnedNoise> learned;
   std::shared_ptr<const Model> model;  // null: nothing is compensated
 };
 
@@ -73,11 +76,14 @@ class ChainParts {
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
   // Effects of the model that cannot be corrected here, in words.
   [[nodiscard]] std::vector<std::string> left_out() const;
+  // What is worth keeping for the next start; nothing where the noise is told, or not known yet.
+  [[nodiscard]] std::optional<LearnedNoise> learned() const noexcept;
   // Null during start-up.
   [[nodiscard]] const EstimatorHealth* health() const { return estimator_ ? &estimator_->health() : nullptr; }
 
  private:
   friend class SignalChain;
+  void recall(const LearnedNoise& learned) noexcept;
   void use_effects(const ChainSettings& settings);
   void compensate(const Increment& in, ChainOutput& out) noexcept;
   void refuse_impossible(const Increment& in, ChainOutput& out) noexcept;
@@ -99,9 +105,10 @@ class ChainParts {
   std::size_t collected_ = 0;
   std::unique_ptr<Estimator> estimator_;
   FirstSamples first_samples_;
-  bool learns_process_noise_ = false;
+  bool learns_process_noise_ = false, learns_measurement_noise_ = false;
   RestNoise rest_noise_;
-  Axes owed_{};  // by the estimator before, until this one is there
+  double rest_measurement_noise_ = 0.0;  // as that has found it
+  Axes owed_{};                          // by the estimator before, until this one is there
   bool first_ = true;
 };
 

@@ -10,6 +10,12 @@ namespace {
 
 constexpr double kMemories = 3.0;
 constexpr double kLeastHorizon = 5.0;
+// Share of the evidence for a change that makes one suspected.
+constexpr double kSuspicion = 0.5;
+// A change may have begun: evidence since something last spoke for rest, and some of the kind that louder
+// noise gives none of. Both are there so seldom at rest that the published variance grows by some 3 %.
+constexpr double kHint = 2.0;
+constexpr double kHintUnknown = 0.4;
 // Least ratio: what speaks for rest must not delay what comes then.
 constexpr double kLeast = -5.0;
 // By how much less evidence is asked for after a motion, and for how long, samples.
@@ -39,8 +45,10 @@ ChangeTest::ChangeTest(bool rate_alone) : rate_alone_(rate_alone) {
 double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
 
 void ChangeTest::restart() noexcept {
+  hint_.reset();
+  suspected_ = false;
   for (Contest& contest : contests_) {
-    contest.ratio = contest.rest = contest.tracker = contest.rest_squares = 0.0;
+    contest.ratio = contest.begun = contest.rest = contest.tracker = contest.rest_squares = 0.0;
     for (Sum& sum : contest.sums) sum.angle = sum.normalised = 0.0;
   }
   relaxed_ = kRelaxed;
@@ -77,6 +85,9 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
   const double log_rest = logarithm(now.rest_factor);
   relaxed_ *= 1.0 - 1.0 / kRelaxedFor;
   double greatest = 0.0;
+  suspected_ = false;
+  hint_.reset();
+  double loudest = kHint;
   std::optional<std::size_t> best;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     Contest& contest = contests_[j];
@@ -103,18 +114,32 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
       gained -= std::max(contest.usual, 0.0);
     }
     contest.ratio = std::max(keep * contest.ratio + gained, kLeast);
+    contest.begun = std::max(keep * contest.begun + gained, 0.0);
     contest.rest = keep * contest.rest + rest_square;
     contest.tracker = keep * contest.tracker + tracker_square;
     contest.rest_squares = keep * contest.rest_squares + rest_square * rest_square;
     // A ratio over a long horizon is not looked at afresh with each sample.
-    const double asked = kEvidence - relaxed_ - logarithm(h / kLeastHorizon);
+    const double whole = kEvidence - logarithm(h / kLeastHorizon), asked = whole - relaxed_;
+    const double hinted = std::min(loudest, kSuspicion * whole);
+    if (contest.begun <= hinted && contest.ratio - asked <= greatest) continue;
+    const double unknown = unknown_variance(contest) / widest;
+    suspect(j, unknown, kSuspicion * whole, loudest);
     if (contest.ratio - asked <= greatest) continue;
     // That noise has become louder is the likelier, the less often the rate changes beside the filter's lag.
-    if (unknown_variance(contest) / widest <= logarithm(std::max(lag, 1.0))) continue;
+    if (unknown <= logarithm(std::max(lag, 1.0))) continue;
     greatest = contest.ratio - asked;
     best = j;
   }
   return best;
+}
+
+void ChangeTest::suspect(std::size_t tracker, double unknown, double enough, double& loudest) noexcept {
+  const Contest& contest = contests_[tracker];
+  suspected_ = suspected_ || std::min(contest.ratio, unknown) > enough;
+  // What trackers gain now and then on a model with more states is no sign of motion.
+  if (!rate_alone_ || contest.begun <= loudest || unknown <= kHintUnknown) return;
+  loudest = contest.begun;
+  hint_ = tracker;
 }
 
 double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept {

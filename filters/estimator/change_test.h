@@ -45,6 +45,11 @@ class ChangeTest {
   std::optional<std::size_t> take(const TrackerBank& trackers, const Surprise& now,
                                   const std::array<NoiseScale, kMaxAxes>& noise, double most,
                                   double lag) noexcept;
+  // Half of the evidence for a change has come together.
+  [[nodiscard]] bool suspected() const noexcept { return suspected_; }
+  // The tracker that speaks loudest for a change, before it says enough: a change may have begun, and the
+  // filter at rest may be as far off as that tracker is from it.
+  [[nodiscard]] std::optional<std::size_t> hint() const noexcept { return hint_; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
   // By which the variance of an axis's innovations summed over up to two lags is above white noise's: what
@@ -67,6 +72,7 @@ class ChangeTest {
   };
   struct Contest {
     double ratio = 0.0;  // log-likelihood ratio
+    double begun = 0.0;  // the same since it was last for rest
     double usual = 0.0;  // what a measurement adds to it, on average over many horizons
     // Of normalised squares over the horizon: the filter at rest's, the tracker's, and the squares of the
     // former, for the number of measurements they stand on.
@@ -74,12 +80,15 @@ class ChangeTest {
     std::array<Sum, kMaxAxes> sums{};
   };
 
+  void suspect(std::size_t tracker, double unknown, double enough, double& loudest) noexcept;
   double widen(Sum& sum, double normalised, double horizon, const NoiseScale& noise) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
 
   bool rate_alone_;
   std::array<Contest, TrackerBank::kMost> contests_{};
   double relaxed_ = 0.0;
+  bool suspected_ = false;
+  std::optional<std::size_t> hint_;
 };
 
 }  // namespace ifog

@@ -16,13 +16,16 @@ constexpr double kHealthMemory = 512.0;
 constexpr double kBeyond = 3.0;
 constexpr double kLost = 0.5;
 constexpr double kWell = 0.1;
-// Steps between refreshes of the settled filter's lag, a small linear solve.
-constexpr int kLagEvery = 256;
+// Samples between refreshes of the settled filter's lag, a small linear solve; by the sequence, so that a
+// part of a recording has them where the whole has.
+constexpr std::uint64_t kLagEvery = 256;
 // Samples: what was not tested at the beginning belongs to no manoeuvre that begins later.
 constexpr double kUntestedKept = 256.0;
 // So many lags after it was moved the filter at rest has settled. Of n measurements it takes the mean, with
 // gain 1 / n, until it has.
 constexpr double kSettledLags = 2.0;
+// Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 °/s.
+constexpr double kMostRestRate = 0.02;
 }  // namespace
 
 Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, SteadyGain* steady, int axes,
@@ -63,6 +66,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     publish_rest();
   }
   if (guard_) guard(m, out);
+  if (rests(m)) out.flags |= kAtRest;
   publish(m, out);
 }
 
@@ -77,7 +81,11 @@ void Engine::restart() noexcept {
   motion_ = Motion::at_rest;
   untested_ = {};
   since_moved_ = at_rest_for_ = 0.0;
-  until_lag_ = 0;
+  lag_turn_ = kNoTurn;
+}
+
+void Engine::recall_colour(const Axes& colour) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a) noise_[a].recall(colour[a]);
 }
 
 Axes Engine::owed() const noexcept {
@@ -255,6 +263,15 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     published_.variance[a] += m.innovation[a] * m.innovation[a];
 }
 
+bool Engine::rests(const Measurement& m) const noexcept {
+  if (!follow_manoeuvres_ || in_manoeuvre() || lost_ || published_.passed_over || m.valid == 0 ||
+      (m.valid & ~m.tested) != 0 || at_rest_for_ < kRestMemory || change_.suspected())
+    return false;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(started_, a) && !(std::abs(rest_->rate(a)) <= kMostRestRate)) return false;
+  return true;
+}
+
 // Divergence: a covariance that is no longer one, a state that is no number, or a filter that for long has
 // been further from the measurements than it believes possible, its rule having had all the time to adapt.
 // Either way it starts again from this measurement. If that does not help, the noise it was told is wrong,
@@ -279,7 +296,8 @@ void Engine::guard(const Measurement& m, EstimatorOutput& out) noexcept {
 }
 
 // At rest the variance is the filter's own where the noise is white. Half of it is noise; where neighbours
-// have something in common that is more by as much as their mean over a long time varies more.
+// have something in common that is more by as much as their mean over a long time varies more. Where a change
+// of rate may have begun, the filter may be as far off as the tracker that says so is from it.
 void Engine::publish_rest() noexcept {
   published_.gain = rest_->gain();
   // Of an innovation, as the filter believes it to be.
@@ -291,6 +309,10 @@ void Engine::publish_rest() noexcept {
     const double wider = change_.widening(trackers_, a, lag_samples());
     published_.variance[a] *= 0.5 * (1.0 + wider * std::max(1.0, noise_[a].rest() / believed));
     published_.variance[a] += noise_[a].rounding();
+    if (const auto hint = change_.hint()) {
+      const double apart = trackers_.rate(*hint, a) - rest_->rate(a);
+      published_.variance[a] += apart * apart;
+    }
   }
 }
 
@@ -321,10 +343,11 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     out.gain[a] = published_.gain;
     out.innovation_variance[a] = rest_->covariance();
     health_.measurement_noise[a] = rest_->rule().measurement_noise();
+    health_.colour[a] = noise_[a].colour();
   }
   health_.floor_hits = rest_->rule().floor_hits();
-  if (--until_lag_ <= 0) {
-    until_lag_ = kLagEvery;
+  if (const std::uint64_t turn = m.in.sequence / kLagEvery; turn != lag_turn_) {
+    lag_turn_ = turn;
     refresh_lag();
   }
   // A tracker has no lag in a rate, slope or curvature that lasts.

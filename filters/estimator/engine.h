@@ -32,6 +32,7 @@ class Engine {
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
   void retune(double process_noise) noexcept { rest_->retune(process_noise); }
+  void recall_colour(const Axes& colour) noexcept;
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
@@ -84,6 +85,7 @@ class Engine {
   void owe_to_manoeuvre(std::size_t axis) noexcept;
   void move_rest(const Axes& rate, double variance) noexcept;
   void guard(const Measurement& m, EstimatorOutput& out) noexcept;
+  [[nodiscard]] bool rests(const Measurement& m) const noexcept;
   void publish_rest() noexcept;
   void publish_mix(const Surprise& now) noexcept;
   void publish(const Measurement& m, EstimatorOutput& out) noexcept;
@@ -128,7 +130,8 @@ class Engine {
   double heard_scale_ = 1.0;    // Measurement::noise_scale of the last one
   double lag_s_ = 0.0;
   double longest_lag_ = 0.0;  // samples
-  int until_lag_ = 0;
+  static constexpr std::uint64_t kNoTurn = ~std::uint64_t{0};
+  std::uint64_t lag_turn_ = kNoTurn;  // of the last refresh of the lag
 };
 
 }  // namespace ifog

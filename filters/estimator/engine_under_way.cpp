@@ -144,6 +144,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   trackers_.correct(m.in.rate_radps, m.valid);
   update_rest(m, false);
   mix_.weigh(trackers_);
+  mix_.compare(trackers_, now);
   publish_mix(now);
   ledger_.pace(mix_.length(trackers_, rest_->gain()));
   judge_manoeuvre();

@@ -68,6 +68,7 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
 void Estimator::restart() noexcept { impl_->engine.restart(); }
 void Estimator::retune(double process_noise) noexcept { impl_->engine.retune(process_noise); }
+void Estimator::recall_colour(const Axes& colour) noexcept { impl_->engine.recall_colour(colour); }
 Axes Estimator::owed() const noexcept { return impl_->engine.owed(); }
 void Estimator::owe(const Axes& angle_rad) noexcept { impl_->engine.owe(angle_rad); }
 const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine.health(); }

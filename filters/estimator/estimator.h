@@ -29,6 +29,10 @@ enum EstimatorFlags : std::uint32_t {
   kManoeuvre = 2,  // change of rate detected, covariance raised
   kRestarted = 4,  // divergence: the filter started again from this measurement
   kStuck = 8,      // the sensor repeats one value
+  // All axes rest: no change of rate is found or suspected, none has been for 64 measurements, and no axis
+  // turns faster than 0.02 rad/s. A rate that is constant, or drifts as slowly as the noise, is not told from
+  // rest. Never without FilterSettings::follow_manoeuvres.
+  kAtRest = 16,
 };
 
 struct EstimatorOutput {
@@ -46,6 +50,7 @@ struct EstimatorHealth {
   Axes nis_mean{};   // exponentially averaged, 1 when the filter believes itself rightly
   Axes whiteness{};  // lag-1 autocorrelation of the innovations
   Axes measurement_noise{};
+  Axes colour{1.0, 1.0, 1.0};  // variance of the innovations over that of white noise as rough as they are
   double group_delay_s = 0.0;
   double correlation_time_s = 0.0;
   std::uint64_t gated = 0, manoeuvres = 0, floor_hits = 0, divergences = 0, restarts = 0;
@@ -64,6 +69,9 @@ class Estimator {
   void restart() noexcept;  // forget the state, keep the counters
   // Another driving noise, FilterSettings::process_noise, from the next step on; the state stays. > 0.
   void retune(double process_noise) noexcept;
+  // Before the first step: the noise's colour as an earlier filter of the sensor has found it,
+  // EstimatorHealth::colour; not told, it is found anew.
+  void recall_colour(const Axes& colour) noexcept;
   // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
   // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
   // step, so that a reload in a turn loses none.

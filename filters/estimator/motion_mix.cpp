@@ -26,12 +26,23 @@ constexpr double kForgetFailure = 0.9;
 // for long.
 constexpr double kMostSquare = 25.0;
 
+// Of what two trackers differ by so many of the longer one's memories are averaged.
+constexpr double kBiasMemories = 6.0;
+// From the trackers' impulse responses: the variance of the difference of two neighbours over the difference
+// of their variances, of the first two and of all others; and the covariance of any two over the variance of
+// the longer one. From memories of five samples on they hardly change.
+constexpr double kFirstApart = 0.09;
+constexpr double kApart = 0.65;
+constexpr double kShared = 1.4;
+
 double certain(double ratio) noexcept { return 1.0 / (1.0 + exponential(-std::clamp(ratio, -30.0, 30.0))); }
 
 }  // namespace
 
 void MotionMix::begin(double failed_after) noexcept {
   link_ = {};
+  bias_square_ = {};
+  compared_ = {};
   weight_ = {};
   weight_[0] = 1.0;
   rest_weight_ = rest_ratio_ = rest_age_ = 0.0;
@@ -101,15 +112,35 @@ double MotionMix::rate(const TrackerBank& trackers, std::size_t axis, double res
   return mean;
 }
 
+void MotionMix::compare(const TrackerBank& trackers, const Surprise& now) noexcept {
+  for (std::size_t j = 1; j < trackers.size(); ++j) {
+    const double most = kBiasMemories * trackers.length(j);
+    compared_[j] = std::min(compared_[j] + 1.0, most);
+    const double of_noise = (j == 1 ? kFirstApart : kApart) *
+                            std::max(0.0, trackers.output_factor(j - 1) - trackers.output_factor(j));
+    for (std::size_t a = 0; a < kMaxAxes; ++a) {
+      if ((now.valid >> a & 1U) == 0) continue;
+      const double apart = trackers.rate(j, a) - trackers.rate(j - 1, a);
+      double& square = bias_square_[a][j];
+      square += (apart * apart - of_noise * now.scale[a] - square) / compared_[j];
+    }
+  }
+}
+
 double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double rest, double rest_variance,
                            double scale) const noexcept {
-  const double mean = rate(trackers, axis, rest);
-  double sum = rest_weight_ * (rest_variance + (rest - mean) * (rest - mean));
+  double noise = 0.0, bias = 0.0, shorter = 0.0, mean = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
-    const double apart = trackers.rate(j, axis) - mean;
-    sum += weight_[j] * (trackers.output_factor(j) * scale + apart * apart);
+    const double longer = 1.0 - shorter;
+    if (j > 0) bias += longer * longer * std::max(0.0, bias_square_[axis][j]);
+    noise += trackers.output_factor(j) * weight_[j] * (weight_[j] + 2.0 * kShared * shorter);
+    shorter += weight_[j];
+    mean += weight_[j] * trackers.rate(j, axis);
   }
-  return sum;
+  // Either the filter at rest is right or the trackers are.
+  const double moving = 1.0 - rest_weight_;
+  const double apart = moving > 1e-9 ? rest - mean / moving : 0.0;
+  return noise * scale + bias + rest_weight_ * (rest_variance + moving * apart * apart);
 }
 
 double MotionMix::gain(const TrackerBank& trackers, double rest_gain) const noexcept {

@@ -24,8 +24,9 @@ class MotionMix {
   // After trackers.predict(), before correct(): judges the predictions. least: per axis the least normalised
   // square of all trackers; what none of them foresaw speaks against none of them.
   void judge(const TrackerBank& trackers, const Surprise& now, const Axes& least) noexcept;
-  // After everybody has taken the measurement in: the weights.
+  // After everybody has taken the measurement in: the weights; and what two trackers differ by.
   void weigh(const TrackerBank& trackers) noexcept;
+  void compare(const TrackerBank& trackers, const Surprise& now) noexcept;
   // The first tracker whose link has long been broken; size() when there is none.
   [[nodiscard]] std::size_t broken(const TrackerBank& trackers) noexcept;
 
@@ -37,7 +38,9 @@ class MotionMix {
 
   [[nodiscard]] double rest_weight() const noexcept { return rest_weight_; }
   [[nodiscard]] double rate(const TrackerBank& trackers, std::size_t axis, double rest) const noexcept;
-  // Of the mean, what the members differ by included.
+  // Of the mean. Trackers share their noise: what two of them have in common is the longer one's. A longer
+  // one has a bias in a motion it is too slow for: by as much it is further from the next shorter one, on
+  // average over a while, than noise alone makes it.
   [[nodiscard]] double variance(const TrackerBank& trackers, std::size_t axis, double rest,
                                 double rest_variance, double scale) const noexcept;
   [[nodiscard]] double gain(const TrackerBank& trackers, double rest_gain) const noexcept;
@@ -46,6 +49,10 @@ class MotionMix {
 
  private:
   std::array<double, TrackerBank::kMost> weight_{}, link_{};
+  // By axis and link: by how much the mean square of the two trackers' difference is above their noise's,
+  // (rad/s)^2, and from how many measurements.
+  std::array<std::array<double, TrackerBank::kMost>, kMaxAxes> bias_square_{};
+  std::array<double, TrackerBank::kMost> compared_{};
   double rest_weight_ = 0.0, rest_ratio_ = 0.0;
   double rest_age_ = 0.0, failed_after_ = 0.0;
 };

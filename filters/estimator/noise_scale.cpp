@@ -45,16 +45,21 @@ void NoiseScale::take(double rate) noexcept {
   last_ = {last_[1], last_[2], rate};
 }
 
+void NoiseScale::recall(double colour) noexcept {
+  if (colour > 1.0 && colour < kMostColour) recalled_ = colour;
+}
+
 // What was told counts only where the innovations are much louder than they are rough: motion or colour, and
 // nothing else says which.
 void NoiseScale::settle() noexcept {
   if (rough_count_ < kDifferent) rough_ = told_;
   const double rough = std::max(rough_, 1e-9 * told_);
   const double found = squares_ / learned_;
-  rest_ = found <= 2.0 * rough ? rough : std::max(told_, rough);
+  const double usual = recalled_ * rough;
+  rest_ = found <= 2.0 * usual ? usual : std::max(told_, usual);
   rough_ = rough;
   colour_ = rest_ / rough;
-  colour_count_ = kMemory;
+  colour_count_ = recalled_ > 1.0 ? kColourMemory : kMemory;
   known_ = true;
 }
 

@@ -18,6 +18,9 @@ class NoiseScale {
   // told: R, (rad/s)^2, believed until enough innovations at rest are there.
   explicit NoiseScale(double told = 1.0) : told_(told), rest_(told), local_(told) {}
 
+  // Before the first measurement: colour() as an earlier filter has found it.
+  void recall(double colour) noexcept;
+
   // The next measurement, scaled to the nominal period's noise. Call break_off() where one is missing.
   void take(double rate) noexcept;
   void break_off() noexcept { in_a_row_ = 0; }
@@ -55,6 +58,8 @@ class NoiseScale {
   static constexpr double kMemory = 1024.0;
   static constexpr double kColourMemory = 8192.0;
   static constexpr double kWhite = 1.25;
+  // Neighbours correlated by 0.9998; more is no noise.
+  static constexpr double kMostColour = 1e4;
   // Of the ratio of innovations to roughness so much counts for motion.
   static constexpr double kMotion = 0.5;
   // A square counts for this many variances at most, so that an outlier is none.
@@ -68,6 +73,7 @@ class NoiseScale {
 
   double told_, rest_, local_;
   double rough_ = 0.0, rough_count_ = 0.0;  // variance by third differences, measurements in it
+  double recalled_ = 1.0;                   // colour
   double colour_ = 1.0, colour_count_ = 0.0;
   double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise
   double squares_ = 0.0;

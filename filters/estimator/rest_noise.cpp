@@ -1,7 +1,7 @@
 #include "filters/estimator/rest_noise.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "filters/random/log_exp.h"
 
@@ -12,21 +12,53 @@ namespace {
 constexpr double kSurely = 6.0;
 // Second differences that overlap by two thirds count for half of their number.
 constexpr double kIndependent = 0.5;
+// Trials of the ratio of walk to noise: a factor apart, up to a walk that is all there is.
+constexpr double kStep = 1.2;
+constexpr double kMostRatio = 10.0;
 
 }  // namespace
 
-void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, bool rests) noexcept {
-  for (std::size_t a = 0; a < kMaxAxes; ++a) {
-    if (rests && (valid_axes >> a & 1U) != 0 && std::isfinite(rate[a])) {
-      add(a, rate[a]);
-    } else if (!rests) {
-      // Blocks under way have motion in them.
-      octaves_[a] = {};
-    }
+void RestNoise::RatioSearch::begin(const OctaveSums& sums) noexcept {
+  // No slower than the record could have shown.
+  next_ = best_ = 1.0 / (sums.samples * sums.samples);
+  lowest_ = 1e300;
+}
+
+bool RestNoise::RatioSearch::advance(const OctaveSums& sums) noexcept {
+  double noise = 0.0;
+  const double here = RestNoise::misfit(sums, next_, noise);
+  if (here < lowest_) {
+    lowest_ = here;
+    best_ = next_;
   }
-  if (!rests || valid_axes == 0) return;
+  next_ *= kStep;
+  return !(next_ < kMostRatio);
+}
+
+void RestNoise::recall(const OctaveSums& known) noexcept {
+  if (!(known.samples > 0.0)) return;
+  known_ = known;
+  contradictions_ = 0;
+  // Its ratio first of all: no chapter is there to be compared before.
+  search_.begin(known_);
+  judging_ = Judging::kAll;
+}
+
+void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) noexcept {
+  if (judging_ != Judging::kNothing) judge();
+  if (is == RestSample::kPassedOver) return;
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    // Blocks under way have motion in them.
+    if (is == RestSample::kMotion) octaves_[a] = {};
+    if (is == RestSample::kRest && (valid_axes >> a & 1U) != 0 && std::isfinite(rate[a])) add(a, rate[a]);
+  }
+  if (is == RestSample::kMotion || valid_axes == 0) return;
   chapter_.samples += 1.0;
-  if (++in_chapter_ == kChapter) end_chapter();
+  if (++in_chapter_ < kChapter) return;
+  in_chapter_ = 0;
+  judged_ = std::exchange(chapter_, {});
+  search_.begin(judged_);
+  judging_ = Judging::kChapter;
 }
 
 void RestNoise::add(std::size_t axis, double rate) noexcept {
@@ -51,7 +83,7 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
 }
 
 // Sum of n (ln S + V / S), S = R (6 / m + ratio m), at the R that fits best, which comes with it.
-double RestNoise::misfit(const Sums& sums, double ratio, double& noise) noexcept {
+double RestNoise::misfit(const OctaveSums& sums, double ratio, double& noise) noexcept {
   double weighted = 0.0, total = 0.0, logs = 0.0, block = 1.0;
   for (std::size_t k = 0; k < kOctaves; ++k, block *= 2.0) {
     if (!(sums.counts[k] > 0.0)) continue;
@@ -64,51 +96,44 @@ double RestNoise::misfit(const Sums& sums, double ratio, double& noise) noexcept
   return noise > 0.0 ? total * logarithm(noise) + logs : 0.0;
 }
 
-double RestNoise::best_ratio(const Sums& sums) noexcept {
-  // No slower than the record could have shown.
-  const double least = 1.0 / (sums.samples * sums.samples);
-  constexpr double kStep = 1.2;
-  double best = least, lowest = 1e300, noise = 0.0;
-  for (double ratio = least; ratio < 10.0; ratio *= kStep) {
-    const double here = misfit(sums, ratio, noise);
-    if (here < lowest) {
-      lowest = here;
-      best = ratio;
-    }
+void RestNoise::judge() noexcept {
+  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_)) return;
+  if (judging_ == Judging::kChapter) {
+    compare();
+    return;
   }
-  return best;
+  known_ratio_ = search_.ratio();
+  judging_ = Judging::kNothing;
+  news_ = true;
 }
 
-void RestNoise::end_chapter() noexcept {
-  in_chapter_ = 0;
-  news_ = true;
+// The chapter that was read before this one with all that is known.
+void RestNoise::compare() noexcept {
+  judging_ = Judging::kNothing;
   double noise = 0.0;
   if (known_.samples > 0.0) {
-    const double known = best_ratio(known_), here = best_ratio(chapter_);
-    const bool differ = 0.5 * (misfit(chapter_, known, noise) - misfit(chapter_, here, noise)) > kSurely;
-    if (differ && here > known) {
-      news_ = false;
-      chapter_ = {};
-      return;
-    }
+    const double behind = misfit(judged_, known_ratio_, noise) - search_.misfit();
+    const bool differ = 0.5 * behind > kSurely;
+    const bool quicker = differ && search_.ratio() > known_ratio_;
+    if (quicker && (contradictions_ < 0 || ++contradictions_ < kContradicted)) return;
+    contradictions_ = -1;
     if (differ) known_ = {};
   }
   for (std::size_t k = 0; k < kOctaves; ++k) {
-    known_.squares[k] += chapter_.squares[k];
-    known_.counts[k] += chapter_.counts[k];
+    known_.squares[k] += judged_.squares[k];
+    known_.counts[k] += judged_.counts[k];
   }
-  known_.samples += chapter_.samples;
-  chapter_ = {};
+  known_.samples += judged_.samples;
+  search_.begin(known_);
+  judging_ = Judging::kAll;
 }
 
 std::optional<NoiseEstimate> RestNoise::take_news(double period_s) noexcept {
-  if (!news_) return std::nullopt;
-  news_ = false;
+  if (!std::exchange(news_, false)) return std::nullopt;
   double noise = 0.0;
-  const double ratio = best_ratio(known_);
-  (void)misfit(known_, ratio, noise);
+  (void)misfit(known_, known_ratio_, noise);
   if (!(noise > 0.0)) return std::nullopt;
-  return NoiseEstimate{ratio * noise / period_s, noise};
+  return NoiseEstimate{known_ratio_ * noise / period_s, noise};
 }
 
 }  // namespace ifog

@@ -4,46 +4,76 @@
 // of samples the estimator calls rest. Chapter by chapter the sums are compared: a chapter whose random walk
 // is surely slower than the one known so far replaces all that was known, as a slow motion that passes for
 // rest only ever makes the walk look quicker; one that is surely quicker is such a motion, and left out.
+//
+// What an earlier run of the daemon has learned is a beginning: should the first chapters all be surely
+// quicker, it was of another sensor, or of this one when it was younger, and is forgotten.
+//
+// A chapter is judged while the next one is read, one trial of the random walk a sample, so that no step
+// takes longer than another by more than the logarithms of the octaves.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
+#include "filters/estimator/learned_noise.h"
 #include "filters/estimator/start_up.h"
 #include "filters/settings/axes.h"
 
 namespace ifog {
 
+// What a measurement is to the noise: of rest; passed over, of neither; or of a motion, after which all
+// begins anew.
+enum class RestSample { kRest, kPassedOver, kMotion };
+
 class RestNoise {
  public:
-  // The next measurement of all axes; rests: it is one at rest and follows the one before without a gap.
-  void take(const Axes& rate, std::uint32_t valid_axes, bool rests) noexcept;
-  // What is known now, when that has changed: at the end of a chapter.
+  // Before the first take(): what an earlier run has learned.
+  void recall(const OctaveSums& known) noexcept;
+  // The next measurement of all axes. A gap before it is motion.
+  void take(const Axes& rate, std::uint32_t valid_axes, RestSample is) noexcept;
+  // What is known now, once, when that has changed.
   std::optional<NoiseEstimate> take_news(double period_s) noexcept;
+  [[nodiscard]] const OctaveSums& known() const noexcept { return known_; }
 
  private:
-  static constexpr std::size_t kOctaves = 20;
+  static constexpr std::size_t kOctaves = OctaveSums::kOctaves;
   static constexpr int kChapter = 4096;  // samples at rest
+  // So many chapters in a row, a quarter of a million samples, contradict what was recalled.
+  static constexpr int kContradicted = 64;
   struct Octave {
     std::array<double, 2> means{};  // of the last two blocks
     double half = 0.0;              // mean of the first half of the block under way
     int blocks = 0;                 // whole ones since the series began, up to two
     bool has_half = false;
   };
-  struct Sums {
-    std::array<double, kOctaves> squares{}, counts{};
-    double samples = 0.0;
+  // The ratio of walk to noise that fits best, looked for one trial a call.
+  class RatioSearch {
+   public:
+    void begin(const OctaveSums& sums) noexcept;
+    // True: at its end.
+    bool advance(const OctaveSums& sums) noexcept;
+    [[nodiscard]] double ratio() const noexcept { return best_; }
+    [[nodiscard]] double misfit() const noexcept { return lowest_; }
+
+   private:
+    double next_ = 0.0, best_ = 0.0, lowest_ = 0.0;
   };
+  enum class Judging { kNothing, kChapter, kAll };
 
   void add(std::size_t axis, double rate) noexcept;
-  void end_chapter() noexcept;
-  [[nodiscard]] static double misfit(const Sums& sums, double ratio, double& noise) noexcept;
-  [[nodiscard]] static double best_ratio(const Sums& sums) noexcept;
+  void judge() noexcept;
+  void compare() noexcept;
+  [[nodiscard]] static double misfit(const OctaveSums& sums, double ratio, double& noise) noexcept;
 
   std::array<std::array<Octave, kOctaves>, kMaxAxes> octaves_{};
-  Sums known_, chapter_;
+  OctaveSums known_, chapter_, judged_;
+  RatioSearch search_;
+  Judging judging_ = Judging::kNothing;
+  double known_ratio_ = 0.0;
   int in_chapter_ = 0;
+  int contradictions_ =
+      -1;  // chapters in a row against what was recalled; -1: it was confirmed, or nothing was
   bool news_ = false;
 };
 

@@ -106,13 +106,17 @@ std::vector<Smoothed> smooth(const FilterSettings& settings, std::span<const std
   const Pass forwards = run(settings, rates, dt_s, nominal_period_s, false);
   const Pass backwards = run(settings, rates, dt_s, nominal_period_s, true);
   // R so that the filter's variance comes out: that of a settled filter is K R, its colour included.
-  double noise = 0.0, weight = 0.0;
-  for (std::size_t i = 0; i < dt_s.size(); ++i) {
-    if (forwards.moving[i] || !(forwards.gain[i] > 0.0)) continue;
-    noise += forwards.variance[i];
-    weight += forwards.gain[i];
+  // The median, as the variance is larger where a change of rate was only suspected.
+  std::vector<double> noises;
+  for (std::size_t i = 0; i < dt_s.size(); ++i)
+    if (!forwards.moving[i] && forwards.gain[i] > 0.0)
+      noises.push_back(forwards.variance[i] / forwards.gain[i]);
+  double noise = settings.measurement_noise;
+  if (!noises.empty()) {
+    const auto middle = noises.begin() + static_cast<std::ptrdiff_t>(noises.size() / 2);
+    std::nth_element(noises.begin(), middle, noises.end());
+    noise = *middle;
   }
-  noise = weight > 0.0 ? noise / weight : settings.measurement_noise;
   // At rest the walk is the model's: the gain of a filter that has just begun is no walk's. A model with more
   // states walks as its least gain says.
   double least = kMostGain;

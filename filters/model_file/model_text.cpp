@@ -5,41 +5,11 @@
 
 #include "filters/model_file/model.h"
 #include "filters/model_file/sha256.h"
+#include "filters/model_file/toml_text.h"
 #include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
-
-// Shortest text that reads back as the same double.
-std::string number(double value) {
-  if (value != value) return "nan";
-  std::array<char, 40> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
-std::string quoted(std::string_view value) {
-  std::string text = "\"";
-  for (const char c : value) {
-    if (c == '"' || c == '\\') {
-      text += '\\';
-      text += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      std::array<char, 8> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
-      text += escape.data();
-    } else {
-      text += c;
-    }
-  }
-  return text + '"';
-}
-
-std::string list(const std::vector<double>& values) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < values.size(); ++i) text += (i ? ", " : "") + number(values[i]);
-  return text + "]";
-}
 
 class Text {
  public:
@@ -47,7 +17,7 @@ class Text {
   void element(const std::string& name) { text_ += "\n[[" + name + "]]\n"; }
   void line(const std::string& key, const std::string& value) { text_ += key + " = " + value + "\n"; }
   void words(const std::string& key, const std::string& value) {
-    if (!value.empty()) line(key, quoted(value));
+    if (!value.empty()) line(key, toml_quoted(value));
   }
   std::string take() { return std::move(text_); }
 
@@ -61,7 +31,7 @@ void write_noise(Text& text, const std::string& axis, const NoiseTerms& noise) {
   const std::array<std::pair<const char*, const std::optional<double>*>, 5> terms = {
       {{"Q", &noise.Q}, {"N", &noise.N}, {"B", &noise.B}, {"K", &noise.K}, {"R", &noise.R}}};
   for (const auto& [key, value] : terms) {
-    if (*value) text.line(key, number(**value));
+    if (*value) text.line(key, toml_number(**value));
   }
 }
 
@@ -74,11 +44,11 @@ std::string as_toml(const SettingValue& value) {
         else if constexpr (std::is_same_v<T, std::int64_t>)
           return std::to_string(v);
         else if constexpr (std::is_same_v<T, double>)
-          return number(v);
+          return toml_number(v);
         else if constexpr (std::is_same_v<T, std::string>)
-          return quoted(v);
+          return toml_quoted(v);
         else
-          return list(v);
+          return toml_list(v);
       },
       value);
 }
@@ -100,19 +70,19 @@ void write_effect(Text& text, const Effect& effect) {
   text.words("with_channel", effect.with_channel);
   text.words("axis", effect.axis);
   text.words("meaning", effect.meaning);
-  text.line("reference", number(effect.reference));
-  if (effect.with_reference != 0.0) text.line("with_reference", number(effect.with_reference));
+  text.line("reference", toml_number(effect.reference));
+  if (effect.with_reference != 0.0) text.line("with_reference", toml_number(effect.with_reference));
   if (!effect.table_x.empty()) {
-    text.line("table_x", list(effect.table_x));
-    text.line("table_y", list(effect.table_y));
+    text.line("table_x", toml_list(effect.table_x));
+    text.line("table_y", toml_list(effect.table_y));
   }
-  if (effect.period > 0.0) text.line("period", number(effect.period));
+  if (effect.period > 0.0) text.line("period", toml_number(effect.period));
   if (effect.angle) text.line("angle", "true");
   for (const ModelParameter& parameter : effect.parameters) {
     text.element("effect.parameter");
     text.words("name", parameter.name);
-    text.line("value", number(parameter.value));
-    text.line("std_error", number(parameter.std_error));
+    text.line("value", toml_number(parameter.value));
+    text.line("std_error", toml_number(parameter.std_error));
     text.words("unit", parameter.unit);
   }
 }
@@ -123,9 +93,9 @@ void write_source(Text& text, const ModelSource& source) {
   text.words("sha256", source.sha256);
   text.words("date", source.date);
   if (!source.before.empty()) text.table("source.before");
-  for (const auto& [name, value] : source.before) text.line(quoted(name), number(value));
+  for (const auto& [name, value] : source.before) text.line(toml_quoted(name), toml_number(value));
   if (!source.after.empty()) text.table("source.after");
-  for (const auto& [name, value] : source.after) text.line(quoted(name), number(value));
+  for (const auto& [name, value] : source.after) text.line(toml_quoted(name), toml_number(value));
 }
 
 }  // namespace
@@ -134,15 +104,15 @@ std::string model_text(const Model& model) {
   Text text;
   text.line("version", std::to_string(Model::kVersion));
   text.words("sensor", model.sensor);
-  if (!model.covariance.empty()) text.line("covariance", list(model.covariance));
+  if (!model.covariance.empty()) text.line("covariance", toml_list(model.covariance));
   for (const auto& [axis, noise] : model.noise) write_noise(text, axis, noise);
   if (model.filter) write_filter(text, *model.filter);
   for (const Effect& effect : model.effects) write_effect(text, effect);
   for (const ChannelRange& range : model.ranges) {
     text.element("range");
     text.words("channel", range.channel);
-    text.line("low", number(range.low));
-    text.line("high", number(range.high));
+    text.line("low", toml_number(range.low));
+    text.line("high", toml_number(range.high));
   }
   write_source(text, model.source);
   return text.take();

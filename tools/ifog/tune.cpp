@@ -11,6 +11,7 @@
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/transport/utc_now.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/rest.h"
@@ -22,7 +23,6 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/utc_now.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {

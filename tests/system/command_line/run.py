@@ -9,6 +9,7 @@ import csv
 import json
 import math
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -178,6 +179,21 @@ class Checks:
         ifog("allan", self.capture, denoised, "--plot", picture)
         assert picture.read_text().rstrip().endswith("</svg>")
 
+    def sequence_of_a_part(self):
+        """Cut out and told where it was, a part draws the whole's weights, and has its bits once its beginning is forgotten."""
+        random.seed(5)
+        rows = [f"{i / 100},{random.gauss(0.0, 1e-4):.9g}\n" for i in range(6000)]
+        whole, cut, out = (self.folder / name for name in ("whole.csv", "cut.csv", "cut_out.csv"))
+        whole.write_text("time_s,rate_radps\n" + "".join(rows))
+        cut.write_text("time_s,rate_radps\n" + "".join(rows[2000:]))
+        settings = ["--plain", "--process-noise", "1e-9", "--measurement-noise", "1e-8", "--output", out]
+        last = []
+        for capture, more in ((whole, []), (cut, ["--sequence", "2000"]), (cut, [])):
+            ifog("denoise", capture, *settings, *more)
+            last.append(out.read_text().splitlines()[-2000:])
+        assert last[0] == last[1]
+        assert not any(a == b for a, b in zip(last[0], last[2]))
+
     def check_denoise(self):
         out = self.folder / "denoised.csv"
         ifog("denoise", self.capture, "--filter", "ckf", "--output", out)
@@ -190,6 +206,11 @@ class Checks:
         variance = found["variance_rad2ps2"]
         known = next(i for i, v in enumerate(variance) if v == v)
         assert known < len(variance) / 4 and min(variance[known:]) > 0
+        # A part of the whole is the whole's lines.
+        part, text = self.folder / "part.csv", out.read_text().splitlines()
+        ifog("denoise", self.capture, "--filter", "ckf", "--output", part, "--from", text[101].split(",")[0], "--to", text[301].split(",")[0])
+        assert part.read_text().splitlines() == text[:1] + text[101:301]
+        self.sequence_of_a_part()
         lines = self.capture.read_text().splitlines()
         header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
         three = self.folder / "three.csv"

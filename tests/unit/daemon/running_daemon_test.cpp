@@ -10,10 +10,12 @@
 
 #include <ifog/decode.h>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -264,6 +266,69 @@ TEST_F(RunningDaemon, WhatIsNotThereIsSaidByTheCheck) {
   write("ifogd.toml", kDaemon + sensor("nose", "model = \"model\"\n"));
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << said();
   EXPECT_EQ(times_said(path("model") + ": is no regular file"), 1) << said();
+}
+
+// What one run has learned of the noise the next one begins with; what cannot be read is learned anew, and
+// where the settings say it nothing is kept.
+TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> noise(0.01, 1e-3);
+  std::vector<std::uint8_t> bytes;
+  for (int n = 0; n < 20'000; ++n) {
+    ifog_sample sample{};
+    sample.flags = IFOG_SAMPLE_SEQUENCE;
+    sample.sequence = static_cast<std::uint32_t>(n % 128);
+    sample.valid_axes = 7;
+    for (double& value : sample.value) value = noise(engine);
+    encoder_.encode_bytes(sample, bytes);
+  }
+  std::ofstream(path("frames"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const std::string config =
+      "[daemon]\nlock_memory = false\nstate_folder = \"state\"\n[[sensor]]\nname = \"nose\"\ndriver = "
+      "\"kvh1750\"\nnominal_rate_hz = 1000\n[sensor.transport]\ntype = \"file\"\npath = \"frames\"\n";
+  fs::create_directories(folder_ / "state");
+  const auto run_to_the_end = [&](const std::string& more) {
+    write("ifogd.toml", config + more);
+    fs::remove(folder_ / "said");
+    start();
+    int status = 0;
+    waitpid(std::exchange(child_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  };
+  const auto kept = [&] {
+    std::ifstream in(path("state/nose.noise.toml"));
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto samples = [&] {
+    const std::string text = kept();
+    return std::strtod(text.c_str() + text.find("\nsamples = ") + 11, nullptr);
+  };
+  ASSERT_EQ(run_to_the_end(""), 0) << said();
+  EXPECT_EQ(times_said("noise from start-up data"), 1) << said();
+  EXPECT_EQ(times_said("noise as learned until"), 0) << said();
+  const double first = samples();
+  EXPECT_GE(first, 4096.0) << kept();
+  EXPECT_NE(kept().find("learned = \"20"), std::string::npos) << kept();
+
+  ASSERT_EQ(run_to_the_end(""), 0) << said();
+  EXPECT_EQ(times_said("noise from start-up data"), 0) << said();
+  EXPECT_EQ(times_said("noise as learned until 20"), 1) << said();
+  EXPECT_GT(samples(), first) << "learned on";
+
+  const std::string before = kept();
+  ASSERT_EQ(run_to_the_end("[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n"), 0)
+      << said();
+  EXPECT_EQ(kept(), before) << "what is told is not learned over";
+
+  write("state/nose.noise.toml", before.substr(0, before.size() / 2));
+  ASSERT_EQ(run_to_the_end(""), 0) << said();
+  EXPECT_EQ(times_said("learned anew"), 1) << said();
+  EXPECT_EQ(samples(), first) << kept();
+
+  fs::remove_all(folder_ / "state");
+  ASSERT_EQ(run_to_the_end(""), 0) << said();
+  EXPECT_EQ(times_said("learned noise is not kept"), 1) << said();
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
+#include "filters/estimator/first_samples.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {
@@ -46,6 +49,30 @@ TEST(StartUp, OfWhiteNoiseIsTheSlowestWalkTheRecordCouldShow) {
   EXPECT_GT(found.process_noise, 0.0);
   // The longest octave, 256 samples with some ten differences, knows 6 R / 256 to a half: q to 5e-5.
   EXPECT_LT(found.process_noise * kPeriod, 1e-4);
+}
+
+// The normalised squared error of each of the first samples, over many records, is 1 at most, and 1 once a
+// dozen have come.
+TEST(StartUp, TheVarianceIsHonestFromTheFirstSampleOn) {
+  constexpr int kRecords = 20'000, kSamples = 40;
+  for (const double level : {0.0, 100.0}) {
+    std::mt19937_64 random(9);
+    std::normal_distribution<double> normal;
+    std::vector<double> nees(kSamples, 0.0);
+    for (int r = 0; r < kRecords; ++r) {
+      ifog::FirstSamples first;
+      for (double& sum : nees) {
+        const double error = normal(random);
+        sum += error * error / first.variance(0, level + error, true) / kRecords;
+      }
+    }
+    for (int i = 0; i < kSamples; ++i) {
+      EXPECT_LT(nees[static_cast<std::size_t>(i)], 1.1) << level << ", sample " << i;
+      if (i >= 11) {
+        EXPECT_GT(nees[static_cast<std::size_t>(i)], 0.8) << level << ", sample " << i;
+      }
+    }
+  }
 }
 
 TEST(StartUp, AveragesTheAxesThatMeasure) {

@@ -51,6 +51,14 @@ std::size_t TimePart::cut(Table& table, const std::string& name) const {
   return rows.begin;
 }
 
+std::size_t TimePart::cut(std::vector<double>& time_s, std::span<std::vector<double>* const> columns,
+                          const std::string& name) const {
+  const Rows rows = rows_in(*this, time_s, name);
+  rows.keep(time_s);
+  for (std::vector<double>* const column : columns) rows.keep(*column);
+  return rows.begin;
+}
+
 std::size_t TimePart::cut(Capture& capture, const std::string& name) const {
   const Rows rows = rows_in(*this, capture.time_s, name);
   rows.keep(capture.time_s);

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "drivers/capture/capture.h"
 
@@ -24,6 +26,9 @@ struct TimePart {
   // one line when no row is inside.
   std::size_t cut(Table& table, const std::string& name) const;
   std::size_t cut(Capture& capture, const std::string& name) const;
+  // columns: as long as the times, or empty.
+  std::size_t cut(std::vector<double>& time_s, std::span<std::vector<double>* const> columns,
+                  const std::string& name) const;
 };
 
 }  // namespace ifog::tools

@@ -16,9 +16,11 @@
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/smoother.h"
+#include "filters/model_file/kept_noise.h"
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json_file.h"
@@ -31,8 +33,10 @@ namespace ifog::tools {
 namespace {
 
 struct Options {
-  std::string capture, output, model, config, sensor, json, picture;
+  std::string capture, output, model, config, sensor, json, picture, noise;
   double nominal_rate_hz = 0.0, start_up_s = 0.0;
+  std::optional<std::uint64_t> first_sequence;
+  TimePart part;
   CaptureInput input;
   FilterChoice filter;
   bool smooth = false;
@@ -193,6 +197,8 @@ OfflineSettings settings_of(Options& options, const InputFile& capture) {
   if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
   if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;
   out.model = read_sensor_model(out.sensor);
+  out.first_sequence = options.first_sequence;
+  if (!options.noise.empty()) out.learned = read_kept_noise(options.noise).noise;
   return out;
 }
 
@@ -236,6 +242,15 @@ void smooth(Columns& columns, const OfflineResult& result) {
   }
 }
 
+// What is wanted of the whole, which was filtered from its beginning: the part has the whole's bits.
+void keep(const Options& options, Columns& columns) {
+  std::vector<std::vector<double>*> all{&columns.dt_s};
+  for (Series& axis : columns.axes)
+    all.insert(all.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance, &axis.smoothed,
+                           &axis.smoothed_variance});
+  options.part.cut(columns.time_s, all, options.capture);
+}
+
 void run(Options options) {
   will_write("--output", options.output);
   will_write("--json", options.json);
@@ -272,6 +287,7 @@ void run(Options options) {
   }
   columns.axes.resize(result.axes.size());
   if (options.smooth) smooth(columns, result);
+  keep(options, columns);
   write_text_file(options.output, as_text(columns, result));
   tell(options, columns, result);
   if (!options.json.empty()) write_json(options.json, summary(options, columns, result));
@@ -294,6 +310,11 @@ void add_denoise(CLI::App& app) {
   command->add_flag("--smooth", options->smooth,
                     "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
   command->add_option("--model", options->model, "Model file of the sensor")->type_name("FILE");
+  command
+      ->add_option(
+          "--noise", options->noise,
+          "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
+      ->type_name("FILE");
   command->add_option("--config", options->config, "Take all settings from the daemon's configuration")
       ->type_name("FILE");
   command->add_option("--sensor", options->sensor, "Which sensor of the configuration")->type_name("NAME");
@@ -303,6 +324,14 @@ void add_denoise(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--start-up", options->start_up_s, "Seconds that show the noise when none is given (4)")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--sequence", options->first_sequence,
+          "Number of the first sample in the recording that this one is a part of: its random weights")
+      ->type_name("N");
+  command->add_option("--from", options->part.from_s,
+                      "Write nothing before this time, s; filter from the beginning");
+  command->add_option("--to", options->part.to_s, "Write nothing from this time on, s");
   command->add_option("--json", options->json, "Summary as JSON")->type_name("FILE");
   command->add_option("--plot", options->picture, "Picture, .svg or .png")
       ->check(report::wrong_picture_name, "")

@@ -18,8 +18,10 @@ constexpr double kChannelMaxAge_s = 10.0;  // as for the channels of a sensor's 
 
 class Chain {
  public:
-  explicit Chain(const ChainSettings& settings)
-      : incrementer_(settings.facts), chain_(std::make_unique<ChainParts>(settings)) {
+  Chain(const ChainSettings& settings, std::optional<std::uint64_t> first_sequence)
+      : incrementer_(settings.facts),
+        chain_(std::make_unique<ChainParts>(settings)),
+        first_sequence_(first_sequence) {
     result_.axes = settings.axes;
     result_.left_out = chain_.parts().left_out();
     result_.model = chain_.parts().model_identity();
@@ -29,6 +31,10 @@ class Chain {
   // Null: the sample came twice.
   const Increment* run(const Reading& reading, ChainOutput& out) {
     if (!incrementer_.next(reading, increment_)) return nullptr;
+    // Modulo 2^64: the part may begin before where its own counter does.
+    if (first_sequence_)
+      sequence_shift_ = *std::exchange(first_sequence_, std::nullopt) - increment_.sequence;
+    increment_.sequence += sequence_shift_;
     chain_.process(increment_, out);
     return &increment_;
   }
@@ -43,6 +49,8 @@ class Chain {
   Incrementer incrementer_;
   SignalChain chain_;
   Increment increment_;
+  std::optional<std::uint64_t> first_sequence_;
+  std::uint64_t sequence_shift_ = 0;
   OfflineResult result_;
 };
 
@@ -93,7 +101,8 @@ OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& set
   chain_settings.filter = settings.sensor.filter;
   chain_settings.start_up_s = settings.sensor.start_up_s;
   chain_settings.model = settings.model;
-  Chain chain(chain_settings);
+  chain_settings.learned = settings.learned;
+  Chain chain(chain_settings, settings.first_sequence);
   Reading reading;
   ChainOutput out;
   for (std::size_t i = 0; i < capture.size(); ++i) {
@@ -117,10 +126,10 @@ OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& set
 
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink) {
-  const ChainSettings chain_settings =
-      sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  chain_settings.learned = settings.learned;
   const SensorFacts& facts = chain_settings.facts;
-  Chain chain(chain_settings);
+  Chain chain(chain_settings, settings.first_sequence);
   Reading reading;
   // Channels that did not come in the frames are not in the recording: never a value, for ever stale.
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());

@@ -2,8 +2,10 @@
 // with the bits the daemon publishes for the same frames and settings.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +18,11 @@
 namespace ifog::tools {
 
 struct OfflineSettings {
-  SensorConfig sensor;                 // model, filter, options, channels; its transport is not used
-  std::shared_ptr<const Model> model;  // null: none
+  SensorConfig sensor;                  // model, filter, options, channels; its transport is not used
+  std::shared_ptr<const Model> model;   // null: none
+  std::optional<LearnedNoise> learned;  // ChainSettings::learned
+  // Number of the first sample in the recording that this one is a part of; its own otherwise.
+  std::optional<std::uint64_t> first_sequence;
 };
 
 // One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step times.

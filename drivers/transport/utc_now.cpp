@@ -1,8 +1,8 @@
-#include "tools/ifog/console/utc_now.h"
+#include "drivers/transport/utc_now.h"
 
 #include <ctime>
 
-namespace ifog::tools {
+namespace ifog {
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -13,4 +13,4 @@ std::string utc_now() {
   return text;
 }
 
-}  // namespace ifog::tools
+}  // namespace ifog

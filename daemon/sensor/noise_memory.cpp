@@ -1,0 +1,85 @@
+#include "daemon/sensor/noise_memory.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+
+#include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/utc_now.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::int64_t kEvery_ns = 600'000'000'000;
+// Nominal rates that differ by less are one sensor's.
+constexpr double kSameRate = 0.01;
+
+std::string in_words(const KeptNoise& kept) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "process_noise = %.4g (rad/s)^2/s, measurement_noise = %.4g (rad/s)^2, from %.0f s at rest",
+                kept.noise.process_noise, kept.noise.measurement_noise,
+                kept.noise.octaves.samples / kept.sample_rate_hz);
+  return "noise as learned until " + printable(kept.learned) + ": " + text;
+}
+
+}  // namespace
+
+std::string state_folder(const std::string& configured) {
+  if (!configured.empty()) return configured;
+  const char* const given = std::getenv("STATE_DIRECTORY");
+  if (given == nullptr) return "";
+  const std::string all = given;
+  return all.substr(0, all.find(':'));
+}
+
+NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, const std::string& driver,
+                         const SensorFacts& facts) {
+  if (folder.empty()) return;
+  path_ = (std::filesystem::path(folder) / (sensor + ".noise.toml")).string();
+  kept_.sensor = sensor;
+  kept_.driver = driver;
+  kept_.axes = facts.axes;
+  kept_.sample_rate_hz = facts.nominal_rate_hz;
+  std::error_code none;
+  if (!std::filesystem::exists(path_, none)) return;
+  try {
+    const KeptNoise found = read_kept_noise(path_);
+    const bool same = found.driver == driver && found.axes == facts.axes &&
+                      std::abs(found.sample_rate_hz / facts.nominal_rate_hz - 1.0) < kSameRate;
+    if (same) {
+      recalled_ = found.noise;
+      remark_ = in_words(found);
+    } else {
+      remark_ = path_ + ": is of driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
+                " axes at " + std::to_string(found.sample_rate_hz) + " Hz: learned anew";
+    }
+  } catch (const std::exception& error) {
+    remark_ = std::string(error.what()) + ": learned anew";
+  }
+}
+
+std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, bool at_once) {
+  if (path_.empty() || learned.octaves.samples == written_samples_) return "";
+  if (!at_once && tried_ns_ && now_ns - *tried_ns_ < kEvery_ns) return "";
+  // What was recalled and nothing learned since: the date stays.
+  if (recalled_ && learned.octaves.samples == recalled_->octaves.samples) return "";
+  tried_ns_ = now_ns;
+  kept_.noise = learned;
+  kept_.learned = utc_now();
+  try {
+    write_file(path_, kept_noise_text(kept_));
+  } catch (const std::exception& error) {
+    const bool told = failed_;
+    failed_ = true;
+    return told ? "" : std::string("learned noise is not kept: ") + error.what();
+  }
+  written_samples_ = learned.octaves.samples;
+  failed_ = false;
+  return "";
+}
+
+}  // namespace ifog

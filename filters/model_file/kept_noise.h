@@ -1,0 +1,38 @@
+// The noise that the daemon has learned of a sensor, as a file that the next start begins with. Written by
+// the daemon alone; a model's figures stand over it.
+//
+//   schema = "ifog.noise/1"
+//   sensor = "nose"
+//   driver = "kvh1750"
+//   axes = 3
+//   sample_rate_hz = 1000
+//   learned = "2026-01-31T13:05:09Z"   # the last rest that is in it
+//   process_noise = 1.2e-15            # of a random walk, (rad/s)^2/s
+//   measurement_noise = 3.1e-10        # per sample, (rad/s)^2
+//   colour = [1.0, 1.02, 0.99]         # by axis
+//   samples = 8192000                  # at rest
+//   squares = [...]                    # OctaveSums, (rad/s)^2
+//   counts = [...]
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "filters/estimator/learned_noise.h"
+
+namespace ifog {
+
+struct KeptNoise {
+  std::string sensor, driver;
+  int axes = 1;
+  double sample_rate_hz = 0.0;  // nominal
+  std::string learned;          // UTC, ISO 8601
+  LearnedNoise noise;
+};
+
+[[nodiscard]] std::string kept_noise_text(const KeptNoise& kept);
+// Both throw std::runtime_error with one line: file:line: what is wrong.
+[[nodiscard]] KeptNoise parse_kept_noise(std::string_view text, const std::string& name);
+[[nodiscard]] KeptNoise read_kept_noise(const std::string& path);
+
+}  // namespace ifog

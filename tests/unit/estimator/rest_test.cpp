@@ -1,0 +1,229 @@
+// The rest detector, and the noise that is learned while it says so.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "filters/chain/signal_chain.h"
+#include "filters/estimator/estimator.h"
+#include "filters/estimator/rest_noise.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kPeriod_s = 0.005;
+constexpr double kSigma_radps = 1e-5;
+
+FilterSettings told(double ratio) {
+  FilterSettings settings;
+  settings.measurement_noise = kSigma_radps * kSigma_radps;
+  settings.process_noise = ratio * settings.measurement_noise / kPeriod_s;
+  return settings;
+}
+
+// Share of the samples from `from` on that are flagged, of a sensor that moves so, σ.
+template <class Motion>
+double share_at_rest(const FilterSettings& settings, int from, int samples, const Motion& motion) {
+  std::mt19937_64 engine(20261122);
+  std::normal_distribution<double> noise(0.0, kSigma_radps);
+  Estimator estimator(settings, 1, kPeriod_s);
+  EstimatorInput in;
+  EstimatorOutput out;
+  in.dt_s = kPeriod_s;
+  in.valid_axes = 1;
+  int flagged = 0;
+  for (int i = 0; i < samples; ++i) {
+    in.sequence = static_cast<std::uint64_t>(i);
+    in.rate_radps[0] = kSigma_radps * motion(i) + noise(engine);
+    estimator.step(in, out);
+    if (i >= from && (out.flags & kAtRest) != 0) ++flagged;
+  }
+  return static_cast<double>(flagged) / (samples - from);
+}
+
+TEST(AtRest, IsSaidOfASensorThatRestsAndOfNoneThatMoves) {
+  for (const double ratio : {1e-3, 1e-6}) {
+    const FilterSettings settings = told(ratio);
+    EXPECT_GT(share_at_rest(settings, 200, 100'000, [](int) { return 7.0; }), 0.999) << ratio;
+    const auto swing = [](int i) {
+      return i < 20'000 ? 0.0 : 30.0 * std::sin(2.0 * std::numbers::pi * 0.1 * kPeriod_s * (i - 20'000));
+    };
+    EXPECT_LT(share_at_rest(settings, 20'000, 100'000, swing), 0.02) << ratio;
+    // A turn as quick as a hand's, from its second sample on and for a while after its end.
+    const auto turn = [](int i) { return i < 20'000 || i >= 21'000 ? 0.0 : 1e4; };
+    EXPECT_EQ(share_at_rest(settings, 20'001, 21'064, turn), 0.0) << ratio;
+  }
+}
+
+// Quicker than any bias: somebody turns it, however evenly.
+TEST(AtRest, IsNotSaidOfAnEvenTurn) {
+  EXPECT_EQ(share_at_rest(told(1e-6), 0, 20'000, [](int) { return 0.021 / kSigma_radps; }), 0.0);
+  EXPECT_GT(share_at_rest(told(1e-6), 200, 20'000, [](int) { return 0.019 / kSigma_radps; }), 0.99);
+}
+
+TEST(AtRest, IsNotSaidBeforeTheNoiseIsKnownNorWithoutADetector) {
+  EXPECT_EQ(share_at_rest(told(1e-3), 0, 60, [](int) { return 0.0; }), 0.0);
+  FilterSettings settings = told(1e-3);
+  settings.follow_manoeuvres = false;
+  EXPECT_EQ(share_at_rest(settings, 0, 10'000, [](int) { return 0.0; }), 0.0);
+}
+
+class Walk {
+ public:
+  Walk(double ratio, unsigned seed) : engine_(seed), step_(std::sqrt(ratio)) {}
+  double next() {
+    level_ += step_ * normal_(engine_);
+    return level_ + normal_(engine_);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+  std::normal_distribution<double> normal_{0.0, 1.0};
+  double step_, level_ = 0.0;
+};
+
+// The last news of so many samples of such a walk.
+std::optional<NoiseEstimate> learn(RestNoise& learner, double ratio, int samples, unsigned seed,
+                                   RestSample is = RestSample::kRest) {
+  Walk walk(ratio, seed);
+  std::optional<NoiseEstimate> last;
+  for (int i = 0; i < samples; ++i) {
+    learner.take({walk.next()}, 1, is);
+    if (const auto news = learner.take_news(1.0)) last = news;
+  }
+  return last;
+}
+
+TEST(RestNoise, FindsTheWalkThatMadeTheRecord) {
+  for (const double ratio : {1e-2, 1e-4, 1e-6}) {
+    RestNoise learner;
+    const auto found = learn(learner, ratio, 200'000, 3);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->measurement_noise, 1.0, 0.03) << ratio;
+    EXPECT_NEAR(std::log10(found->process_noise / ratio), 0.0, 0.25) << ratio;
+  }
+}
+
+TEST(RestNoise, LearnsNothingUnderWayOrFromWhatIsPassedOver) {
+  for (const RestSample is : {RestSample::kMotion, RestSample::kPassedOver}) {
+    RestNoise learner;
+    EXPECT_FALSE(learn(learner, 1e-4, 20'000, 4, is));
+    EXPECT_EQ(learner.known().samples, 0.0);
+  }
+}
+
+TEST(RestNoise, GoesOnFromWhatItWasToldToRecall) {
+  RestNoise first;
+  (void)learn(first, 1e-6, 400'000, 5);
+  RestNoise second;
+  second.recall(first.known());
+  // A hundredth of a record could not show that walk by itself: the slowest it can show is 6e-8.
+  const auto found = learn(second, 1e-6, 6'000, 6);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(std::log10(found->process_noise / 1e-6), 0.0, 0.25);
+  EXPECT_EQ(second.known().samples, first.known().samples + 4096.0);
+}
+
+TEST(RestNoise, ForgetsASensorThatWasAnotherOne) {
+  RestNoise first;
+  (void)learn(first, 1e-8, 400'000, 7);
+  RestNoise second;
+  second.recall(first.known());
+  const auto before = learn(second, 1e-3, 60 * 4096, 8);
+  ASSERT_TRUE(before);
+  EXPECT_LT(before->process_noise, 1e-5);
+  RestNoise third;
+  third.recall(first.known());
+  const auto after = learn(third, 1e-3, 80 * 4096, 8);
+  ASSERT_TRUE(after);
+  EXPECT_NEAR(std::log10(after->process_noise / 1e-3), 0.0, 0.25);
+}
+
+ChainSettings untold() {
+  ChainSettings settings;
+  settings.facts.nominal_rate_hz = 1.0 / kPeriod_s;
+  settings.axes = {""};
+  return settings;
+}
+
+// Runs the chain over noise of that walk; gives the first output.
+ChainOutput run(SignalChain& chain, double ratio, int samples, unsigned seed) {
+  Walk walk(ratio, seed);
+  Increment in;
+  ChainOutput out, first;
+  in.dt_s = kPeriod_s;
+  in.valid_axes = 1;
+  for (int i = 0; i < samples; ++i) {
+    in.sequence = static_cast<std::uint64_t>(i);
+    in.rate_radps[0] = kSigma_radps * walk.next();
+    in.covered_s[0] = kPeriod_s;
+    in.delta_theta_rad[0] = in.rate_radps[0] * kPeriod_s;
+    chain.process(in, out);
+    if (i == 0) first = out;
+  }
+  return first;
+}
+
+TEST(LearnedNoise, TakesThePlaceOfAStartUp) {
+  SignalChain first(std::make_unique<ChainParts>(untold()));
+  EXPECT_NE(run(first, 1e-6, 100'000, 9).flags & kNoiseUnknown, 0U);
+  const auto learned = first.parts().learned();
+  ASSERT_TRUE(learned);
+  ChainSettings settings = untold();
+  settings.learned = learned;
+  SignalChain second(std::make_unique<ChainParts>(settings));
+  EXPECT_TRUE(second.parts().noise_known());
+  EXPECT_EQ(run(second, 1e-6, 1, 10).flags & kNoiseUnknown, 0U);
+  const double density = 1e-6 * kSigma_radps * kSigma_radps / kPeriod_s;
+  EXPECT_NEAR(std::log10(second.parts().filter().process_noise / density), 0.0, 0.5);
+  EXPECT_NEAR(second.parts().filter().measurement_noise / (kSigma_radps * kSigma_radps), 1.0, 0.05);
+}
+
+TEST(LearnedNoise, StandsBehindWhatIsTold) {
+  ChainSettings settings = untold();
+  settings.learned =
+      LearnedNoise{.process_noise = 1.0, .measurement_noise = 2.0, .colour = {}, .octaves = {}};
+  auto model = std::make_shared<Model>();
+  model->filter = told(1e-6);
+  settings.model = model;
+  const ChainParts of_model(settings);
+  EXPECT_EQ(of_model.filter().process_noise, model->filter->process_noise);
+  EXPECT_EQ(of_model.filter().measurement_noise, model->filter->measurement_noise);
+  settings.model = nullptr;
+  settings.filter.measurement_noise = 3.0;
+  const ChainParts of_settings(settings);
+  EXPECT_EQ(of_settings.filter().measurement_noise, 3.0);
+  EXPECT_EQ(of_settings.filter().process_noise, 1.0);
+  SignalChain chain(std::make_unique<ChainParts>(settings));
+  settings.model = model;
+  SignalChain with_model(std::make_unique<ChainParts>(settings));
+  (void)run(with_model, 1e-6, 20'000, 11);
+  EXPECT_FALSE(with_model.parts().learned()) << "a model's figures are not learned over";
+}
+
+// A start in a turn leaves a driving noise a million times too large: the sensor must be found at rest all
+// the same, or it would never be put right.
+TEST(LearnedNoise, AStartInATurnIsPutRight) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    ChainSettings settings = untold();
+    SignalChain chain(std::make_unique<ChainParts>(settings));
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, kSigma_radps);
+    Increment in;
+    ChainOutput out;
+    in.dt_s = in.covered_s[0] = kPeriod_s;
+    in.valid_axes = 1;
+    for (int i = 0; i < 40'000; ++i) {
+      in.sequence = static_cast<std::uint64_t>(i);
+      in.rate_radps[0] = noise(engine) + 1.7 * std::exp(-0.01 * std::max(0, i - 700));
+      in.delta_theta_rad[0] = in.rate_radps[0] * kPeriod_s;
+      chain.process(in, out);
+    }
+    EXPECT_NE(out.estimate.flags & kAtRest, 0U) << seed;
+    EXPECT_LT(chain.parts().filter().process_noise * kPeriod_s, 1e-5 * kSigma_radps * kSigma_radps) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace ifog

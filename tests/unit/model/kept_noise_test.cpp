@@ -1,0 +1,79 @@
+// Learned noise as a file: what is written reads back to the bit, and what is none is refused by line.
+#include "filters/model_file/kept_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace ifog {
+namespace {
+
+KeptNoise some() {
+  KeptNoise kept;
+  kept.sensor = "nose";
+  kept.driver = "kvh\"1750\\";
+  kept.axes = 2;
+  kept.sample_rate_hz = 1000.0 / 3.0;
+  kept.learned = "2026-01-31T13:05:09Z";
+  kept.noise.process_noise = 1.2e-15 / 7.0;
+  kept.noise.measurement_noise = 3e-10 / 7.0;
+  kept.noise.colour = {1.0 / 3.0, 2.0 / 3.0, 1.0};
+  for (std::size_t k = 0; k < OctaveSums::kOctaves; ++k) {
+    kept.noise.octaves.squares[k] = 1e-3 / static_cast<double>(k + 3);
+    kept.noise.octaves.counts[k] = static_cast<double>(k);
+  }
+  kept.noise.octaves.samples = 8192.0;
+  return kept;
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    (void)parse_kept_noise(text, "f.toml");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = kept_noise_text(some());
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(KeptNoise, ReadsBackToTheBit) {
+  const KeptNoise kept = some();
+  const KeptNoise read = parse_kept_noise(kept_noise_text(kept), "f.toml");
+  EXPECT_EQ(read.sensor, kept.sensor);
+  EXPECT_EQ(read.driver, kept.driver);
+  EXPECT_EQ(read.axes, kept.axes);
+  EXPECT_EQ(read.sample_rate_hz, kept.sample_rate_hz);
+  EXPECT_EQ(read.learned, kept.learned);
+  EXPECT_EQ(read.noise.process_noise, kept.noise.process_noise);
+  EXPECT_EQ(read.noise.measurement_noise, kept.noise.measurement_noise);
+  EXPECT_EQ(read.noise.colour, kept.noise.colour);
+  EXPECT_EQ(read.noise.octaves.squares, kept.noise.octaves.squares);
+  EXPECT_EQ(read.noise.octaves.counts, kept.noise.octaves.counts);
+  EXPECT_EQ(read.noise.octaves.samples, kept.noise.octaves.samples);
+}
+
+TEST(KeptNoise, RefusesByLineWhatIsNone) {
+  EXPECT_EQ(complaint(with("ifog.noise/1", "ifog.noise/2")), "f.toml:2: schema: expected \"ifog.noise/1\"");
+  EXPECT_EQ(complaint(with("axes = 2", "axes = 4")), "f.toml:5: axes: expected 1 to 3");
+  EXPECT_EQ(complaint(with("axes = 2", "axes = 3")).rfind("f.toml:10: colour: expected a list of 3", 0), 0U);
+  for (const char* wrong : {"nan", "inf", "-1", "0", "\"1\"", "[1]"})
+    EXPECT_EQ(complaint(with("samples = 8192", std::string("samples = ") + wrong))
+                  .rfind("f.toml:11: samples: expected a number from 1", 0),
+              0U)
+        << wrong;
+  EXPECT_EQ(complaint(with("sensor = \"nose\"\n", "")), "f.toml: sensor: expected a string");
+  // Cut off anywhere it is no shorter record of noise.
+  const std::string whole = kept_noise_text(some());
+  for (std::size_t length = 0; length + 2 < whole.size(); length += 7)
+    EXPECT_NE(complaint(whole.substr(0, length)), "") << length;
+}
+
+}  // namespace
+}  // namespace ifog
