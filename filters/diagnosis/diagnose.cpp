@@ -47,6 +47,13 @@ std::string harmful_in_words(const Effect& effect) {
          ", but the daemon's own correction by it would leave a larger error than none: left out";
 }
 
+std::string judged_beside(std::size_t harmonics) {
+  if (harmonics == 0) return "";
+  return "effects were judged in the noise beside " + std::to_string(harmonics) +
+         (harmonics == 1 ? " resonance or line that moves" : " resonances or lines that move") +
+         ", which the model of the noise knows; nothing of that is subtracted";
+}
+
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
  public:
@@ -180,6 +187,7 @@ class Run {
     if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     if (!moving_ && !data_.grid.dwells)
       say(resonances_in_words(find_resonances(longest_of(errors_).after, data_.grid.sample_s)));
+    say(judged_beside(found_.noise.shape.harmonics.size()));
     if (data_.grid.dwells && !result_.effects.empty()) {
       say("coefficients were fitted without the part they are judged on; which effects to take was decided "
           "on all of the data");
