@@ -1,5 +1,6 @@
 #include "filters/diagnosis/diagnose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/held_out_part.h"
+#include "filters/diagnosis/report/hidden_causes.h"
 #include "filters/diagnosis/report/loop_rivals.h"
 #include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
@@ -71,6 +73,7 @@ class Run {
     subtract_found(data_, found_, errors_);
     separate_lines();
     separate_hysteresis();
+    drop_what_changes_sign();
     drop_what_is_not_proven();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
@@ -138,6 +141,24 @@ class Run {
     if (!dropped.empty()) say(dropped_in_words(dropped));
   }
 
+  // What has one sign in one capture and the other in another is not of the channel's making.
+  void drop_what_changes_sign() {
+    for (;;) {
+      const std::vector<ByCapture> all = compare_captures(reconstructed_, found_.fitted, found_.noise);
+      const auto worst =
+          std::find_if(all.begin(), all.end(), [](const ByCapture& by) { return by.changes_sign(); });
+      if (worst == all.end()) return;
+      say(change_in_words(effect_of(data_, found_.fitted[worst->effect]), *worst, records_));
+      found_ = without_effect(data_, reconstructed_, std::move(found_), worst->effect);
+      subtract_found(data_, found_, errors_);
+    }
+  }
+
+  void report_changes_of_size() {
+    for (const ByCapture& by : compare_captures(reconstructed_, found_.fitted, found_.noise))
+      if (by.changes()) say(change_in_words(effect_of(data_, found_.fitted[by.effect]), by, records_));
+  }
+
   void fit_jointly() {
     joint_ = settle(data_, reconstructed_, found_);
     subtract_found(data_, found_, errors_);
@@ -183,6 +204,8 @@ class Run {
 
   void report_rest() {
     result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
+    report_changes_of_size();
+    say(unexplained_beside_claims(result_, records_.size()));
     if (moving_) describe_moving(*moving_, result_.unexplained);
     if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     if (!moving_ && !data_.grid.dwells)
