@@ -9,7 +9,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kMuch = 0.12;  // of the variance of the error's 1 s means
+constexpr double kMuch = 0.12;  // of the error's variance
 
 template <class... Values>
 std::string text(const char* format, Values... values) {

@@ -133,8 +133,8 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
       report += (i ? "  or  " : "  ") + named(pair.effects[i]);
     report += text("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
   }
-  report += text("\nStays unexplained: %s of the variance of 1 s means",
-                 percent(diagnosis.unexplained.fraction).c_str());
+  report += text("\nStays unexplained: %s of the variance of %.3g s means",
+                 percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s);
   report += " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
   if (!diagnosis.heading.after_s.empty()) {
     report += text("\nNext capture, bias taken over %.3g s at rest: heading error (1 sigma)",
