@@ -1,5 +1,6 @@
 #include "filters/diagnosis/diagnose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/held_out_part.h"
+#include "filters/diagnosis/report/hidden_causes.h"
 #include "filters/diagnosis/report/loop_rivals.h"
 #include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
@@ -47,6 +49,13 @@ std::string harmful_in_words(const Effect& effect) {
          ", but the daemon's own correction by it would leave a larger error than none: left out";
 }
 
+std::string judged_beside(std::size_t harmonics) {
+  if (harmonics == 0) return "";
+  return "effects were judged in the noise beside " + std::to_string(harmonics) +
+         (harmonics == 1 ? " resonance or line that moves" : " resonances or lines that move") +
+         ", which the model of the noise knows; nothing of that is subtracted";
+}
+
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
  public:
@@ -64,6 +73,7 @@ class Run {
     subtract_found(data_, found_, errors_);
     separate_lines();
     separate_hysteresis();
+    drop_what_changes_sign();
     drop_what_is_not_proven();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
@@ -131,6 +141,24 @@ class Run {
     if (!dropped.empty()) say(dropped_in_words(dropped));
   }
 
+  // What has one sign in one capture and the other in another is not of the channel's making.
+  void drop_what_changes_sign() {
+    for (;;) {
+      const std::vector<ByCapture> all = compare_captures(reconstructed_, found_.fitted, found_.noise);
+      const auto worst =
+          std::find_if(all.begin(), all.end(), [](const ByCapture& by) { return by.changes_sign(); });
+      if (worst == all.end()) return;
+      say(change_in_words(effect_of(data_, found_.fitted[worst->effect]), *worst, records_));
+      found_ = without_effect(data_, reconstructed_, std::move(found_), worst->effect);
+      subtract_found(data_, found_, errors_);
+    }
+  }
+
+  void report_changes_of_size() {
+    for (const ByCapture& by : compare_captures(reconstructed_, found_.fitted, found_.noise))
+      if (by.changes()) say(change_in_words(effect_of(data_, found_.fitted[by.effect]), by, records_));
+  }
+
   void fit_jointly() {
     joint_ = settle(data_, reconstructed_, found_);
     subtract_found(data_, found_, errors_);
@@ -176,10 +204,13 @@ class Run {
 
   void report_rest() {
     result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
+    report_changes_of_size();
+    say(unexplained_beside_claims(result_, records_.size()));
     if (moving_) describe_moving(*moving_, result_.unexplained);
     if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     if (!moving_ && !data_.grid.dwells)
       say(resonances_in_words(find_resonances(longest_of(errors_).after, data_.grid.sample_s)));
+    say(judged_beside(found_.noise.shape.harmonics.size()));
     if (data_.grid.dwells && !result_.effects.empty()) {
       say("coefficients were fitted without the part they are judged on; which effects to take was decided "
           "on all of the data");

@@ -56,7 +56,9 @@ struct Indistinguishable {
 };
 
 struct Unexplained {
-  double fraction = 0.0;  // of the variance of the error that is neither white noise nor explained
+  double fraction =
+      0.0;  // of the variance of the error that is neither white noise nor harmonic nor explained
+  double means_s = 1.0;  // length of the means whose variance that is
   // "nothing", "slow", "line", "moving_line", "bursts", "changing_variance", "hysteresis", "uncorrelated"
   std::string kind;
   std::string hint;

@@ -44,7 +44,32 @@ std::string count_words(std::size_t count) {
   return count < 6 ? kWords[count] : std::to_string(count) + " effects";
 }
 
+// One entry an effect, HTML; a comb of lines is one finding to the reader.
+std::vector<std::string> effects_in_words(const Diagnosis& d) {
+  std::string lines;
+  std::size_t line_count = 0;
+  for (const FoundEffect& found : d.effects)
+    if (found.effect.form == "line") {
+      lines += (line_count == 0 ? "" : ", ") + number(parameter(found.effect, "frequency_hz"), 4);
+      ++line_count;
+    }
+  std::vector<std::string> each;
+  for (const FoundEffect& found : d.effects) {
+    if (found.effect.form == "line" && line_count > 2) continue;
+    each.push_back(escaped(sentence(effect_words(found.effect) +
+                                    (found.effect.meaning.empty() ? "" : " – " + found.effect.meaning))));
+  }
+  if (line_count > 2) each.push_back(std::to_string(line_count) + " lines, at " + lines + " Hz.");
+  return each;
+}
+
 }  // namespace
+
+bool parts_overlap(const Diagnosis& diagnosis) {
+  double sum = 0.0;
+  for (const FoundEffect& found : diagnosis.effects) sum += found.variance_explained;
+  return sum > 1.05;
+}
 
 std::string sentence(const std::string& text) {
   if (text.empty()) return "";
@@ -96,25 +121,19 @@ std::string account(const Diagnosis& d) {
            account_of_rest(d) + "</p>\n";
   }
   std::string out = "<p><strong>" + count_words(d.effects.size()) +
-                    (d.effects.size() == 1 ? " was" : " were") + " found.</strong> ";
-  std::string lines;  // a comb of lines is one finding to the reader
-  std::size_t line_count = 0;
-  for (const FoundEffect& found : d.effects)
-    if (found.effect.form == "line") {
-      lines += (line_count == 0 ? "" : ", ") + number(parameter(found.effect, "frequency_hz"), 4);
-      ++line_count;
-    }
-  for (const FoundEffect& found : d.effects) {
-    if (found.effect.form == "line" && line_count > 2) continue;
-    out += escaped(sentence(effect_words(found.effect) +
-                            (found.effect.meaning.empty() ? "" : " – " + found.effect.meaning))) +
-           " ";
+                    (d.effects.size() == 1 ? " was" : " were") + " found.</strong>";
+  const std::vector<std::string> each = effects_in_words(d);
+  if (each.size() == 1) {
+    out += " " + each.front() + "</p>\n";
+  } else {
+    out += "</p>\n<ul>\n";
+    for (const std::string& words : each) out += "<li>" + words + "</li>\n";
+    out += "</ul>\n";
   }
-  if (line_count > 2) out += std::to_string(line_count) + " lines, at " + lines + " Hz. ";
-  out += "</p>\n";
   const std::string key = most_improved(d);
   if (!key.empty())
-    out += "<p>On data held out of the fit: " + escaped(account_of_change(d, key)) + " " +
+    out += "<p>By the model as written and on data held out of the fit, whichever leaves more: " +
+           escaped(account_of_change(d, key)) + " " +
            (key == "residual_rms_radps" ? "" : escaped(account_of_change(d, "residual_rms_radps"))) +
            "</p>\n";
   if (!d.indistinguishable.empty())

@@ -17,6 +17,10 @@ std::string account_of_change(const Diagnosis& diagnosis, const std::string& key
 // Keys of before/after as a person reads down them: single samples, then longer and longer means.
 std::vector<std::string> in_reading_order(const std::map<std::string, double>& figures);
 
+// Parts that run against each other may each be as large as the error and more: their shares are no parts of
+// one whole, and both the page and the console say so.
+bool parts_overlap(const Diagnosis& diagnosis);
+
 std::string sentence(const std::string& text);  // first letter large, full stop at the end
 std::string probability(double p);              // "0.003", "below 1 in a million"
 

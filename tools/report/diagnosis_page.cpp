@@ -148,13 +148,14 @@ std::string parameter_rows(const Effect& e) {
 
 std::string effect_section(const PageAxis& axis, std::size_t index) {
   const FoundEffect& found = axis.diagnosis->effects[index];
-  std::string out = "<h3>" + std::to_string(index + 1) + ". " + escaped(effect_words(found.effect)) +
-                    "</h3>\n<p>" + escaped(sentence(found.effect.meaning)) +
-                    " Chance of such a find in noise alone, after correction "
-                    "for everything tried: " +
-                    probability(found.p_value) +
-                    ". Share of the error's variance: " + number(100.0 * found.variance_explained, 3) +
-                    " %.</p>\n";
+  std::string out =
+      "<h3>" + std::to_string(index + 1) + ". " + escaped(effect_words(found.effect)) + "</h3>\n<p>" +
+      escaped(sentence(found.effect.meaning)) +
+      " Chance of such a find in noise alone, after correction "
+      "for everything tried: " +
+      probability(found.p_value) + ". Share of the error's variance" +
+      (parts_overlap(*axis.diagnosis) ? ", taken alone, beside other parts that overlap with it: " : ": ") +
+      number(100.0 * found.variance_explained, 3) + " %.</p>\n";
   out +=
       "<div class=\"scroll\"><table><caption>Parameters, with their standard errors</caption><thead><tr><th "
       "scope=\"col\">parameter</th><th scope=\"col\" class=\"n\">value</th><th "

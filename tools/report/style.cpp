@@ -65,6 +65,7 @@ h1{font-size:1.7rem;line-height:1.25;margin:0 0 .25rem}
 h2{font-size:1.25rem;margin:2.6rem 0 .6rem;padding-top:.6rem;border-top:1px solid var(--rule)}
 h3{font-size:1.05rem;margin:1.6rem 0 .4rem}
 p{margin:.5rem 0;max-width:46rem}
+li{max-width:44rem}
 .sub{color:var(--muted);margin:0 0 1.2rem}
 .account{background:var(--card);border-left:4px solid var(--after);padding:.8rem 1.1rem;border-radius:4px}
 .account p{margin:.35rem 0}

@@ -1,6 +1,8 @@
 #include "filters/diagnosis/checks/hausman_test.h"
 
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "filters/diagnosis/regression/projection.h"
 
@@ -26,6 +28,22 @@ double quadratic_form(const BlockGrid& grid, const NoiseShape& shape, const Eige
     for (const double tau : flicker_bank(grid)) add_markov(shape.flicker, tau);
   }
   if (shape.markov > 0.0) add_markov(shape.markov, shape.markov_s / grid.block_s);
+  for (const DampedHarmonic& each : shape.harmonics) {
+    const std::complex<double> step =
+        std::polar(std::exp(-1.0 / each.decay), 2.0 * std::numbers::pi * each.cycles);
+    for (const BlockRange& record : grid.records) {
+      std::complex<double> past = 0.0;
+      double before = 0.0;
+      for (std::size_t b = record.first; b <= record.end; ++b) {
+        // The weight of an angle between two blocks: of what it adds to the one and takes from the other.
+        const double here = b < record.end ? w[static_cast<Eigen::Index>(b)] : 0.0;
+        const double now = before - here;
+        sum += each.variance * now * (now + 2.0 * past.real());
+        past = step * (past + now);
+        before = here;
+      }
+    }
+  }
   for (const BlockRange& record : grid.records) {
     if (!(shape.walk > 0.0)) break;
     double rest = 0.0;  // what a step of the walk adds to w' y

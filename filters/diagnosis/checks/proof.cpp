@@ -14,6 +14,10 @@ namespace {
 constexpr double kWorse = 1.25;    // chance makes slow noise and an effect run together or against each other
 constexpr double kGradual = 4.0;   // twice the log-likelihood
 constexpr double kDisagree = 3.0;  // standard deviations
+// Of a step's size, what the means before and after have to differ by, all of them and the halves farther
+// from it.
+constexpr double kLasting = 0.4;
+constexpr double kLastingFar = 0.25;
 
 // Sum of squares of the block means less the effects, about each record's mean.
 double left_over(const BlockData& data, const Claimed& claimed) {
@@ -97,21 +101,32 @@ bool step_persists(const BlockData& data, const Claimed& claimed) {
   const Columns columns = design(data, claimed.model);
   const Eigen::VectorXd c = solve(grid, claimed.noise.shape, columns);
   const Eigen::Index last = columns.cols() - 1;
+  // Other steps stay where they are: of two that cancel, neither is still there later.
+  Eigen::VectorXd taken = c.head(last - 1);
+  for (std::size_t i = 0; i + 1 < claimed.model.size(); ++i)
+    if (claimed.model[i].form == Form::kStep) taken[column_of(grid, claimed.model, i) - 1] = 0.0;
   const BlockRange& record = grid.records[step.record];
   const std::size_t window = std::max<std::size_t>(8, record.size() / 20);
-  std::array<double, 2> sum{};
-  std::array<double, 2> count{};
+  std::array<std::vector<double>, 2> level;  // before and after, in the order of time
   for (std::size_t b = record.first; b < record.end; ++b) {
     const double away = std::abs(grid.time_s[b] - step.time_s) / grid.block_s;
     if (!grid.valid[b] || away < 3.0 || away > static_cast<double>(window)) continue;
     const auto row = static_cast<Eigen::Index>(b);
-    const std::size_t side = grid.time_s[b] > step.time_s ? 1 : 0;
-    sum[side] += columns(row, 0) - columns.row(row).segment(1, last - 1).dot(c.head(last - 1));
-    count[side] += 1.0;
+    level[grid.time_s[b] > step.time_s ? 1 : 0].push_back(columns(row, 0) -
+                                                          columns.row(row).segment(1, last - 1).dot(taken));
   }
-  if (count[0] < 4.0 || count[1] < 4.0) return false;
-  const double found = sum[1] / count[1] - sum[0] / count[0];
-  return found * c[last - 1] > 0.0 && std::abs(found) > 0.4 * std::abs(c[last - 1]);
+  if (level[0].size() < 8 || level[1].size() < 8) return false;
+  std::reverse(level[0].begin(), level[0].end());
+  const auto change = [&](bool far) {
+    std::array<double, 2> mean{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      const auto from = level[side].begin() + static_cast<std::ptrdiff_t>(far ? level[side].size() / 2 : 0);
+      mean[side] =
+          std::accumulate(from, level[side].end(), 0.0) / static_cast<double>(level[side].end() - from);
+    }
+    return (mean[1] - mean[0]) / c[last - 1];
+  };
+  return change(false) > kLasting && change(true) > kLastingFar;
 }
 
 bool agrees_with_plain_fit(const BlockData& data, const Claimed& claimed, const Claimed& without) {

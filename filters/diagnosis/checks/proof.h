@@ -16,8 +16,9 @@ struct Claimed {
 // folds together. Constants and the effects before it are projected out on all blocks first.
 bool predicts_held_out(const BlockData& data, const Claimed& claimed);
 
-// A knock makes innovations like a step's. A step is still there later: the means before and after differ by
-// it. And it is sudden: a change spread over a part of the record must not explain more.
+// A knock makes innovations like a step's, and what goes away and comes back those of two. A step is still
+// there later: the means before and after differ by it, whatever other steps there are. And it is sudden: a
+// change spread over a part of the record must not explain more.
 bool step_persists(const BlockData& data, const Claimed& claimed);
 
 // A correction must not make the error larger than slow noise makes it by chance: where it does grow against

@@ -5,69 +5,17 @@
 #include <cmath>
 #include <vector>
 
+#include "filters/diagnosis/regression/harmonics.h"
+#include "filters/diagnosis/regression/noise_climb.h"
+
 namespace ifog {
 namespace {
 
-// Below these a component changes the likelihood of a few thousand blocks by nothing: it is taken for zero.
-constexpr double kLeastWalk = 1e-10;
-constexpr double kLeastFlicker = 1e-6;
-// Above this there is no white noise left to be relative to.
-constexpr double kMost = 1e6;
 // Twice the log-likelihood a Gauss-Markov process of its own has to gain for its two parameters.
 constexpr double kMarkovGain = 14.0;
 
 double evaluate(const BlockGrid& grid, const Columns& columns, const NoiseShape& shape) {
   return fit_whitened(grid, shape, columns).log_likelihood;
-}
-
-// One parameter at a time by a shrinking factor in both directions; the likelihood is smooth and nearly
-// separable in the logarithms of walk and flicker, and zero is a value of its own that no factor reaches.
-NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, bool with_markov,
-               double precision) {
-  double best = evaluate(grid, columns, shape);
-  const auto attempt = [&](const NoiseShape& trial) {
-    const double value = evaluate(grid, columns, trial);
-    if (!(value > best + 1e-9)) return false;  // NaN is no way up
-    best = value;
-    shape = trial;
-    return true;
-  };
-  std::vector<double NoiseShape::*> parameters = {&NoiseShape::walk, &NoiseShape::flicker};
-  if (with_markov) {
-    parameters.push_back(&NoiseShape::markov);
-    parameters.push_back(&NoiseShape::markov_s);
-  }
-  double factor = 4.0;
-  while (factor > precision) {
-    bool moved = false;
-    for (double NoiseShape::*parameter : parameters) {
-      if (shape.*parameter == 0.0) continue;
-      for (const double f : {factor, 1.0 / factor}) {
-        NoiseShape trial = shape;
-        trial.*parameter *= f;
-        while (attempt(trial)) {
-          moved = true;
-          trial = shape;
-          trial.*parameter *= f;
-          const double least = parameter == &NoiseShape::walk ? kLeastWalk : kLeastFlicker;
-          if (trial.*parameter < least || trial.*parameter > kMost) break;
-        }
-      }
-    }
-    if (!moved) factor = std::sqrt(factor);
-  }
-  for (double NoiseShape::*parameter : {&NoiseShape::walk, &NoiseShape::flicker}) {
-    if (shape.*parameter == 0.0) continue;
-    NoiseShape trial = shape;
-    trial.*parameter = 0.0;
-    const double value = evaluate(grid, columns, trial);
-    if (value >= best - 0.02) {
-      best = std::max(best, value);
-      shape = trial;
-    }
-  }
-  const WhitenedFit fit = fit_whitened(grid, shape, columns);
-  return {shape, fit.log_likelihood, fit.white_variance};
 }
 
 }  // namespace
@@ -104,13 +52,14 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseSha
   NoiseShape shape = start;
   if (shape.walk == 0.0) shape.walk = 1e-5;
   if (shape.flicker == 0.0) shape.flicker = 1e-3;
-  return climb(grid, columns, shape, shape.markov > 0.0, precision);
+  return climb(grid, columns, shape, precision);
 }
 
-NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
-  if (grid.dwells) return fit_noise(grid, columns, {});
-  // Walk and flicker stand in for each other along a ridge with more than one top: one climb from the best of
-  // each kind of start.
+namespace {
+
+// Walk and flicker stand in for each other along a ridge with more than one top: one climb from the best of
+// each kind of start.
+NoiseFit fit_walk_and_flicker(const BlockGrid& grid, const Columns& columns) {
   struct Start {
     NoiseShape shape;
     double value = -1e300;
@@ -130,7 +79,10 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
     const NoiseFit fit = fit_noise(grid, columns, start.shape);
     if (fit.log_likelihood > best.log_likelihood) best = fit;
   }
+  return best;
+}
 
+NoiseFit with_markov(const BlockGrid& grid, const Columns& columns, const NoiseFit& best) {
   NoiseFit richer = best;
   for (const double blocks : {1.0, 8.0, 64.0}) {
     for (const double variance : {0.3, 10.0}) {
@@ -141,8 +93,25 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
       if (value > richer.log_likelihood) richer = {shape, value, 0.0};
     }
   }
-  if (richer.shape.markov > 0.0) richer = climb(grid, columns, richer.shape, true, 1.05);
+  if (richer.shape.markov > 0.0) richer = climb(grid, columns, richer.shape, 1.05);
   return 2.0 * (richer.log_likelihood - best.log_likelihood) > kMarkovGain ? richer : best;
+}
+
+}  // namespace
+
+NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
+  if (grid.dwells) return fit_noise(grid, columns, {});
+  const NoiseFit plain = fit_walk_and_flicker(grid, columns);
+  const NoiseFit markov = with_markov(grid, columns, plain);
+  const NoiseFit last = with_harmonics(grid, columns, markov);
+  if (markov.shape.markov == 0.0) {
+    return last.shape.harmonics.empty() ? last : with_markov(grid, columns, last);
+  }
+  // What a process of its own was taken for may have been a resonance.
+  const NoiseFit first = with_harmonics(grid, columns, plain);
+  if (first.shape.harmonics.empty()) return last;
+  const NoiseFit both = with_markov(grid, columns, first);
+  return information_criterion(grid, both) < information_criterion(grid, last) ? both : last;
 }
 
 }  // namespace ifog

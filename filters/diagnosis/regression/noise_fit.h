@@ -22,12 +22,13 @@ struct NoiseFit {
   double white_variance = 0.0;
 };
 
-// Searches walk and flicker, both down to zero, from the given start; a Gauss-Markov process of its own is
-// kept as it is in `start`.
+// Searches walk and flicker, both down to zero, and a Gauss-Markov process of its own where `start` has one,
+// from there. Harmonics are kept as they are in `start`.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start,
                    double precision = 1.05);
 
-// From nothing known: coarse grid, then fit_noise; then whether a Gauss-Markov process is there as well.
+// From nothing known: coarse grid, then fit_noise; then whether a Gauss-Markov process is there as well, and
+// how many harmonics.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns);
 
 }  // namespace ifog

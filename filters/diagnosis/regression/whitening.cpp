@@ -7,14 +7,15 @@
 namespace ifog {
 namespace {
 
-// Steady-state covariance of the prediction for x+ = diag(f) x + w, z = 1'x + v, var v = 1: the
+// Steady-state covariance of the prediction for x+ = F x + w, z = s'x + v, var w = diag(q), var v = 1: the
 // structure-preserving doubling algorithm (Chu, Fan, Lin 2005), quadratic where iterating the filter takes as
 // long as the slowest state.
-Eigen::MatrixXd steady_covariance(const Eigen::VectorXd& f, const Eigen::VectorXd& q) {
-  const Eigen::Index m = f.size();
+Eigen::MatrixXd steady_covariance(const Eigen::MatrixXd& f, const Eigen::VectorXd& q,
+                                  const Eigen::VectorXd& s) {
+  const Eigen::Index m = q.size();
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(m, m);
-  Eigen::MatrixXd a = f.asDiagonal();
-  Eigen::MatrixXd g = Eigen::MatrixXd::Ones(m, m);
+  Eigen::MatrixXd a = f.transpose();
+  Eigen::MatrixXd g = s * s.transpose();
   Eigen::MatrixXd h = q.asDiagonal();
   for (int round = 0; round < 60; ++round) {
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(one + g * h);
@@ -60,15 +61,34 @@ Whitening::Whitening(const BlockGrid& grid, const NoiseShape& shape) : grid_(gri
     for (const double tau : flicker_bank(grid)) add_markov(shape.flicker, tau);
   }
   if (shape.markov > 0.0) add_markov(shape.markov, shape.markov_s / grid.block_s);
-  const auto m = static_cast<Eigen::Index>(factor_.size());
-  if (m == 0) return;
-  const Eigen::VectorXd f = Eigen::Map<Eigen::VectorXd>(factor_.data(), m);
-  const Eigen::MatrixXd p = steady_covariance(f, Eigen::Map<Eigen::VectorXd>(drive.data(), m));
-  const Eigen::VectorXd ph = p.rowwise().sum();
-  innovation_variance_ = ph.sum() + 1.0;
-  gain_.resize(factor_.size());
-  for (Eigen::Index i = 0; i < m; ++i)
-    gain_[static_cast<std::size_t>(i)] = f[i] * ph[i] / innovation_variance_;
+  for (const DampedHarmonic& each : shape.harmonics) {
+    const double left = std::exp(-1.0 / each.decay);
+    const double turn = 2.0 * std::numbers::pi * each.cycles;
+    turns_.push_back({left * std::cos(turn), left * std::sin(turn)});
+    const double driven = each.variance * (1.0 - left * left);
+    drive.insert(drive.end(), {driven, driven, 0.0});
+  }
+  if (!drive.empty())
+    design_gain(Eigen::Map<Eigen::VectorXd>(drive.data(), static_cast<Eigen::Index>(drive.size())));
+}
+
+void Whitening::design_gain(const Eigen::VectorXd& drive) {
+  const Eigen::Index m = drive.size();
+  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(m, m);
+  Eigen::VectorXd seen = Eigen::VectorXd::Ones(m);
+  Eigen::Index i = 0;
+  for (; i < static_cast<Eigen::Index>(factor_.size()); ++i)
+    step(i, i) = factor_[static_cast<std::size_t>(i)];
+  for (const Turn& turn : turns_) {
+    step.block<2, 2>(i, i) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
+    step(i + 2, i) = 1.0;
+    seen.segment<2>(i + 1) << 0.0, -1.0;
+    i += 3;
+  }
+  const Eigen::VectorXd ph = steady_covariance(step, drive, seen) * seen;
+  innovation_variance_ = seen.dot(ph) + 1.0;
+  const Eigen::VectorXd gain = step * ph / innovation_variance_;
+  gain_.assign(gain.begin(), gain.end());
 }
 
 // A fixed number of columns at once, so that their states stay in registers.
@@ -76,20 +96,31 @@ template <int Width>
 void Whitening::apply_some(Columns& columns, Eigen::Index first) const {
   using Lane = Eigen::Array<double, Width, 1>;
   const std::size_t m = factor_.size();
-  std::vector<Lane, Eigen::aligned_allocator<Lane>> state(m);
+  std::vector<Lane, Eigen::aligned_allocator<Lane>> state(gain_.size());
   const Eigen::Index stride = columns.cols();
+  const Lane unseen = Lane::Zero();
+  const auto go_on = [&](const Lane& e) {
+    for (std::size_t i = 0; i < m; ++i) state[i] = factor_[i] * state[i] + gain_[i] * e;
+    for (std::size_t h = 0, i = m; h < turns_.size(); ++h, i += 3) {
+      const Lane x = turns_[h].cosine * state[i] - turns_[h].sine * state[i + 1] + gain_[i] * e;
+      state[i + 1] = turns_[h].sine * state[i] + turns_[h].cosine * state[i + 1] + gain_[i + 1] * e;
+      state[i + 2] = state[i] + gain_[i + 2] * e;
+      state[i] = x;
+    }
+  };
   for (const BlockRange& record : grid_.records) {
     std::fill(state.begin(), state.end(), Lane::Zero());
     for (std::size_t b = record.first; b < record.end; ++b) {
       Eigen::Map<Lane> row(columns.data() + static_cast<Eigen::Index>(b) * stride + first);
       if (!grid_.valid[b]) {
-        for (std::size_t i = 0; i < m; ++i) state[i] *= factor_[i];
+        go_on(unseen);
         row.setZero();
         continue;
       }
       Lane e = row;
       for (std::size_t i = 0; i < m; ++i) e -= state[i];
-      for (std::size_t i = 0; i < m; ++i) state[i] = factor_[i] * state[i] + gain_[i] * e;
+      for (std::size_t i = m; i < gain_.size(); i += 3) e -= state[i] - state[i + 2];
+      go_on(e);
       row = e;
     }
   }
@@ -100,6 +131,27 @@ void Whitening::apply(Columns& columns) const {
   for (; first + 8 <= columns.cols(); first += 8) apply_some<8>(columns, first);
   for (; first + 2 <= columns.cols(); first += 2) apply_some<2>(columns, first);
   for (; first < columns.cols(); ++first) apply_some<1>(columns, first);
+}
+
+double relative_density(const BlockGrid& grid, const NoiseShape& shape, double cycles) {
+  double density = 1.0;
+  // 1 + 2 sum of r^k cos: the Poisson kernel.
+  const auto add = [&](double variance, double decay, double away) {
+    const double r = std::exp(-1.0 / decay);
+    density += variance * (1.0 - r * r) / (1.0 - 2.0 * r * std::cos(2.0 * std::numbers::pi * away) + r * r);
+  };
+  const double half_step = std::sin(std::numbers::pi * cycles);
+  if (half_step != 0.0) density += shape.walk / (4.0 * half_step * half_step);
+  if (shape.flicker > 0.0) {
+    for (const double tau : flicker_bank(grid)) add(shape.flicker, tau, cycles);
+  }
+  if (shape.markov > 0.0) add(shape.markov, shape.markov_s / grid.block_s, cycles);
+  for (const DampedHarmonic& each : shape.harmonics) {
+    const double turned = 2.0 * half_step * half_step * each.variance;
+    add(turned, each.decay, cycles - each.cycles);
+    add(turned, each.decay, cycles + each.cycles);
+  }
+  return density;
 }
 
 NoiseTerms noise_terms(const NoiseShape& shape, double white, double block_s) {

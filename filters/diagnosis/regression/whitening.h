@@ -1,5 +1,8 @@
-// The noise model of block means and its Kalman filter, in steady state: white noise, a random walk, and
-// flicker as a bank of Gauss-Markov processes of equal variance whose time constants are a factor apart.
+// The noise model of block means and its Kalman filter, in steady state: white noise, a random walk,
+// flicker as a bank of Gauss-Markov processes of equal variance whose time constants are a factor apart, and
+// damped harmonics, which are what a structure that sways and lines that move leave in the rate. That is
+// motion, and nothing of it is subtracted; but in a filter that does not know it, it would be white noise,
+// and everything else would be judged in that.
 //
 // The filter turns a series into its innovations. It is linear, so the same filter whitens the measurement
 // and every regressor, and ordinary least squares on what comes out is generalised least squares on what went
@@ -17,12 +20,22 @@ namespace ifog {
 using Columns =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // block by block in memory
 
+// An angle whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that
+// of a resonance driven by white noise. A block's mean is the angle turned in it over its length: what sways
+// does not turn away, and at slow frequencies there is nothing of it, however fast it is against the blocks.
+struct DampedHarmonic {
+  double variance = 0.0;  // of the angle, over the square of a block's length
+  double cycles = 0.0;    // a block, at most one half: what is faster is seen at its alias
+  double decay = 0.0;     // blocks
+};
+
 // Relative to the white variance of a block mean, which likelihoods concentrate out.
 struct NoiseShape {
   double walk = 0.0;      // variance of the random walk's step from block to block
   double flicker = 0.0;   // variance of each process of the bank
   double markov = 0.0;    // variance of one Gauss-Markov process of its own
   double markov_s = 0.0;  // its correlation time
+  std::vector<DampedHarmonic> harmonics = {};
 };
 
 inline constexpr double kFlickerSpacing =
@@ -38,14 +51,21 @@ class Whitening {
 
   // Variance of the innovations over the white variance, at least 1.
   [[nodiscard]] double innovation_variance() const { return innovation_variance_; }
-  [[nodiscard]] std::size_t states() const { return factor_.size(); }
+  [[nodiscard]] std::size_t states() const { return gain_.size(); }
 
  private:
   template <int Width>
   void apply_some(Columns& columns, Eigen::Index first) const;
 
+  void design_gain(const Eigen::VectorXd& drive);
+
   const BlockGrid& grid_;
-  std::vector<double> factor_, gain_;  // by state: x+ = factor (x) + gain e
+  std::vector<double> factor_;  // of the states that only decay: x+ = factor x + gain e
+  struct Turn {
+    double cosine, sine;  // times what a block leaves of the amplitude
+  };
+  std::vector<Turn> turns_;   // of the harmonics: angle, its quadrature, and the angle a block ago
+  std::vector<double> gain_;  // of all states, in that order
   double innovation_variance_ = 1.0;
 };
 
@@ -56,7 +76,11 @@ Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, c
 // Time constants of the bank, in blocks.
 std::vector<double> flicker_bank(const BlockGrid& grid);
 
-// The same in IEEE Std 952 coefficients. `white` is the variance of a block mean, (rad/s)^2.
+// Power density at so many cycles a block over that of the white noise. Nothing of a walk at zero.
+double relative_density(const BlockGrid& grid, const NoiseShape& shape, double cycles);
+
+// The same in IEEE Std 952 coefficients, of the terms that it has. `white` is the variance of a block mean,
+// (rad/s)^2.
 NoiseTerms noise_terms(const NoiseShape& shape, double white, double block_s);
 
 }  // namespace ifog

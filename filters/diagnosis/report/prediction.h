@@ -17,7 +17,7 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
 // Of a next capture whose channels run as they did in the longest of the records.
 HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records);
 
-// Of the noise alone: variance of the heading error, rad^2.
+// Of the noise alone, without the motion of what the sensor stands on: variance of the heading error, rad^2.
 double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s);
 
 }  // namespace ifog

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <utility>
 
 #include "filters/diagnosis/record/even_grid.h"
@@ -190,6 +191,24 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   }
 }
 
+// Of means of a second. What sways is part of the noise as block means have it, so with harmonics it is of
+// those.
+void describe_share(std::span<const double> error, std::span<const double> left, double period_s,
+                    const NoiseFit& noise, const BlockGrid& grid, Unexplained& found) {
+  const bool sways = !noise.shape.harmonics.empty();
+  const auto count = std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::floor((sways ? grid.block_s : 1.0) / period_s + 0.5)));
+  found.means_s = static_cast<double>(count) * period_s;
+  const double before = variance_of(means_over(error, count));
+  const double after = variance_of(means_over(left, count));
+  double known = noise.white_variance * grid.block_s / found.means_s;
+  for (const DampedHarmonic& each : noise.shape.harmonics) {
+    const double kept = std::exp(-1.0 / each.decay) * std::cos(2.0 * std::numbers::pi * each.cycles);
+    known += noise.white_variance * 2.0 * each.variance * (1.0 - kept);
+  }
+  found.fraction = before > 0.0 ? std::clamp((after - known) / before, 0.0, 1.0) : 0.0;
+}
+
 }  // namespace
 
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
@@ -197,10 +216,7 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
                                  const std::vector<SpectralLine>& peaks) {
   Unexplained found;
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
-  const double before = variance_of(means_over(error, second));
-  const double after = variance_of(means_over(left, second));
-  const double white = noise.white_variance * grid.block_s / (static_cast<double>(second) * period_s);
-  found.fraction = before > 0.0 ? std::clamp((after - white) / before, 0.0, 1.0) : 0.0;
+  describe_share(error, left, period_s, noise, grid, found);
 
   if (!peaks.empty()) {
     describe_peak(peaks.front(), found);

@@ -6,6 +6,7 @@
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/checks/hausman_test.h"
 #include "filters/diagnosis/checks/outliers.h"
+#include "filters/diagnosis/checks/proof.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
@@ -31,6 +32,17 @@ bool slow_noise_may_oppose(const BlockData& reconstructed, const SearchResult& f
   const Eigen::VectorXd taken = Eigen::VectorXd::Ones(k + 1);
   const Eigen::MatrixXd known = Eigen::MatrixXd::Zero(k + 1, k + 1);
   return disagreement(reconstructed.grid, found.noise, columns, k, taken, known) < kOpposed;
+}
+
+// Beside the effects that came after it, and without the blocks that no model explains: where a sensor was
+// knocked about, a step fits some of it.
+bool step_stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at,
+                 double significance) {
+  std::vector<Candidate> ordered = found.fitted;
+  std::rotate(ordered.begin() + static_cast<std::ptrdiff_t>(at),
+              ordered.begin() + static_cast<std::ptrdiff_t>(at) + 1, ordered.end());
+  const double ratio = ratio_without_outliers(reconstructed, found.fitted, at, found.noise.shape);
+  return tail(ratio, 1) * found.tries < significance && step_persists(reconstructed, {ordered, found.noise});
 }
 
 }  // namespace
@@ -100,7 +112,11 @@ std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockDa
     subtract_found(data, found, errors);
   };
   for (std::size_t i = 0; i < found.fitted.size();) {
-    if (found.fitted[i].channel == Candidate::kNone || stands(reconstructed, found, i, significance))
+    const Candidate& each = found.fitted[i];
+    const bool proven = each.form == Form::kStep ? step_stands(reconstructed, found, i, significance)
+                                                 : each.channel == Candidate::kNone ||
+                                                       stands(reconstructed, found, i, significance);
+    if (proven)
       ++i;
     else
       drop(i);

@@ -28,9 +28,10 @@ bool holds(const BlockData& reconstructed, const SearchResult& found, const std:
 // Index of the least certain effect that is corrected online; none when there is no such effect.
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 
-// Takes out of `found` every effect of a channel that does not stand, then, while the error on held-out data
-// does not hold, the least certain of those that are corrected online: effects that make it larger are no
-// model, whatever their p-values. `errors` follow. The effects dropped, in that order.
+// Takes out of `found` every effect of a channel that does not stand and every step that does not persist,
+// then, while the error on held-out data does not hold, the least certain of those that are corrected online:
+// effects that make it larger are no model, whatever their p-values. `errors` follow. The effects dropped, in
+// that order.
 std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockData& reconstructed,
                                             double significance, SearchResult& found,
                                             std::vector<EvenError>& errors);

@@ -28,6 +28,12 @@ std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
       shapes.push_back(each);
     }
   }
+  // A channel that goes up and down may be what a harmonic has been taken for.
+  for (std::size_t i = 0; i < shape.harmonics.size(); ++i) {
+    NoiseShape each = shape;
+    each.harmonics.erase(each.harmonics.begin() + static_cast<std::ptrdiff_t>(i));
+    shapes.push_back(each);
+  }
   return shapes;
 }
 

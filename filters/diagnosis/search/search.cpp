@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filters/diagnosis/checks/proof.h"
+#include "filters/diagnosis/regression/harmonics.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/diagnosis/search/refine.h"
@@ -40,6 +41,8 @@ class EffectSearch {
       if (!add_one() && !add_pair()) break;
       revise();
     }
+    // Beside the effects there may be fewer harmonics, or one that they had hidden.
+    noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
     revise_pairs();
     drop_what_slow_denies();
     try_second_lags();

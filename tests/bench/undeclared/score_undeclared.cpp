@@ -14,6 +14,7 @@
 #include "tests/bench/undeclared/logging_faults.h"
 #include "tests/bench/undeclared/oracle_diagnosis.h"
 #include "tests/bench/undeclared/project_diagnosis.h"
+#include "tests/bench/undeclared/structure.h"
 #include "tests/bench/undeclared/tally.h"
 
 using namespace ifog::undeclared;
@@ -24,7 +25,7 @@ struct Options {
   int with = 1000, without = 1000, captures = 1;
   std::uint64_t seed = 1;
   double sigma_low = 12.0, sigma_high = 80.0;
-  std::string kind, method = "ifog", fault;
+  std::string kind, method = "ifog", fault, structure;
   bool curve = false, quiet = false, promises = false;
   int jobs = 1;
   double minutes = 1e6;
@@ -72,6 +73,8 @@ int main(int argc, char** argv) {
   app.add_option("--method", o.method)->check(CLI::IsMember({"ifog", "oracle", "blind"}));
   app.add_option("--fault", o.fault, "of the logger, in every capture that is diagnosed")
       ->check(CLI::IsMember(logging_faults()));
+  app.add_option("--structure", o.structure, "what every sensor stands on while it is diagnosed")
+      ->check(CLI::IsMember(structures()));
   app.add_flag("--curve", o.curve, "sizes 4, 5, … 12 sigma in turn: the detection curve");
   app.add_flag("--promises", o.promises, "list every effect, interval and heading error by sensor");
   app.add_flag("--quiet", o.quiet, "no list of failures");
@@ -105,10 +108,12 @@ int main(int argc, char** argv) {
       threads.emplace_back([&] {
         for (std::size_t i = next++; i < places.size() && !late(); i = next++) {
           const Sensor sensor = sensor_at(o, places[i].number, places[i].with_effect);
-          const Diagnose method = o.method == "ifog"     ? project_diagnosis()
-                                  : o.method == "oracle" ? oracle_diagnosis(sensor)
-                                                         : blind_diagnosis();
-          made[i] = score(sensor, o.fault.empty() ? method : logged_with(o.fault, method));
+          Diagnose method = o.method == "ifog"     ? project_diagnosis()
+                            : o.method == "oracle" ? oracle_diagnosis(sensor)
+                                                   : blind_diagnosis();
+          if (!o.fault.empty()) method = logged_with(o.fault, method);
+          if (!o.structure.empty()) method = moved_by(o.structure, sensor, method);
+          made[i] = score(sensor, method);
           if (++done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", done.load(), places.size());
           std::ostringstream wrong;
           print_failures(wrong, {*made[i]});

@@ -138,6 +138,29 @@ TEST(Proof, AStepStaysAndAKnockOrASlopeDoesNot) {
   }
 }
 
+// It ends soon, and the mean of all that follows is a part of it, which the fit of one step takes for its
+// size.
+TEST(Proof, AnExcursionIsNoStep) {
+  BlockData data = white_with_temperature(1000, 13);
+  for (Eigen::Index i = 500; i < 515; ++i) data.grid.error[i] += 9.0;
+  const std::vector<Candidate> model = {step_at(499.5)};
+  EXPECT_FALSE(step_persists(data, claimed(model, {{}, 0.0, 1.0})));
+  EXPECT_FALSE(step_persists(data, claimed(model, {{0.02, 0.0, 0.0, 0.0}, 0.0, 1.0})));
+}
+
+// Two states of a structure, not two jumps of a bias: neither lasts. Two that do not cancel are still there.
+TEST(Proof, TwoStepsThatCancelDoNotPersist) {
+  for (const double back : {-5.0, 3.0}) {
+    BlockData data = white_with_temperature(1000, 12);
+    data.grid.error.tail(500).array() += 5.0;
+    data.grid.error.tail(485).array() += back;
+    const NoiseFit noise{{}, 0.0, 1.0};
+    const bool lasting = back > 0.0;
+    EXPECT_EQ(step_persists(data, claimed({step_at(514.5), step_at(499.5)}, noise)), lasting);
+    EXPECT_EQ(step_persists(data, claimed({step_at(499.5), step_at(514.5)}, noise)), lasting);
+  }
+}
+
 // What is quick only must not be corrected in what is slow.
 TEST(Proof, ACorrectionThatMakesTheSlowPartLargerHasToAgreeWithPlainLeastSquares) {
   BlockData data = white_with_temperature(1500, 9);

@@ -191,6 +191,35 @@ TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
   if (const char* path = std::getenv("IFOG_REPORT_OUTPUT")) std::ofstream(path) << html;
 }
 
+std::size_t count_of(const std::string& html, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = html.find(part); at != std::string::npos; at = html.find(part, at + 1)) ++count;
+  return count;
+}
+
+// Parts that each take all of the variance are no parts of one whole.
+TEST(ReportPage, SharesThatOverlapSaySo) {
+  ifog::example::Example e = ifog::example::make();
+  for (ifog::FoundEffect& found : e.diagnosis.effects) found.variance_explained = 0.4;
+  EXPECT_EQ(count_of(page_of(e), "taken alone, beside other parts that overlap with it: 40"), 0U);
+  for (ifog::FoundEffect& found : e.diagnosis.effects) found.variance_explained = 1.0;
+  EXPECT_EQ(count_of(page_of(e), "taken alone, beside other parts that overlap with it: 100"), 2U);
+}
+
+TEST(ReportPage, ManyEffectsAreAListInShort) {
+  ifog::example::Example e = ifog::example::make();
+  while (e.diagnosis.effects.size() < 11) e.diagnosis.effects.push_back(e.diagnosis.effects.front());
+  const std::string html = page_of(e);
+  const std::string account = html.substr(html.find("class=\"account\""),
+                                          html.find("class=\"tiles\"") - html.find("class=\"account\""));
+  EXPECT_EQ(count_of(account, "<li>"), 11U);
+  EXPECT_NE(account.find("By the model as written and on data held out of the fit"), std::string::npos);
+  e.diagnosis.effects.resize(1);
+  EXPECT_EQ(count_of(page_of(e).substr(0, html.find("class=\"tiles\"")),
+                     "<p><strong>One effect was found.</strong> "),
+            1U);
+}
+
 TEST(ReportPage, NothingFoundIsAResult) {
   ifog::example::Example e = ifog::example::make();
   e.diagnosis.effects.clear();

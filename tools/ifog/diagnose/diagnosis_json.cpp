@@ -76,8 +76,10 @@ Json figures_json(const std::map<std::string, double>& figures) {
 
 Json unexplained_json(const Diagnosis& diagnosis) {
   const Unexplained& unexplained = diagnosis.unexplained;
-  Json json = {
-      {"fraction", number(unexplained.fraction)}, {"kind", unexplained.kind}, {"hint", unexplained.hint}};
+  Json json = {{"fraction", number(unexplained.fraction)},
+               {"means_s", number(unexplained.means_s)},
+               {"kind", unexplained.kind},
+               {"hint", unexplained.hint}};
   if (unexplained.frequency_hz > 0.0) json["frequency_hz"] = unexplained.frequency_hz;
   if (!unexplained.times_s.empty()) json["times_s"] = unexplained.times_s;
   if (diagnosis.hysteresis) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "filters/units/field_units.h"
+#include "tools/report/account.h"
 #include "tools/report/words.h"
 
 namespace ifog::tools {
@@ -32,13 +33,6 @@ std::string value_of(const ModelParameter& parameter) {
   const report::FieldUnit field = report::field_unit(parameter.unit);
   return text("%.4g ± %.2g %s", parameter.value * field.scale, parameter.std_error * field.scale,
               field.unit.c_str());
-}
-
-// Parts that run against each other may each be as large as the error and more.
-bool parts_overlap(const Diagnosis& diagnosis) {
-  double sum = 0.0;
-  for (const FoundEffect& found : diagnosis.effects) sum += found.variance_explained;
-  return sum > 1.05;
 }
 
 std::string effect_lines(const FoundEffect& found, std::size_t number, bool overlap) {
@@ -129,7 +123,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   } else {
     report += "\nFound:\n";
     for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
-      report += effect_lines(diagnosis.effects[i], i + 1, parts_overlap(diagnosis));
+      report += effect_lines(diagnosis.effects[i], i + 1, report::parts_overlap(diagnosis));
   }
   report += "\nError, by the model as written and on data held out of the fit, whichever is larger:\n" +
             figure_lines(diagnosis);
@@ -139,8 +133,8 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
       report += (i ? "  or  " : "  ") + named(pair.effects[i]);
     report += text("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
   }
-  report += text("\nStays unexplained: %s of the variance of 1 s means",
-                 percent(diagnosis.unexplained.fraction).c_str());
+  report += text("\nStays unexplained: %s of the variance of %.3g s means",
+                 percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s);
   report += " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
   if (!diagnosis.heading.after_s.empty()) {
     report += text("\nNext capture, bias taken over %.3g s at rest: heading error (1 sigma)",

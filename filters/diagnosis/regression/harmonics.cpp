@@ -1,0 +1,183 @@
+#include "filters/diagnosis/regression/harmonics.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+#include <unsupported/Eigen/FFT>
+
+#include "filters/diagnosis/regression/design.h"
+#include "filters/diagnosis/regression/noise_climb.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kLeastPeriods = 64.0;  // in the longest record
+constexpr double kLeastDecay = 1.0;
+constexpr double kMostDecays = 16.0;  // a record has at least so many
+constexpr std::size_t kFewestBlocks = 512;
+constexpr std::size_t kMost = 6;
+constexpr double kOfHarmonic = 3.0;  // parameters
+constexpr double kOfMarkov = 2.0;
+constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
+constexpr double kRough = 1.4;
+constexpr double kFine = 1.05;
+
+// Of the innovations, over that of white noise of the same power; bins 0 … length / 2. Empty when they are no
+// numbers.
+struct Periodogram {
+  std::vector<double> power;
+  double ordinates = 1.0;  // independent ones a bin
+  [[nodiscard]] double cycles(double bin) const { return 0.5 * bin / static_cast<double>(power.size() - 1); }
+};
+
+Periodogram of_innovations(const BlockGrid& grid, const Columns& columns, const NoiseShape& shape) {
+  Columns white = columns;
+  Whitening(grid, shape).apply(white);
+  const Eigen::VectorXd left = left_by(white.rightCols(white.cols() - 1), white.col(0));
+  if (!std::isfinite(left.squaredNorm())) return {};
+  const std::size_t length = std::bit_ceil(grid.longest());
+  Periodogram found{std::vector<double>(length / 2 + 1, 0.0),
+                    static_cast<double>(grid.used()) / static_cast<double>(length)};
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<std::complex<double>> bins;
+  for (const BlockRange& record : grid.records) {
+    std::vector<double> values(length, 0.0);
+    for (std::size_t b = record.first; b < record.end; ++b)
+      if (grid.valid[b]) values[b - record.first] = left[static_cast<Eigen::Index>(b)];
+    transform.fwd(bins, values);
+    for (std::size_t k = 0; k < found.power.size(); ++k) found.power[k] += std::norm(bins[k]);
+  }
+  const double square = std::max(left.squaredNorm(), 1e-300);
+  for (double& power : found.power) power /= square;
+  return found;
+}
+
+struct Hump {
+  double cycles = 0.0, width = 0.0;  // a block
+  double ratio = 0.0;                // to the floor
+  double floor = 1.0;                // of the innovations where no hump is
+  double gain = 0.0;                 // twice the log-likelihood that white noise of another level there gains
+};
+
+// Half of the short stretches of the spectrum lie below it.
+double floor_of(const Periodogram& spectrum, std::size_t first) {
+  constexpr std::size_t kBins = 16;
+  std::vector<double> means;
+  for (std::size_t k = first; k + kBins <= spectrum.power.size(); k += kBins) {
+    double sum = 0.0;
+    for (std::size_t i = k; i < k + kBins; ++i) sum += spectrum.power[i];
+    means.push_back(sum / kBins);
+  }
+  const auto middle = means.begin() + static_cast<std::ptrdiff_t>(means.size() / 2);
+  std::nth_element(means.begin(), middle, means.end());
+  return std::max(*middle, 1e-6);
+}
+
+// The stretch of the spectrum that stands highest above the floor for its width (Whittle's likelihood).
+std::optional<Hump> highest_hump(const Periodogram& spectrum, const HarmonicLimits& limits) {
+  const std::size_t n = spectrum.power.size();
+  if (n < 2) return std::nullopt;
+  const auto first = static_cast<std::size_t>(std::ceil(limits.least_cycles / spectrum.cycles(1.0)));
+  if (first + 64 > n) return std::nullopt;
+  std::vector<double> sum(n + 1, 0.0);
+  for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + spectrum.power[k];
+  const double floor = floor_of(spectrum, first);
+  std::optional<Hump> best;
+  for (std::size_t width = 4; width <= n / 6; width *= 2) {
+    for (std::size_t k = first; k + width <= n; k += width / 4) {
+      const auto bins = static_cast<double>(width);
+      const double ratio = (sum[k + width] - sum[k]) / bins / floor;
+      if (!(ratio > 1.0)) continue;
+      const double gain = 2.0 * bins * spectrum.ordinates * (ratio - 1.0 - std::log(ratio));
+      if (best && gain <= best->gain) continue;
+      const double middle = static_cast<double>(k) + 0.5 * (bins - 1.0);
+      best = Hump{spectrum.cycles(middle), spectrum.cycles(bins), ratio, floor, gain};
+    }
+  }
+  return best;
+}
+
+// White noise of the old shape was the mean over all, humps included: the rest is relative to the floor now.
+NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white) {
+  const HarmonicLimits limits = harmonic_limits(grid);
+  const double density = relative_density(grid, shape, hump.cycles);
+  NoiseShape with = shape;
+  // What had sunk in white noise that was too large may be there after all.
+  with.walk = std::max(shape.walk / white, kSmallWalk);
+  with.flicker = std::max(shape.flicker / white, kSmallFlicker);
+  with.markov /= white;
+  for (DampedHarmonic& each : with.harmonics) each.variance /= white;
+  const double decay =
+      std::clamp(1.0 / (std::numbers::pi * hump.width), limits.least_decay, limits.most_decay);
+  // The area on both sides of zero: height times half pi times the width. Of the angle, of which a block sees
+  // the change.
+  const double turned = 4.0 * std::pow(std::sin(std::numbers::pi * hump.cycles), 2);
+  const double variance =
+      std::numbers::pi * hump.width * (hump.ratio - 1.0) * hump.floor * density / white / turned;
+  with.harmonics.push_back({variance, hump.cycles, decay});
+  return with;
+}
+
+NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
+  NoiseFit best;
+  best.log_likelihood = -1e300;
+  for (const double white : {1.0, std::sqrt(hump.floor), hump.floor}) {
+    for (const double wider : {1.0, 4.0}) {
+      NoiseShape start = with_hump(grid, fit.shape, hump, white);
+      DampedHarmonic& mine = start.harmonics.back();
+      mine.decay = std::max(mine.decay / wider, kLeastDecay);
+      const double value = fit_whitened(grid, start, columns).log_likelihood;
+      if (value > best.log_likelihood) best = {start, value, 0.0};
+    }
+  }
+  return climb(grid, columns, best.shape, kRough, true);
+}
+
+double cost(const BlockGrid& grid, double parameters) {
+  return parameters * std::log(static_cast<double>(grid.used()));
+}
+
+}  // namespace
+
+HarmonicLimits harmonic_limits(const BlockGrid& grid) {
+  const auto longest = static_cast<double>(grid.longest());
+  return {kLeastPeriods / longest, kLeastDecay, longest / kMostDecays};
+}
+
+double information_criterion(const BlockGrid& grid, const NoiseFit& fit) {
+  return cost(grid, kOfHarmonic * static_cast<double>(fit.shape.harmonics.size()) +
+                        (fit.shape.markov > 0.0 ? kOfMarkov : 0.0)) -
+         2.0 * fit.log_likelihood;
+}
+
+NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit) {
+  if (grid.dwells || grid.longest() < kFewestBlocks) return fit;
+  const HarmonicLimits limits = harmonic_limits(grid);
+  NoiseFit best = fit;
+  if (!fit.shape.harmonics.empty()) best = climb(grid, columns, fit.shape, kRough, true);
+  while (best.shape.harmonics.size() < kMost) {
+    const std::optional<Hump> hump = highest_hump(of_innovations(grid, columns, best.shape), limits);
+    if (!hump || hump->gain < cost(grid, kOfHarmonic)) break;
+    const NoiseFit more = add_one(grid, columns, best, *hump);
+    if (!(information_criterion(grid, more) < information_criterion(grid, best))) break;
+    best = more;
+  }
+  if (best.shape.harmonics.empty()) return fit;
+  best = climb(grid, columns, best.shape, kFine, true);
+  for (std::size_t i = 0; i < best.shape.harmonics.size();) {
+    NoiseShape shape = best.shape;
+    shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(i));
+    const NoiseFit without = climb(grid, columns, shape, kFine, true);
+    if (information_criterion(grid, without) < information_criterion(grid, best))
+      best = without;
+    else
+      ++i;
+  }
+  return best;
+}
+
+}  // namespace ifog

@@ -1,0 +1,53 @@
+#include "filters/diagnosis/report/hidden_causes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMuch = 0.12;  // of the error's variance
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 400> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  return line.data();
+}
+
+std::string named(const Effect& effect) {
+  return effect.form + " of " + effect.channel +
+         (effect.with_channel.empty() ? "" : " with " + effect.with_channel);
+}
+
+}  // namespace
+
+std::string change_in_words(const Effect& effect, const ByCapture& by, const std::vector<Record>& records) {
+  const std::string unit = coefficient_unit(effect);
+  std::string words = named(effect) + (by.changes_sign() ? " changes its sign between the captures:"
+                                                         : " changes its size between the captures:");
+  for (std::size_t i = 0; i < by.records.size(); ++i)
+    words += text("%s %.4g ± %.2g %s in ", i ? "," : "", by.value[i], by.std_error[i], unit.c_str()) +
+             records[by.records[i]].name;
+  return words + (by.changes_sign()
+                      ? ": that is no effect of this channel but of something that ran beside it, left out"
+                      : ": part of it is of another form, or of something that was not logged");
+}
+
+std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures) {
+  const auto traced = [](const FoundEffect& found) { return !found.effect.channel.empty(); };
+  if (diagnosis.unexplained.fraction <= kMuch ||
+      std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), traced))
+    return "";
+  const std::string share = text(
+      "beside what was traced %.2g %% of the error is unexplained: what was not logged may be the cause of "
+      "both, and a channel named here only run along with it",
+      100.0 * diagnosis.unexplained.fraction);
+  return share + (captures < 2 ? ". Take a second capture in which the channels run otherwise, and give both"
+                               : ". The coefficients are compared between the captures given");
+}
+
+}  // namespace ifog

@@ -1,0 +1,20 @@
+// What speaks for a cause that was not logged, in sentences.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/checks/between_captures.h"
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record.h"
+
+namespace ifog {
+
+// An effect whose coefficient is another one in another capture, with each capture's own.
+std::string change_in_words(const Effect& effect, const ByCapture& by, const std::vector<Record>& records);
+
+// Beside much that stays unexplained a channel that was logged may only run along with the cause; empty where
+// little is, or no effect was traced to a channel. captures: diagnosed together.
+std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures);
+
+}  // namespace ifog

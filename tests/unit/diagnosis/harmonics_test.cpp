@@ -1,0 +1,254 @@
+// Damped harmonics in the noise: the filter against dense covariances, the fit against what was drawn, and
+// effects found beside a structure that sways.
+#include "filters/diagnosis/regression/harmonics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "filters/diagnosis/checks/hausman_test.h"
+#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/regression/design.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+NoiseShape swaying(const std::vector<DampedHarmonic>& harmonics, double walk = 0.0) {
+  NoiseShape shape;
+  shape.walk = walk;
+  shape.harmonics = harmonics;
+  return shape;
+}
+
+// Of an angle's change over a block, from the angle's own covariance.
+double covariance_at(const DampedHarmonic& h, double distance) {
+  const auto of_angle = [&](double d) {
+    return h.variance * std::exp(-std::abs(d) / h.decay) * std::cos(kTurn * h.cycles * d);
+  };
+  return 2.0 * of_angle(distance) - of_angle(distance + 1.0) - of_angle(distance - 1.0);
+}
+
+Eigen::MatrixXd dense_covariance(const NoiseShape& shape, Eigen::Index n) {
+  Eigen::MatrixXd v = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (const DampedHarmonic& h : shape.harmonics) v(i, j) += covariance_at(h, static_cast<double>(i - j));
+  return v;
+}
+
+const NoiseShape kTwo = swaying({{40.0, 0.3, 4.0}, {6.0, 0.11, 30.0}});
+
+// What the last value of n is not told by those before it: the last pivot of the Cholesky factor.
+TEST(Harmonics, InnovationVarianceIsTheLastPivotOfTheCovariance) {
+  const Eigen::Index n = 400;
+  const Eigen::MatrixXd factor = dense_covariance(kTwo, n).llt().matrixL();
+  const Whitening filter(grid_of({64}), kTwo);
+  EXPECT_NEAR(filter.innovation_variance(), std::pow(factor(n - 1, n - 1), 2), 1e-6);
+}
+
+TEST(Harmonics, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
+  constexpr Eigen::Index n = 900;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd v = dense_covariance(kTwo, n);
+  Columns columns(n, 3);
+  Eigen::VectorXd drawn(n);
+  for (double& value : drawn) value = normal(random);
+  columns.col(0) = Eigen::MatrixXd(v.llt().matrixL()) * drawn;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    columns(i, 1) = 1.0;
+    columns(i, 2) = std::sin(0.02 * static_cast<double>(i));
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(v);
+  const Eigen::MatrixXd x = columns.rightCols(2);
+  const Eigen::MatrixXd normals = x.transpose() * factor.solve(x);
+  const Eigen::VectorXd expected =
+      normals.ldlt().solve(x.transpose() * factor.solve(Eigen::VectorXd(columns.col(0))));
+  Columns white = columns;
+  Whitening(grid_of({n}), kTwo).apply(white);
+  const Eigen::VectorXd found =
+      Eigen::MatrixXd(white.rightCols(2)).colPivHouseholderQr().solve(Eigen::VectorXd(white.col(0)));
+  // The steady filter begins as if the first angles were known: that is worth a small part of the error bar.
+  const double error_bar = std::sqrt(normals.inverse()(1, 1));
+  EXPECT_NEAR(found[1], expected[1], 0.1 * error_bar);
+}
+
+TEST(Harmonics, DensityIsTheSumOfTheCovariancesWithTheirPhases) {
+  const BlockGrid grid = grid_of({1000});
+  for (const double cycles : {0.0, 0.01, 0.11, 0.25, 0.3, 0.5}) {
+    double sum = 1.0;
+    for (int d = -600; d <= 600; ++d)
+      for (const DampedHarmonic& h : kTwo.harmonics)
+        sum += covariance_at(h, d) * std::cos(kTurn * cycles * static_cast<double>(d));
+    EXPECT_NEAR(relative_density(grid, kTwo, cycles), sum, 1e-6 * (1.0 + sum)) << cycles;
+  }
+}
+
+// The variance of plain least squares by the dense covariance; two records, which share nothing.
+TEST(Harmonics, PlainFitScattersAsTheDenseCovarianceSays) {
+  const Eigen::Index n = 300;
+  const BlockGrid grid = grid_of({200, 100});
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  Columns columns(n, 4);
+  columns.middleCols(1, 2) = constants(grid);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    columns(i, 0) = normal(random);
+    columns(i, 3) = std::sin(0.3 * static_cast<double>(i)) + normal(random);
+  }
+  Eigen::MatrixXd v = dense_covariance(kTwo, n);
+  v.topRightCorner(200, 100).setZero();
+  v.bottomLeftCorner(100, 200).setZero();
+  const Eigen::MatrixXd x = columns.rightCols(3);
+  const Eigen::MatrixXd plain = (x.transpose() * x).inverse() * x.transpose();
+  const double expected =
+      (plain * columns.col(0))(2) / std::sqrt(0.7 * (plain * v * plain.transpose())(2, 2));
+  const NoiseFit noise{kTwo, 0.0, 0.7};
+  EXPECT_NEAR(disagreement(grid, noise, columns, 2, Eigen::VectorXd::Zero(3), Eigen::MatrixXd::Zero(3, 3)),
+              std::abs(expected), 1e-9 * std::abs(expected));
+}
+
+// Rate of a structure whose angle is a damped oscillator's, as means over steps.
+class Tower {
+ public:
+  Tower(double frequency_hz, double quality, double angle, std::uint64_t seed)
+      : random_(seed), angle_(angle), frequency_hz_(frequency_hz), quality_(quality) {
+    state_ = angle_ * std::complex<double>(normal_(random_), normal_(random_));
+  }
+  double turned_in(double dt) {
+    const double left = std::exp(-dt * std::numbers::pi * frequency_hz_ / quality_);
+    const std::complex<double> before = state_;
+    state_ = state_ * std::polar(left, kTurn * frequency_hz_ * dt) +
+             angle_ * std::sqrt(1.0 - left * left) * std::complex<double>(normal_(random_), normal_(random_));
+    return (state_.real() - before.real()) / dt;
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  double angle_, frequency_hz_, quality_;
+  std::complex<double> state_;
+};
+
+Columns with_constant(const std::vector<double>& values) {
+  Columns columns(static_cast<Eigen::Index>(values.size()), 2);
+  columns.col(1).setOnes();
+  columns.col(0) = Eigen::Map<const Eigen::VectorXd>(values.data(), columns.rows());
+  return columns;
+}
+
+// At 0.54 Hz seen through blocks of 2 s it stands at 0.08 cycles a block and keeps its phase for Q / (pi f).
+TEST(Harmonics, TheFitFindsTheTowerAtItsAliasAndTheFloorBesideIt) {
+  const std::size_t n = 3500;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    Tower tower(0.54, 30.0, 10.0, seed);
+    std::mt19937_64 random(100 + seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < n; ++i) values.push_back(tower.turned_in(2.0) + normal(random));
+    BlockGrid grid = grid_of({n});
+    const NoiseFit fit = fit_noise(grid, with_constant(values));
+    ASSERT_EQ(fit.shape.harmonics.size(), 1U) << seed;
+    const DampedHarmonic& found = fit.shape.harmonics[0];
+    EXPECT_NEAR(found.cycles, 0.08, 0.004) << seed;
+    EXPECT_NEAR(found.decay, 30.0 / (std::numbers::pi * 0.54) / 2.0, 0.25 * 8.8) << seed;
+    EXPECT_NEAR(std::sqrt(fit.white_variance), 1.0, 0.1) << seed;
+  }
+}
+
+TEST(Harmonics, NoneInWhiteNoiseAndNoneInAWalk) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    std::mt19937_64 random(200 + seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> values;
+    double walk = 0.0;
+    for (std::size_t i = 0; i < 2000; ++i) {
+      if (seed % 2 == 1) walk += 0.05 * normal(random);
+      values.push_back(normal(random) + walk);
+    }
+    EXPECT_TRUE(fit_noise(grid_of({2000}), with_constant(values)).shape.harmonics.empty()) << seed;
+  }
+}
+
+struct Capture {
+  std::vector<double> time_s, rate, temperature;
+
+  [[nodiscard]] Record record() const {
+    Record record;
+    record.name = "capture";
+    record.time_s = time_s;
+    record.rate_radps = rate;
+    record.channels = {{"temperature_degC", temperature}};
+    return record;
+  }
+  [[nodiscard]] Diagnosis diagnosed() const { return diagnose({record()}, {}); }
+};
+
+constexpr double kWhite = 1e-6;  // rad/s, of a sample
+constexpr double kSample_s = 0.2;
+
+Capture on_a_tower(std::uint64_t seed, double angle) {
+  Capture capture;
+  Tower tower(0.54, 30.0, angle, seed);
+  std::mt19937_64 random(300 + seed);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < 36000; ++i) {
+    const double t = kSample_s * static_cast<double>(i);
+    capture.time_s.push_back(t);
+    capture.rate.push_back(tower.turned_in(kSample_s) + kWhite * normal(random));
+    capture.temperature.push_back(28.0 + 6.0 * std::sin(kTurn * t / 3100.0) +
+                                  2.0 * std::sin(kTurn * t / 700.0 + 1.0));
+  }
+  return capture;
+}
+
+// The derivative at so many times the error that white noise alone would leave of it.
+void add_rate_effect(Capture& capture, double floors) {
+  const std::size_t n = capture.rate.size();
+  std::vector<double> slope(n, 0.0);
+  double square = 0.0;
+  for (std::size_t i = 1; i < n; ++i) {
+    slope[i] = (capture.temperature[i] - capture.temperature[i - 1]) / kSample_s;
+    square += slope[i] * slope[i];
+  }
+  for (std::size_t i = 0; i < n; ++i) capture.rate[i] += floors * kWhite / std::sqrt(square) * slope[i];
+}
+
+// The angle is such that the rate it makes is some thirty times the white noise of means of a second.
+constexpr double kSway = 30.0 * kWhite * 0.447 / (kTurn * 0.54);
+
+TEST(Diagnose, FindsARateOfTheTemperatureOnATowerThatSways) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    Capture capture = on_a_tower(seed, kSway);
+    EXPECT_TRUE(capture.diagnosed().effects.empty()) << seed;
+    add_rate_effect(capture, 14.0);
+    const Diagnosis found = capture.diagnosed();
+    ASSERT_EQ(found.effects.size(), 1U) << seed;
+    EXPECT_EQ(found.effects[0].effect.form, "rate") << seed;
+    EXPECT_EQ(found.effects[0].effect.channel, "temperature_degC") << seed;
+  }
+}
+
+// A thermostat's cycle is as narrow as a resonance. What the channel explains is the channel's.
+TEST(Diagnose, AThermostatsCycleIsNotTakenForAResonance) {
+  Capture capture = on_a_tower(21, 0.0);
+  Tower thermostat(1.0 / 60.0, 12.0, 1.0, 22);
+  double cycle = 0.0;
+  for (std::size_t i = 0; i < capture.rate.size(); ++i) {
+    cycle += 0.05 * thermostat.turned_in(kSample_s) * kSample_s;
+    capture.temperature[i] = 28.0 + cycle;
+    capture.rate[i] += 10.0 * kWhite * cycle;
+  }
+  const Diagnosis found = capture.diagnosed();
+  ASSERT_EQ(found.effects.size(), 1U);
+  EXPECT_EQ(found.effects[0].effect.form, "linear");
+  EXPECT_NEAR(found.effects[0].effect.parameters[0].value, 10.0 * kWhite, 1.5 * kWhite);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,137 @@
+// Several captures compared coefficient by coefficient, and what is said beside much that stays unexplained.
+#include "filters/diagnosis/report/hidden_causes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filters/diagnosis/diagnose.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
+
+namespace ifog {
+namespace {
+
+// Records of 600 blocks of unit white noise, each with a coefficient of its own.
+BlockData captures_with(const std::vector<double>& coefficients, std::uint64_t seed) {
+  BlockData data = white_with_temperature(600 * coefficients.size(), seed);
+  data.grid.records.clear();
+  for (std::size_t r = 0; r < coefficients.size(); ++r) {
+    data.grid.records.push_back({600 * r, 600 * (r + 1)});
+    for (std::size_t b = 600 * r; b < 600 * (r + 1); ++b)
+      data.grid.error[static_cast<Eigen::Index>(b)] += coefficients[r] * data.channels[0].values[b];
+  }
+  return data;
+}
+
+ByCapture compared(const BlockData& data) {
+  const std::vector<ByCapture> found = compare_captures(data, {candidate_of(Form::kLinear)}, {});
+  EXPECT_EQ(found.size(), 1U);
+  return found.front();
+}
+
+// In white noise each capture's coefficient is the textbook's slope.
+TEST(BetweenCaptures, ValuesAreTheSlopesOfTheCapturesByThemselves) {
+  const BlockData data = captures_with({0.3, 0.5, 0.1}, 1);
+  const ByCapture by = compared(data);
+  ASSERT_EQ(by.value.size(), 3U);
+  for (std::size_t r = 0; r < 3; ++r) {
+    double mean_x = 0.0, mean_y = 0.0, xy = 0.0, xx = 0.0;
+    const auto y = [&](std::size_t b) { return data.grid.error[static_cast<Eigen::Index>(b)]; };
+    const std::vector<double>& x = data.channels[0].values;
+    for (std::size_t b = 600 * r; b < 600 * (r + 1); ++b) mean_x += x[b] / 600.0, mean_y += y(b) / 600.0;
+    for (std::size_t b = 600 * r; b < 600 * (r + 1); ++b) {
+      xy += (x[b] - mean_x) * (y(b) - mean_y);
+      xx += (x[b] - mean_x) * (x[b] - mean_x);
+    }
+    EXPECT_NEAR(by.value[r], xy / xx, 1e-9);
+    EXPECT_NEAR(by.std_error[r], 1.0 / std::sqrt(xx), 0.1 / std::sqrt(xx));
+  }
+}
+
+TEST(BetweenCaptures, SameCoefficientDoesNotChange) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed)
+    EXPECT_FALSE(compared(captures_with({0.5, 0.5}, seed)).changes()) << seed;
+}
+
+TEST(BetweenCaptures, ChangesOfSizeAndOfSignAreToldApart) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const ByCapture size = compared(captures_with({0.5, 0.2}, seed));
+    EXPECT_TRUE(size.changes() && !size.changes_sign()) << seed;
+    const ByCapture sign = compared(captures_with({0.5, -0.3}, seed));
+    EXPECT_TRUE(sign.changes() && sign.changes_sign()) << seed;
+  }
+}
+
+TEST(BetweenCaptures, ACaptureInWhichTheChannelStandsStillSaysNothing) {
+  BlockData data = captures_with({0.5, 0.5}, 3);
+  for (std::size_t b = 600; b < 1200; ++b) data.channels[0].values[b] = 25.0;
+  const ByCapture by = compared(data);
+  EXPECT_EQ(by.records, (std::vector<std::size_t>{0}));
+  EXPECT_FALSE(by.changes());
+}
+
+struct Rows {
+  std::vector<double> time_s, rate, temperature;
+};
+
+// An hour at 1 Hz; `swing` of the temperature, rad/s per kelvin.
+Rows capture_of(double coefficient, double swing, std::uint64_t seed) {
+  Rows rows;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 3600; ++i) {
+    rows.time_s.push_back(i);
+    rows.temperature.push_back(25.0 +
+                               swing * std::sin(2.0 * M_PI * i / (900.0 + 37.0 * static_cast<double>(seed))));
+    rows.rate.push_back(1e-6 * normal(random) + coefficient * (rows.temperature.back() - 25.0));
+  }
+  return rows;
+}
+
+Record record_of(const Rows& rows, const std::string& name) {
+  Record record;
+  record.name = name;
+  record.time_s = rows.time_s;
+  record.rate_radps = rows.rate;
+  record.channels = {{"temperature_degC", rows.temperature}};
+  return record;
+}
+
+bool said(const Diagnosis& diagnosis, const std::string& part) {
+  for (const std::string& remark : diagnosis.remarks)
+    if (remark.find(part) != std::string::npos) return true;
+  return false;
+}
+
+TEST(Diagnose, AnEffectThatChangesItsSignIsLeftOutAndOneThatChangesItsSizeIsSaid) {
+  const Rows first = capture_of(2e-7, 6.0, 1), same = capture_of(2e-7, 6.0, 2);
+  const Rows smaller = capture_of(1e-7, 6.0, 3), against = capture_of(-1e-7, 3.0, 4);
+  const auto together = [&](const Rows& other) {
+    return diagnose({record_of(first, "first"), record_of(other, "second")}, {});
+  };
+  const Diagnosis agrees = together(same);
+  EXPECT_EQ(agrees.effects.size(), 1U);
+  EXPECT_FALSE(said(agrees, "between the captures"));
+  const Diagnosis shrinks = together(smaller);
+  EXPECT_FALSE(shrinks.effects.empty());
+  EXPECT_TRUE(said(shrinks, "changes its size between the captures"));
+  const Diagnosis opposes = together(against);
+  EXPECT_TRUE(said(opposes, "changes its sign between the captures"));
+  for (const FoundEffect& found : opposes.effects) EXPECT_NE(found.effect.form, "linear");
+}
+
+TEST(HiddenCauses, AClaimBesideMuchThatIsUnexplainedAsksForASecondCapture) {
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(1);
+  diagnosis.unexplained.fraction = 0.51;
+  EXPECT_EQ(unexplained_beside_claims(diagnosis, 1), "") << "a line is no channel's";
+  diagnosis.effects[0].effect.channel = "temperature_degC";
+  EXPECT_NE(unexplained_beside_claims(diagnosis, 1).find("51 %"), std::string::npos);
+  EXPECT_NE(unexplained_beside_claims(diagnosis, 1).find("second capture"), std::string::npos);
+  EXPECT_EQ(unexplained_beside_claims(diagnosis, 2).find("second capture"), std::string::npos);
+  diagnosis.unexplained.fraction = 0.12;
+  EXPECT_EQ(unexplained_beside_claims(diagnosis, 1), "");
+}
+
+}  // namespace
+}  // namespace ifog
