@@ -38,6 +38,7 @@ double usual(const std::vector<double>& level, std::size_t i) {
 void leave_out_lines(NoiseSpectrum& spectrum) {
   std::vector<SpectralBin>& bins = spectrum.bins;
   std::vector<double> level;  // logarithm of the spectral density, in units of white noise
+  level.reserve(bins.size());
   for (const SpectralBin& bin : bins)
     level.push_back(std::log(std::max(1e-300, bin.power / bin.expected[kN])));
   std::map<double, double> limits;  // by degrees of freedom
