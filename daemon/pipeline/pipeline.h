@@ -18,6 +18,7 @@ struct PipelinePlan {
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;
   bool spin = false;
+  Tape* tape = nullptr;  // of the flight recorder, which outlives the pipeline
   bool direct = true;  // an idle filter's step is done by the reader thread, see HandOver
 };
 
