@@ -66,11 +66,11 @@ struct RealtimeConfig {
 
 // The flight recorder.
 struct RecordConfig {
-  std::string folder;  // its files are in FOLDER/SENSOR; "": nothing is recorded
+  std::string folder;                   // its files are in FOLDER/SENSOR; "": nothing is recorded
   std::uint64_t bytes = 1'000'000'000;  // of all of the sensor's files
   double days = 30.0;                   // older files are removed
   std::uint64_t file_bytes = 16'000'000;
-  double file_s = 3600.0;                 // a file is ended at this size or age, whichever comes first
+  double file_s = 3600.0;                  // a file is ended at this size or age, whichever comes first
   std::uint64_t buffer_bytes = 4'194'304;  // what may wait for the disk
 
   bool operator==(const RecordConfig&) const = default;

@@ -129,10 +129,10 @@ void Housekeeping::start_all() {
       if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
         sensor->log->warn("{}", missed);
     } catch (const std::system_error& error) {
-      throw std::runtime_error("sensor \"" + printable(sensor->config.name) + "\": cannot make a thread: " +
-                               error.code().message() + ", expected room for " +
-                               (sensor->parts.recorder != nullptr ? "three" : "two") +
-                               " (TasksMax=, ulimit -u)");
+      throw std::runtime_error(
+          "sensor \"" + printable(sensor->config.name) +
+          "\": cannot make a thread: " + error.code().message() + ", expected room for " +
+          (sensor->parts.recorder != nullptr ? "three" : "two") + " (TasksMax=, ulimit -u)");
     }
     const PipelinePlan& plan = sensor->parts.pipeline->plan();
     sensor->log->info("reading {} at {} Hz, publishing on {}",
@@ -286,9 +286,10 @@ void Housekeeping::stop_all() {
     report_second(*sensor, 0.0);
     const status_t& message = sensor->report.message();
     if (const auto& recorder = sensor->parts.recorder; recorder != nullptr)
-      sensor->log->info("recorder: {} deliveries, {} lost, {} bytes written, {} entries that the disk did not take",
-                        message.record_deliveries, message.record_lost, message.record_file_bytes,
-                        recorder->entries_unwritten());
+      sensor->log->info(
+          "recorder: {} deliveries, {} lost, {} bytes written, {} entries that the disk did not take",
+          message.record_deliveries, message.record_lost, message.record_file_bytes,
+          recorder->entries_unwritten());
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);
   }

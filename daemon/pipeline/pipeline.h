@@ -19,7 +19,7 @@ struct PipelinePlan {
   ThreadPlan reader, filter;
   bool spin = false;
   Tape* tape = nullptr;  // of the flight recorder, which outlives the pipeline
-  bool direct = true;  // an idle filter's step is done by the reader thread, see HandOver
+  bool direct = true;    // an idle filter's step is done by the reader thread, see HandOver
 };
 
 class Pipeline {

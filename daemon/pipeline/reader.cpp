@@ -139,9 +139,10 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   hand_over_.delivered();
   // After all that anybody waits for.
   if (tape_ != nullptr && (!delivery.empty() || delivery.restarted))
-    tape_->put(delivery, turn_ns_,
-               std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
-               reading_.wall_shift_ns);
+    tape_->put(
+        delivery, turn_ns_,
+        std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
+        reading_.wall_shift_ns);
   counters_.turns.add(1);
   // A source that waits to be read has nobody else's time.
   if (!delivery.empty() && !transport_->holds_back()) stand_back();

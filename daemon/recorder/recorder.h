@@ -1,5 +1,5 @@
-// The flight recorder of one sensor: a thread of ordinary priority that takes what the reader thread has put on
-// the tape to the disk. What the disk does, however slow or full, ends at the tape.
+// The flight recorder of one sensor: a thread of ordinary priority that takes what the reader thread has put
+// on the tape to the disk. What the disk does, however slow or full, ends at the tape.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// From the reader thread to the recorder thread: entries of a flight recording in a bounded queue of bytes that
-// is allocated once. The reader only copies; where there is no room the delivery is not recorded, which is
-// counted here and told in the recording itself.
+// From the reader thread to the recorder thread: entries of a flight recording in a bounded queue of bytes
+// that is allocated once. The reader only copies; where there is no room the delivery is not recorded, which
+// is counted here and told in the recording itself.
 #pragma once
 
 #include <array>
@@ -30,7 +30,8 @@ class Tape {
   explicit Tape(std::size_t bytes);
 
   // Reader thread; allocates nothing, waits for nothing. `read_ns` is when it was read, for what came at no
-  // known time; `channels` and `wall_shift_ns` are what it was decoded with, recorded where they have changed.
+  // known time; `channels` and `wall_shift_ns` are what it was decoded with, recorded where they have
+  // changed.
   void put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
            std::int64_t wall_shift_ns) noexcept;
 

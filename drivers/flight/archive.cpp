@@ -101,8 +101,7 @@ int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
 
 int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) {
   block_.clear();
-  const BlockPlace place =
-      type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_bytes_};
+  const BlockPlace place = type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_bytes_};
   append_block(block_, type, place, content);
   // Room is made before it is used: the limit is never exceeded.
   while (!kept_.empty() && kept_bytes_ + file_bytes_ + block_.size() > limits_.bytes)
@@ -171,8 +170,8 @@ void FlightArchive::remember_state() {
 }
 
 bool FlightArchive::file_is_full(std::int64_t now_ns) const {
-  return open_ && (header_changed_ || file_bytes_ >= limits_.file_bytes ||
-                   now_ns - file_since_ns_ >= limits_.file_ns);
+  return open_ &&
+         (header_changed_ || file_bytes_ >= limits_.file_bytes || now_ns - file_since_ns_ >= limits_.file_ns);
 }
 
 int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {

@@ -1,9 +1,9 @@
-// Keeps recordings in a folder: entries become blocks, blocks files, and the oldest files go when there are too
-// many. Whoever calls it waits for the disk, so no real-time thread does.
+// Keeps recordings in a folder: entries become blocks, blocks files, and the oldest files go when there are
+// too many. Whoever calls it waits for the disk, so no real-time thread does.
 //
 // Files are called NUMBER-UTC.ifr, with .open behind it while they are written; their order is that of the
-// numbers, whatever the wall clock did. A disk that takes nothing loses nothing here: what has been added waits,
-// and full() says that nothing more can be added until it has gone.
+// numbers, whatever the wall clock did. A disk that takes nothing loses nothing here: what has been added
+// waits, and full() says that nothing more can be added until it has gone.
 #pragma once
 
 #include <array>

@@ -16,7 +16,8 @@ class Playback {
   Playback(DriverInstance& driver, const RecordedSamples& sink) : driver_(driver), sink_(sink) {}
 
   void begin(const FlightHeader& header) {
-    const bool fits = header.carries == FlightHeader::Carries::can ? driver_.takes_can() : driver_.takes_bytes();
+    const bool fits =
+        header.carries == FlightHeader::Carries::can ? driver_.takes_can() : driver_.takes_bytes();
     if (!fits || header.carries == FlightHeader::Carries::messages)
       throw std::runtime_error("holds what driver \"" + std::string(driver_.table().name) +
                                "\" does not read, expected --driver with another");

@@ -1,5 +1,5 @@
-// A flight recording through a driver again: the samples come as the daemon had them, with the same channels from
-// elsewhere at the same times.
+// A flight recording through a driver again: the samples come as the daemon had them, with the same channels
+// from elsewhere at the same times.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,12 @@ struct RecordedSample {
 
 struct RecordedSamples {
   std::function<void(const RecordedSample&)> sample;
-  std::function<void()> discontinuity;  // the device was opened again, or something of the recording is missing
+  std::function<void()>
+      discontinuity;  // the device was opened again, or something of the recording is missing
 };
 
-// The next sample onto whatever `reader` gives, to its end. Throws std::runtime_error, without the file's name:
-// a file of another sensor, driver or kind behind the first.
+// The next sample onto whatever `reader` gives, to its end. Throws std::runtime_error, without the file's
+// name: a file of another sensor, driver or kind behind the first.
 void decode_flight(FlightReader& reader, DriverInstance& driver, const RecordedSamples& sink);
 
 // A frame of a `can` entry; false: no frame that CAN has. Its arrival_ns is 0 where it is not known.

@@ -39,7 +39,8 @@ bool FlightReader::block_here() {
     const BlockPlace place = header ? BlockPlace{} : BlockPlace{header_.file, passed_ - file_at_};
     if (!header && !in_file_) continue;
     if (!read_block_head(ahead(), place, block_) || (block_.type == BlockType::header) != header) continue;
-    if (!ensure(block_.size()) || !read_block(ahead().first(block_.size()), place, block_, content_)) continue;
+    if (!ensure(block_.size()) || !read_block(ahead().first(block_.size()), place, block_, content_))
+      continue;
     header_block_ = header;
     return true;
   }
@@ -52,8 +53,8 @@ FlightReader::Found FlightReader::next_block() {
     if (!ensure(1)) break;
     // To the next byte that may begin one.
     const std::span<const std::uint8_t> bytes = ahead();
-    const void* const next = bytes.size() > 1 ? std::memchr(bytes.data() + 1, kBlockSync & 0xFFU, bytes.size() - 1)
-                                              : nullptr;
+    const void* const next =
+        bytes.size() > 1 ? std::memchr(bytes.data() + 1, kBlockSync & 0xFFU, bytes.size() - 1) : nullptr;
     const std::size_t step =
         next == nullptr ? bytes.size()
                         : static_cast<std::size_t>(static_cast<const std::uint8_t*>(next) - bytes.data());
@@ -76,8 +77,8 @@ void FlightReader::finish_file() {
 FlightReader::Item FlightReader::begin_file() {
   FlightHeader fresh = parse_header(content_);
   // The next file of the same run goes on in the middle of a frame.
-  const bool goes_on = in_file_ && closed_ && whole_ && fresh.run == header_.run &&
-                       fresh.number == header_.number + 1;
+  const bool goes_on =
+      in_file_ && closed_ && whole_ && fresh.run == header_.run && fresh.number == header_.number + 1;
   const bool first = !in_file_;
   finish_file();
   header_ = std::move(fresh);

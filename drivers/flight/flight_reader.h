@@ -1,5 +1,5 @@
-// Reads a flight recording, or several one after another, entry by entry, whatever happened to it: what is torn
-// or damaged is passed over, counted and never taken for data.
+// Reads a flight recording, or several one after another, entry by entry, whatever happened to it: what is
+// torn or damaged is passed over, counted and never taken for data.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,12 @@ namespace ifog {
 
 struct FlightCounts {
   std::uint64_t files = 0, blocks = 0, entries = 0;
-  std::uint64_t damaged_bytes = 0;  // in the middle of a file
-  std::uint64_t torn_bytes = 0;     // at the end of a file: a block that was not written whole
-  std::uint64_t open_files = 0;     // without an end: still written, or what wrote it was killed
+  std::uint64_t damaged_bytes = 0;    // in the middle of a file
+  std::uint64_t torn_bytes = 0;       // at the end of a file: a block that was not written whole
+  std::uint64_t open_files = 0;       // without an end: still written, or what wrote it was killed
   std::uint64_t missing_entries = 0;  // that a file's end tells of and are not there
-  std::uint64_t lost_deliveries = 0, lost_bytes = 0;  // that came and were not recorded: the disk was too slow
+  std::uint64_t lost_deliveries = 0,
+                lost_bytes = 0;  // that came and were not recorded: the disk was too slow
 };
 
 class FlightReader {
@@ -64,8 +65,8 @@ class FlightReader {
 
   FlightHeader header_;
   FlightCounts counts_;
-  std::uint64_t file_at_ = 0;                            // where the file begins in the stream
-  std::uint64_t file_entries_ = 0;                       // of the present file, so far
+  std::uint64_t file_at_ = 0;                             // where the file begins in the stream
+  std::uint64_t file_entries_ = 0;                        // of the present file, so far
   bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
   bool header_due_ = false, ended_ = false;
   BlockHead block_;

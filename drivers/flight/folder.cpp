@@ -45,7 +45,8 @@ class DiskFolder final : public FlightFolder {
   }
   // Under another name, which must be free.
   int rename_to(const std::string& from, const std::string& to) {
-    const int error = result(::renameat2(AT_FDCWD, in(from).c_str(), AT_FDCWD, in(to).c_str(), RENAME_NOREPLACE));
+    const int error =
+        result(::renameat2(AT_FDCWD, in(from).c_str(), AT_FDCWD, in(to).c_str(), RENAME_NOREPLACE));
     if (error == 0) sync_names();
     return error;
   }
@@ -58,7 +59,7 @@ class DiskFolder final : public FlightFolder {
 int DiskFolder::list(std::vector<File>& out) {
   out.clear();
   std::error_code error;
-  std::filesystem::create_directories(path_, error);
+  if (std::filesystem::create_directories(path_, error)) ::chmod(path_.c_str(), 0750);
   if (error) return error.value();
   DIR* const folder = ::opendir(path_.c_str());
   if (folder == nullptr) return errno;
@@ -77,6 +78,8 @@ int DiskFolder::begin(const std::string& name) {
   leave();
   fd_ = ::open(in(name).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
   if (fd_ < 0) return errno;
+  // Whatever the umask: the group reads recordings, nobody else.
+  ::fchmod(fd_, 0640);
   // Tells others that it is being written; goes with the process, however that ends.
   ::flock(fd_, LOCK_EX | LOCK_NB);
   open_name_ = name;

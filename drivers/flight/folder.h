@@ -1,5 +1,5 @@
-// The folder that recordings are kept in, and what can go wrong with it, behind an interface: so that a year of
-// full disks can be gone through in a second.
+// The folder that recordings are kept in, and what can go wrong with it, behind an interface: so that a year
+// of full disks can be gone through in a second.
 #pragma once
 
 #include <cstdint>

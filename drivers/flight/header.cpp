@@ -17,9 +17,12 @@ constexpr const char* kCarries[] = {"bytes", "can", "messages"};
 std::string escaped(std::string_view value) {
   std::string out;
   for (const char c : value) {
-    if (c == '\\') out += "\\\\";
-    else if (c == '\n') out += "\\n";
-    else out += c;
+    if (c == '\\')
+      out += "\\\\";
+    else if (c == '\n')
+      out += "\\n";
+    else
+      out += c;
   }
   return out;
 }
@@ -49,18 +52,30 @@ T number(std::string_view key, const std::string& text) {
 
 void take(FlightHeader& out, std::string_view key, std::string value) {
   constexpr std::string_view kOption = "option.", kFile = "file.";
-  if (key == "run") out.run = number<std::uint64_t>(key, value);
-  else if (key == "number") out.number = number<std::uint64_t>(key, value);
-  else if (key == "opened_ns") out.opened_ns = number<std::int64_t>(key, value);
-  else if (key == "program") out.program = std::move(value);
-  else if (key == "sensor") out.sensor = std::move(value);
-  else if (key == "source") out.source = std::move(value);
-  else if (key == "driver") out.driver = std::move(value);
-  else if (key == "channel") out.channels.push_back(std::move(value));
-  else if (key == "configuration") out.configuration = std::move(value);
-  else if (key == "configuration_file") out.configuration_file = std::move(value);
-  else if (key.starts_with(kOption)) out.options[unescaped(key.substr(kOption.size()))] = std::move(value);
-  else if (key.starts_with(kFile)) out.files[unescaped(key.substr(kFile.size()))] = std::move(value);
+  if (key == "run")
+    out.run = number<std::uint64_t>(key, value);
+  else if (key == "number")
+    out.number = number<std::uint64_t>(key, value);
+  else if (key == "opened_ns")
+    out.opened_ns = number<std::int64_t>(key, value);
+  else if (key == "program")
+    out.program = std::move(value);
+  else if (key == "sensor")
+    out.sensor = std::move(value);
+  else if (key == "source")
+    out.source = std::move(value);
+  else if (key == "driver")
+    out.driver = std::move(value);
+  else if (key == "channel")
+    out.channels.push_back(std::move(value));
+  else if (key == "configuration")
+    out.configuration = std::move(value);
+  else if (key == "configuration_file")
+    out.configuration_file = std::move(value);
+  else if (key.starts_with(kOption))
+    out.options[unescaped(key.substr(kOption.size()))] = std::move(value);
+  else if (key.starts_with(kFile))
+    out.files[unescaped(key.substr(kFile.size()))] = std::move(value);
   else if (key == "carries") {
     const auto* const found = std::find(std::begin(kCarries), std::end(kCarries), value);
     if (found == std::end(kCarries))

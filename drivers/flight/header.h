@@ -14,9 +14,9 @@ namespace ifog {
 struct FlightHeader {
   enum class Carries { bytes, can, messages };
 
-  std::uint64_t file = 0;    // random, of this file: the checksums of its blocks hold in no other
-  std::uint64_t run = 0;     // random, of the recorder's run
-  std::uint64_t number = 0;  // of the file in its folder; the next of the same run goes on where this ends
+  std::uint64_t file = 0;      // random, of this file: the checksums of its blocks hold in no other
+  std::uint64_t run = 0;       // random, of the recorder's run
+  std::uint64_t number = 0;    // of the file in its folder; the next of the same run goes on where this ends
   std::int64_t opened_ns = 0;  // wall clock
   std::string program;         // version of what recorded
   std::string sensor;

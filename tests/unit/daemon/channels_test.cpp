@@ -269,11 +269,9 @@ TEST(ChannelSources, AFifoInTheFilesPlaceHoldsNothingUp) {
   ChannelSources sources({{waits, table, 0}, {works, table, 1}}, kUrl);
   sources.start();
   double value = NAN;
-  float age_s = 0.0F;
   for (int n = 0; n < 500 && std::isnan(value); ++n) {
     std::this_thread::sleep_for(10ms);
     value = table->latest(1).value;
-    age_s = table->latest(1).age_s(arrival_clock_ns());
   }
   EXPECT_EQ(value, 7.0);
   sources.stop();  // hung, as the reader did

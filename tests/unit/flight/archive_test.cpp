@@ -28,7 +28,8 @@ std::vector<std::uint64_t> counting(std::uint64_t from, std::uint64_t to) {
 }
 
 struct Bench {
-  explicit Bench(ArchiveLimits limits) : archive(std::make_unique<MemoryFolder>(disk), limits, some_header()) {}
+  explicit Bench(ArchiveLimits limits)
+      : archive(std::make_unique<MemoryFolder>(disk), limits, some_header()) {}
   void add(std::uint64_t n) { archive.add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(n)); }
   void turn() {
     disk.now_ns = kWall + now_ns;
@@ -163,7 +164,8 @@ TEST(FlightArchive, WhatAKilledRecorderLeftOpenIsKeptAndCountsAgainstTheLimit) {
   std::uint64_t n = 0;
   std::int64_t now_ns = 0;
   for (int run = 0; run < 30; ++run) {
-    auto archive = std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk), limits, some_header());
+    auto archive =
+        std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk), limits, some_header());
     for (int second = 0; second < 40; ++second) {
       now_ns += kSecond;
       for (int i = 0; i < 5; ++i) archive->add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(n++, 200));
@@ -211,8 +213,9 @@ TEST(FlightArchive, AClockThatIsSetRemovesNoFile) {
   EXPECT_EQ(next.files_removed(), 0U);
 }
 
-// A year on a disk that others fill and empty, with restarts and kills between: limits are held at every moment,
-// each refusal ends when there is room, and what is on the disk is what was added, without a gap that is not told.
+// A year on a disk that others fill and empty, with restarts and kills between: limits are held at every
+// moment, each refusal ends when there is room, and what is on the disk is what was added, without a gap that
+// is not told.
 TEST(FlightArchive, AYearOfDiskPressure) {
   MemoryDisk disk;
   ArchiveLimits limits;
@@ -236,7 +239,8 @@ TEST(FlightArchive, AYearOfDiskPressure) {
   bool refused = false;
   for (std::int64_t now_ns = 0; now_ns < 365 * kDay; now_ns += kStep) {
     disk.now_ns = kWall + now_ns;
-    if (chance(0.002)) disk.room = disk.used() + static_cast<std::uint64_t>(random() % 3000);  // others fill it
+    if (chance(0.002))
+      disk.room = disk.used() + static_cast<std::uint64_t>(random() % 3000);  // others fill it
     if (chance(0.02)) disk.room = UINT64_MAX;
     disk.cuts_back = !chance(0.1);
     for (int i = 0; i < 4; ++i, ++n) {

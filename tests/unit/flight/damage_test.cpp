@@ -54,8 +54,10 @@ TEST(FlightDamage, ATornTailAtEveryByteGivesAllBlocksBeforeIt) {
   }
   ASSERT_EQ(ends.size(), 1 + kEntries / kABlock + 1);
   for (std::size_t length = ends[0]; length < whole.size(); ++length) {
-    const ReadBack read = read_back(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
-    const auto blocks = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), length) - ends.begin());
+    const ReadBack read =
+        read_back(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
+    const auto blocks =
+        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), length) - ends.begin());
     ASSERT_EQ(read.payloads.size(), (blocks - 1) * kABlock) << length;
     ASSERT_EQ(read.counts.torn_bytes, length - ends[blocks - 1]) << length;
     ASSERT_EQ(read.counts.damaged_bytes, 0U) << length;
@@ -91,7 +93,9 @@ TEST(FlightDamage, EveryFlippedBitIsCountedAndCostsOneBlock) {
 TEST(FlightDamage, PiecesCutOutPutInAndChangedNeverLookLikeData) {
   const Bytes whole = recording(300, 7, true), other = recording(300, 7, true);
   std::mt19937 random(20240611);
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   int damaged = 0;
   for (int round = 0; round < 1500; ++round) {
     Bytes bytes = whole;
@@ -103,12 +107,14 @@ TEST(FlightDamage, PiecesCutOutPutInAndChangedNeverLookLikeData) {
         break;
       case 1: {  // of another recording: good blocks, of another file
         const std::size_t piece = 800 + below(other.size() - 1600);
-        bytes.insert(from, other.begin() + static_cast<std::ptrdiff_t>(piece),
-                     other.begin() + static_cast<std::ptrdiff_t>(std::min(other.size() - 1, piece + 3 * length)));
+        bytes.insert(
+            from, other.begin() + static_cast<std::ptrdiff_t>(piece),
+            other.begin() + static_cast<std::ptrdiff_t>(std::min(other.size() - 1, piece + 3 * length)));
         break;
       }
       case 2:  // of itself: good blocks, in another place
-        bytes.insert(from, whole.begin() + 800, whole.begin() + static_cast<std::ptrdiff_t>(800 + 3 * length));
+        bytes.insert(from, whole.begin() + 800,
+                     whole.begin() + static_cast<std::ptrdiff_t>(800 + 3 * length));
         break;
       default:
         for (std::size_t i = 0; i < length; ++i) bytes[at + i] = static_cast<std::uint8_t>(random());
@@ -128,7 +134,8 @@ TEST(FlightDamage, ARecordingWithinADamagedRecordingIsNotTakenForIt) {
   FlightArchive archive(std::make_unique<MemoryFolder>(disk), {}, some_header());
   Bytes noise(inner.size() + 30'000);
   std::mt19937 random(7);
-  for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());  // so that it is stored as it is
+  for (std::uint8_t& byte : noise)
+    byte = static_cast<std::uint8_t>(random());  // so that it is stored as it is
   std::copy(inner.begin() + 600, inner.end(), noise.begin() + 15'000);
   archive.add({FlightKind::bytes, 0, 0, 0, 1}, noise);
   archive.close(2, 0);

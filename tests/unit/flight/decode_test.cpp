@@ -103,7 +103,8 @@ TEST(FlightDecode, SamplesTimesAndChannelsAreThoseOfTheRecording) {
   EXPECT_EQ(breaks, 0);
   ASSERT_EQ(seen.size(), expected.size());
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (std::isnan(seen[i].outside) && std::isnan(expected[i].outside)) seen[i].outside = expected[i].outside = 0.0;
+    if (std::isnan(seen[i].outside) && std::isnan(expected[i].outside))
+      seen[i].outside = expected[i].outside = 0.0;
     EXPECT_EQ(seen[i], expected[i]) << i;
   }
 }

@@ -49,8 +49,9 @@ TEST(FlightFormat, AFileMadeByHandIsRead) {
   Bytes header;
   put(header, kFile, 8);
   put(header, 1, 2);
-  put(header, "sensor=nose\ncarries=bytes\ndriver=kvh1750\noption.format=b\nchannel=supply_V\nrun=7\nnumber=3\n"
-              "a_key_of_later=x\nconfiguration=a\\nb\\\\c\n");
+  put(header,
+      "sensor=nose\ncarries=bytes\ndriver=kvh1750\noption.format=b\nchannel=supply_V\nrun=7\nnumber=3\n"
+      "a_key_of_later=x\nconfiguration=a\\nb\\\\c\n");
   Bytes recording = block_by_hand(1, 0, 0, header);
   Bytes entries;
   put(entries, 3, 1);  // a channel, number 0, 12.5 V

@@ -1,5 +1,5 @@
-// A process that records and is killed at any moment: what it had written is there, to the bit, and the files are
-// whole.
+// A process that records and is killed at any moment: what it had written is there, to the bit, and the files
+// are whole.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -43,7 +43,8 @@ std::vector<std::uint8_t> all_in(const std::string& folder) {
 }
 
 TEST(FlightKilled, WhatWasWrittenIsThereToTheBit) {
-  const std::string folder = (fs::temp_directory_path() / ("ifog-killed-" + std::to_string(getpid()))).string();
+  const std::string folder =
+      (fs::temp_directory_path() / ("ifog-killed-" + std::to_string(getpid()))).string();
   std::mt19937 random(40);
   std::uint64_t from = 0;  // what the folder holds
   for (int kills = 0; kills < 40; ++kills) {
@@ -77,7 +78,8 @@ TEST(FlightKilled, WhatWasWrittenIsThereToTheBit) {
     if (recording.empty()) continue;
     const ReadBack read = read_back(recording);
     ASSERT_GE(read.payloads.size(), told) << "kill " << kills;
-    for (std::uint64_t i = 0; i < read.payloads.size(); ++i) ASSERT_EQ(read.payloads[i], numbered(i, 300)) << i;
+    for (std::uint64_t i = 0; i < read.payloads.size(); ++i)
+      ASSERT_EQ(read.payloads[i], numbered(i, 300)) << i;
     ASSERT_EQ(read.counts.damaged_bytes, 0U);
     ASSERT_EQ(read.counts.missing_entries, 0U);
     from = read.payloads.size();

@@ -39,7 +39,8 @@ class MemoryFolder final : public FlightFolder {
   explicit MemoryFolder(MemoryDisk& disk) : disk_(disk) {}
   int list(std::vector<File>& out) override {
     out.clear();
-    for (const auto& [name, bytes] : disk_.files) out.push_back({name, bytes.size(), disk_.modified_ns[name]});
+    for (const auto& [name, bytes] : disk_.files)
+      out.push_back({name, bytes.size(), disk_.modified_ns[name]});
     return 0;
   }
   int begin(const std::string& name) override {
@@ -55,7 +56,8 @@ class MemoryFolder final : public FlightFolder {
     std::vector<std::uint8_t>& file = disk_.files[disk_.open];
     if (const std::uint64_t used = disk_.used(); used + bytes.size() > disk_.room) {
       if (!disk_.cuts_back) {
-        file.insert(file.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(disk_.room - used));
+        file.insert(file.end(), bytes.begin(),
+                    bytes.begin() + static_cast<std::ptrdiff_t>(disk_.room - used));
         disk_.open.clear();
       }
       return ENOSPC;
