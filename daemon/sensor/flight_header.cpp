@@ -56,10 +56,14 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
   out.configuration_file = std::filesystem::absolute(config.file).string();
   std::uintmax_t room = kMostAttached;
   if (!sensor.model.empty()) attach(sensor.model, room, out);
-  for (const ifog_option* option = driver.table().options; option->key != nullptr; ++option)
-    if (const auto set = sensor.options.find(option->key);
-        set != sensor.options.end() && std::string_view(option->values) == "a file")
-      attach(set->second, room, out);
+  for (const ifog_option* option = driver.table().options; option->key != nullptr; ++option) {
+    const auto set = out.options.find(option->key);
+    if (set == out.options.end() || set->second.empty() ||
+        std::string_view(option->values) != IFOG_OPTION_FILE)
+      continue;
+    set->second = (std::filesystem::path(sensor.folder) / set->second).lexically_normal().string();
+    attach(set->second, room, out);
+  }
   return out;
 }
 
