@@ -61,9 +61,8 @@ void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_
 }
 
 void FlightArchive::set_header(FlightHeader header) {
-  header.run = header_.run;
-  header_ = std::move(header);
-  header_changed_ = true;
+  // The checksums of the file in work go on with its own until it ends.
+  next_header_ = std::move(header);
 }
 
 // What is there already, and what a recorder that was killed left open: that is closed as it is.
@@ -116,6 +115,10 @@ int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) 
 int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   if (!looked_)
     if (const int error = look(now_ns, wall_ns); error != 0) return error;
+  if (next_header_) {
+    next_header_->run = header_.run;
+    header_ = *std::exchange(next_header_, std::nullopt);
+  }
   header_.file = random_number();
   header_.number = next_number_;
   header_.opened_ns = wall_ns;
@@ -127,7 +130,6 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   }
   file_bytes_ = file_entries_ = 0;
   file_since_ns_ = now_ns;
-  header_changed_ = false;
   std::vector<std::uint8_t> state;
   for (const auto& [key, entry] : state_) state.insert(state.end(), entry.begin(), entry.end());
   int error = write(BlockType::header, header_payload(header_));
@@ -170,8 +172,8 @@ void FlightArchive::remember_state() {
 }
 
 bool FlightArchive::file_is_full(std::int64_t now_ns) const {
-  return open_ &&
-         (header_changed_ || file_bytes_ >= limits_.file_bytes || now_ns - file_since_ns_ >= limits_.file_ns);
+  return open_ && (next_header_.has_value() || file_bytes_ >= limits_.file_bytes ||
+                   now_ns - file_since_ns_ >= limits_.file_ns);
 }
 
 int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {

@@ -11,6 +11,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,8 +82,9 @@ class FlightArchive {
   std::uint64_t next_number_ = 1;
 
   // The open file.
-  bool open_ = false, header_changed_ = false;
-  std::string open_name_;  // as it will be called
+  bool open_ = false;
+  std::optional<FlightHeader> next_header_;  // of the next file
+  std::string open_name_;                    // as it will be called
   std::uint64_t file_bytes_ = 0, file_entries_ = 0;
   std::int64_t file_since_ns_ = 0;
 

@@ -227,7 +227,7 @@ TEST(Config, GathersAllErrors) {
             "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
             "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, "
             "max_step, maximum, "
-            "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, transport");
+            "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, record, transport");
 }
 
 TEST(Config, NothingToDoIsAnError) {

@@ -102,6 +102,15 @@ class RecordedFlight : public testing::Test {
     sent_.append(bytes.begin(), bytes.end());
     ASSERT_EQ(::write(line_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
+  // In portions that the buffers of LCM's sockets hold.
+  bool send_and_await(int count) {
+    const std::size_t before = published_.size();
+    for (int n = 50; n <= count; n += 50) {
+      send(50);
+      if (!await(before + static_cast<std::size_t>(n))) return false;
+    }
+    return true;
+  }
   // The command line; what it said to standard error is in `complaint_`.
   int ifog(const std::string& arguments) {
     const int status = std::system(
@@ -131,8 +140,8 @@ class RecordedFlight : public testing::Test {
           "unit = \"rad/s/V\"\n");
     write("ifogd.toml",
           "[daemon]\nlock_memory = false\n[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n"
-          "nominal_rate_hz = 1000\n" +
-              model_line_ +
+          "nominal_rate_hz = " +
+              rate_hz_ + "\n" + model_line_ +
               "[sensor.options]\nformat = \"a\"\n[sensor.transport]\ntype = \"file\"\npath = \"line\"\n"
               "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n"
               "[sensor.record]\nfolder = \"record\"\nfile_bytes = 100_000\nbytes = 1_000_000\n"
@@ -145,6 +154,7 @@ class RecordedFlight : public testing::Test {
   int line_ = -1;
   pid_t child_ = -1;
   std::string model_line_ = "model = \"model.toml\"\n";
+  std::string rate_hz_ = "1000";
   std::vector<rate_t> published_;
   std::uint32_t samples_ = 0;
   std::string sent_, complaint_;
@@ -193,8 +203,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   model_line_ = "";
   configure();
   start();
-  send(500);
-  ASSERT_TRUE(await(500)) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   ASSERT_EQ(end(SIGKILL), 1000 + SIGKILL);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
@@ -202,8 +211,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
   published_.clear();
   start();
-  send(500);
-  ASSERT_TRUE(await(500)) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
   ASSERT_EQ(end(SIGTERM), 0);
   for (const auto& entry : fs::directory_iterator(path("record/nose")))
     EXPECT_EQ(entry.path().extension(), ".ifr") << entry.path();
@@ -212,6 +220,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
 }
 
 TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
+  rate_hz_ = "100";
   configure();
   const pid_t recorder = fork();
   ASSERT_GE(recorder, 0);
@@ -226,8 +235,11 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   start();
   for (int n = 0; n < 600 && !fs::exists(path("heard")); ++n) listen(10);
   const std::size_t before = published_.size();
-  for (int n = 0; n < 60; ++n) {
-    send(50);
+  // At the sensor's own rate, so that the fitted time goes on.
+  auto due = std::chrono::steady_clock::now();
+  for (int n = 0; n < 300; ++n) {
+    std::this_thread::sleep_until(due += std::chrono::milliseconds(10));
+    send(1);
     ASSERT_TRUE(await(before + static_cast<std::size_t>(samples_))) << text_of(path("said"));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(2200));  // two status messages
