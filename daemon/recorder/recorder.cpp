@@ -1,5 +1,8 @@
 #include "daemon/recorder/recorder.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <array>
 #include <chrono>
 #include <cstring>
@@ -32,6 +35,9 @@ void Recorder::start() {
 
 void Recorder::run() {
   apply_to_this_thread({name_, 0, {}});
+  // Whoever started it: deflating and writing never stand in a reader's way.
+  const sched_param ordinary{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
   while (!stopping_.load(std::memory_order_acquire)) {
     turn(arrival_clock_ns(), realtime_ns());
     std::this_thread::sleep_for(kTurn);
