@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "drivers/flight/channel_value.h"
+
 namespace ifog {
 
 class ChannelTable {
@@ -27,15 +29,14 @@ class ChannelTable {
   void lose(std::uint64_t messages) noexcept { drops_.fetch_add(messages, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t drops() const noexcept { return drops_.load(std::memory_order_relaxed); }
 
-  // NaN and an infinite age until the first value. The value is at least as new as the age says: updates that
-  // come between the two loads show in the value alone.
-  void get(int channel, std::int64_t now_ns, double& value, float& age_s) const noexcept {
+  // The value is at least as new as its time says: updates that come between the two loads show in the value
+  // alone.
+  [[nodiscard]] ChannelValue latest(int channel) const noexcept {
     const Entry& entry = entries_[static_cast<std::size_t>(channel)];
-    const std::int64_t time_ns = entry.time_ns.load(std::memory_order_acquire);
-    value = entry.value.load(std::memory_order_relaxed);
-    age_s =
-        time_ns == 0 ? std::numeric_limits<float>::infinity() : static_cast<float>(now_ns - time_ns) * 1e-9F;
-    if (age_s < 0.0F) age_s = 0.0F;
+    ChannelValue out;
+    out.time_ns = entry.time_ns.load(std::memory_order_acquire);
+    out.value = entry.value.load(std::memory_order_relaxed);
+    return out;
   }
 
  private:

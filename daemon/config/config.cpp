@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "daemon/config/table_reader.h"
@@ -36,6 +37,12 @@ struct Context {
     return (folder / path).lexically_normal().string();
   }
 };
+
+std::string as_text(const toml::table& table) {
+  std::ostringstream text;
+  text << table;
+  return text.str();
+}
 
 bool good_name(const std::string& name) {
   constexpr std::size_t kLongest = 32;
@@ -148,6 +155,24 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
   return out;
 }
 
+RecordConfig read_record(const toml::table& table, const std::string& where, Context& context) {
+  TableReader in(table, where, context.file, context.errors);
+  RecordConfig out;
+  out.folder = context.absolute(in.required_text("folder", "a folder, \"/var/lib/ifogd/record\""));
+  take(in.integer("bytes", 1'000'000, std::numeric_limits<std::int64_t>::max()), out.bytes);
+  take(in.number("days", {1e-3, 1e5}), out.days);
+  take(in.integer("file_bytes", 100'000, 1'000'000'000), out.file_bytes);
+  take(in.number("file_s", {1.0, 1e6}), out.file_s);
+  take(in.integer("buffer_bytes", 262'144, 1'000'000'000), out.buffer_bytes);
+  // With fewer than four files, removing the oldest would remove most of what there is.
+  if (out.bytes / 4 < out.file_bytes)
+    in.complain(in.has("bytes") ? "bytes" : "file_bytes",
+                ": bytes = " + std::to_string(out.bytes) + " with file_bytes = " +
+                    std::to_string(out.file_bytes) + ": expected room for at least four files");
+  in.refuse_the_rest();
+  return out;
+}
+
 Limits read_limits(TableReader& in, double most) {
   Limits out;
   take(in.number("minimum", {-most, most}), out.minimum);
@@ -225,6 +250,8 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
     out.filter = read_filter(*filter, "sensor.filter", out.start_up_s, context);
   if (const toml::table* const realtime = in.table("realtime"))
     out.realtime = read_realtime(*realtime, "sensor.realtime", context);
+  if (const toml::table* const record = in.table("record"))
+    out.record = read_record(*record, "sensor.record", context);
   std::set<std::string> names;
   for (const toml::table* const channel : in.tables("channel")) {
     out.channels.push_back(read_channel(*channel, "sensor.channel", context));
@@ -234,6 +261,7 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
           .complain("name", " = " + in_quotes(name) + ": this sensor has a channel of that name already");
   }
   in.refuse_the_rest();
+  out.text = as_text(toml::table{{"sensor", toml::array{table}}});
   return out;
 }
 
@@ -282,7 +310,25 @@ std::string SensorConfig::restart_for(const SensorConfig& other) const {
                     {"range_radps", range_radps == other.range_radps},
                     {"minimum, maximum or max_step", limits == other.limits},
                     {"realtime", realtime == other.realtime},
+                    {"record", record == other.record},
                     {"channel", channels == other.channels}});
+}
+
+SensorConfig SensorConfig::reloaded(const SensorConfig& fresh) const {
+  SensorConfig out = *this;
+  out.model = fresh.model;
+  out.filter = fresh.filter;
+  out.start_up_s = fresh.start_up_s;
+  toml::table mine = parse_toml(text, "");
+  const toml::table its = parse_toml(fresh.text, "");
+  toml::table& sensor = *mine["sensor"][0].as_table();
+  for (const char* const key : {"model", "filter"}) {
+    sensor.erase(key);
+    if (const toml::node* const node = its["sensor"][0][key].node(); node != nullptr)
+      sensor.insert_or_assign(key, *node);
+  }
+  out.text = as_text(mine);
+  return out;
 }
 
 std::string Config::restart_for(const Config& other) const {

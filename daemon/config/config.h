@@ -64,6 +64,18 @@ struct RealtimeConfig {
   bool operator==(const RealtimeConfig&) const = default;
 };
 
+// The flight recorder.
+struct RecordConfig {
+  std::string folder;                   // its files are in FOLDER/SENSOR; "": nothing is recorded
+  std::uint64_t bytes = 1'000'000'000;  // of all of the sensor's files
+  double days = 30.0;                   // older files are removed
+  std::uint64_t file_bytes = 16'000'000;
+  double file_s = 3600.0;                  // a file is ended at this size or age, whichever comes first
+  std::uint64_t buffer_bytes = 4'194'304;  // what may wait for the disk
+
+  bool operator==(const RecordConfig&) const = default;
+};
+
 struct SensorConfig {
   std::string name;  // letters, digits, _ and -; LCM channel IFOG_<NAME in capitals>
   std::string driver;
@@ -77,13 +89,17 @@ struct SensorConfig {
   std::string folder;                          // of the file, where relative paths in the options begin
   FilterChoice filter;
   RealtimeConfig realtime;
+  RecordConfig record;
   std::vector<ChannelConfig> channels;
+  std::string text;        // this sensor alone as a configuration, as it was written
   std::uint32_t line = 0;  // in the file, for messages
 
   [[nodiscard]] std::string lcm_channel() const;  // "IFOG_NAME"
   // Keys and tables in which `other` differs and that only a restart can change: a model, a filter and its
   // start-up are exchanged between two samples, a device or a driver is not. "" for none.
   [[nodiscard]] std::string restart_for(const SensorConfig& other) const;
+  // This one with what of `fresh` needs no restart, in `text`, too.
+  [[nodiscard]] SensorConfig reloaded(const SensorConfig& fresh) const;
 };
 
 struct Config {

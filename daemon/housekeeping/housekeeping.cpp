@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
+#include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
@@ -126,11 +127,14 @@ void Housekeeping::start_all() {
     if (const NoiseMemory& noise = sensor->parts.noise; !noise.remark().empty())
       sensor->log->log(noise.good() ? spdlog::level::info : spdlog::level::warn, "{}", noise.remark());
     try {
+      if (sensor->parts.recorder != nullptr) sensor->parts.recorder->start();
       if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
         sensor->log->warn("{}", missed);
     } catch (const std::system_error& error) {
-      throw std::runtime_error("sensor \"" + printable(sensor->config.name) + "\": cannot make a thread: " +
-                               error.code().message() + ", expected room for two (TasksMax=, ulimit -u)");
+      throw std::runtime_error(
+          "sensor \"" + printable(sensor->config.name) +
+          "\": cannot make a thread: " + error.code().message() + ", expected room for " +
+          (sensor->parts.recorder != nullptr ? "three" : "two") + " (TasksMax=, ulimit -u)");
     }
     const PipelinePlan& plan = sensor->parts.pipeline->plan();
     sensor->log->info("reading {} at {} Hz, publishing on {}",
@@ -145,6 +149,11 @@ void Housekeeping::drain_events(Sensor& sensor) {
   if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty()) {
     sensor.log->warn("{}", warning);
     sensor.report.count_warning();
+  }
+  if (sensor.parts.recorder != nullptr) {
+    bool good = false;
+    if (const std::string message = sensor.parts.recorder->take_message(good); !message.empty())
+      sensor.log->log(good ? spdlog::level::info : spdlog::level::warn, "{}", message);
   }
   while (sensor.parts.pipeline->take_event(event)) {
     const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
@@ -177,6 +186,7 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   sensor.reader_turns = turns;
   if (sensor.unworded > 0) sensor.log->warn("{} more such lines in this second", sensor.unworded);
   sensor.worded = sensor.unworded = 0;
+  if (sensor.parts.recorder != nullptr) sensor.report.update(*sensor.parts.recorder);
   const status_t& message = sensor.report.update(pipeline, sensor.snapshot, interval_s);
   bool fault_worded = message.fault.empty() || message.fault == sensor.fault;
   if (message.state != sensor.state) {
@@ -241,10 +251,7 @@ void Housekeeping::reload() {
     const SensorConfig* const found = sensor_named(fresh, sensor->config.name);
     if (found == nullptr) continue;
     // Only what can change between two samples.
-    SensorConfig config = sensor->config;
-    config.model = found->model;
-    config.filter = found->filter;
-    config.start_up_s = found->start_up_s;
+    SensorConfig config = sensor->config.reloaded(*found);
     try {
       ChainSettings settings = sensor_chain_settings(
           config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
@@ -265,6 +272,7 @@ void Housekeeping::reload() {
                              each.config.model.empty() ? "none" : each.config.model);
       each.sensor->config = std::move(each.config);
       each.sensor->parts.pipeline->filter().offer(std::move(each.parts));
+      record_anew(*each.sensor);
     }
   } else {
     log_->error("reload refused: nothing has changed for any sensor");
@@ -272,15 +280,28 @@ void Housekeeping::reload() {
   notify("READY=1");
 }
 
+void Housekeeping::record_anew(Sensor& sensor) {
+  if (sensor.parts.recorder == nullptr) return;
+  sensor.parts.recorder->set_header(
+      flight_header(sensor.config, config_, sensor.parts.pipeline->reader().driver()));
+}
+
 void Housekeeping::stop_all() {
   notify("STOPPING=1");
   sources_->stop();
   for (const auto& sensor : sensors_) sensor->parts.pipeline->stop();
+  for (const auto& sensor : sensors_)
+    if (sensor->parts.recorder != nullptr) sensor->parts.recorder->stop();
   for (const auto& sensor : sensors_) {
     drain_events(*sensor);
     report_second(*sensor, 0.0);
     keep_noise(*sensor, true);
     const status_t& message = sensor->report.message();
+    if (const auto& recorder = sensor->parts.recorder; recorder != nullptr)
+      sensor->log->info(
+          "recorder: {} deliveries, {} lost, {} bytes written, {} entries that the disk did not take",
+          message.record_deliveries, message.record_lost, message.record_file_bytes,
+          recorder->entries_unwritten());
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);
   }

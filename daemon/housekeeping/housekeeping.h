@@ -55,6 +55,8 @@ class Housekeeping {
   // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
   void reload();
   void say_what_needs_a_restart(const Config& fresh);
+  // The sensor's next recording begins with the settings it has now.
+  void record_anew(Sensor& sensor);
   void stop_all();
   void notify(const std::string& state);
 

@@ -17,7 +17,7 @@ struct Named {
   std::int64_t status_t::*field;
 };
 
-// Those that stand still while all is well.
+// Those that stand still while all is well. What the recorder loses it says itself, once.
 constexpr std::array kFaults{
     Named{"frames_crc", &status_t::frames_crc},
     Named{"frames_format", &status_t::frames_format},
@@ -194,6 +194,15 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
         static_cast<double>(now_.samples_published - before_.samples_published) / interval_s;
   }
   return now_;
+}
+
+void StatusReport::update(Recorder& recorder) {
+  const TapeCounters& tape = recorder.tape().counters();
+  now_.record_deliveries = as_signed(tape.deliveries.value());
+  now_.record_lost = as_signed(tape.lost_deliveries.value());
+  now_.record_lost_bytes = as_signed(tape.lost_bytes.value());
+  now_.record_file_bytes = as_signed(recorder.file_bytes());
+  now_.record_removed = as_signed(recorder.files_removed());
 }
 
 std::string StatusReport::moved() const {

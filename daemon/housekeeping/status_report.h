@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/pipeline/pipeline.h"
+#include "daemon/recorder/recorder.h"
 
 namespace ifog {
 
@@ -17,6 +18,8 @@ class StatusReport {
   // From the counters now and the last snapshot of the filter, with its books; interval_s since the call
   // before.
   const ifog::status_t& update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);
+  // Likewise of the flight recorder, before update().
+  void update(Recorder& recorder);
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
 

@@ -2,9 +2,28 @@
 
 #include <utility>
 
+#include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
 
 namespace ifog {
+
+namespace {
+
+std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config& config,
+                                        const DriverInstance& driver) {
+  const RecordConfig& record = sensor.record;
+  if (record.folder.empty()) return nullptr;
+  ArchiveLimits limits;
+  limits.bytes = record.bytes;
+  limits.age_ns = static_cast<std::int64_t>(record.days * 86'400e9);
+  limits.file_bytes = record.file_bytes;
+  limits.file_ns = static_cast<std::int64_t>(record.file_s * 1e9);
+  return std::make_unique<Recorder>(sensor.name + ":rec", record.buffer_bytes,
+                                    make_flight_folder(record.folder + "/" + sensor.name), limits,
+                                    flight_header(sensor, config, driver));
+}
+
+}  // namespace
 
 AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
                          std::unique_ptr<Publisher> publisher) {
@@ -18,7 +37,9 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   settings.learned = out.noise.recalled();
   auto parts = std::make_unique<ChainParts>(settings);
   out.left_out = parts->left_out();
+  out.recorder = make_recorder(sensor, config, driver);
   PipelinePlan plan;
+  if (out.recorder != nullptr) plan.tape = &out.recorder->tape();
   plan.lcm_channel = sensor.lcm_channel();
   plan.facts = settings.facts;
   plan.ring_slots = static_cast<std::size_t>(sensor.realtime.ring_slots);

@@ -7,11 +7,14 @@
 
 #include "daemon/config/config.h"
 #include "daemon/pipeline/pipeline.h"
+#include "daemon/recorder/recorder.h"
 #include "daemon/sensor/noise_memory.h"
 
 namespace ifog {
 
 struct AssembledSensor {
+  // Outlives the pipeline, whose reader writes its tape; null without a flight recorder.
+  std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Pipeline> pipeline;
   std::shared_ptr<ChannelTable> outside;
   std::vector<std::string> channels;  // names, as in ChainSettings

@@ -18,7 +18,8 @@ struct PipelinePlan {
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;
   bool spin = false;
-  bool direct = true;  // an idle filter's step is done by the reader thread, see HandOver
+  Tape* tape = nullptr;  // of the flight recorder, which outlives the pipeline
+  bool direct = true;    // an idle filter's step is done by the reader thread, see HandOver
 };
 
 class Pipeline {

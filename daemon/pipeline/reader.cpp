@@ -1,5 +1,6 @@
 #include "daemon/pipeline/reader.h"
 
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -14,7 +15,7 @@ constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
                std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-               SharedBooks& books, EventQueue& events)
+               SharedBooks& books, EventQueue& events, Tape* tape)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
@@ -23,7 +24,8 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       queue_(queue),
       hand_over_(hand_over),
       books_(books),
-      events_(events) {}
+      events_(events),
+      tape_(tape) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
   ++now_.decoded;
@@ -31,7 +33,9 @@ void Reader::take(const ifog_sample& sample) noexcept {
   const std::int64_t came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
-    outside_->get(i - facts_.frame_channels, came_ns, reading_.channel[c], reading_.channel_age_s[c]);
+    const ChannelValue& now = outside_now_[static_cast<std::size_t>(i - facts_.frame_channels)];
+    reading_.channel[c] = now.value;
+    reading_.channel_age_s[c] = now.age_s(came_ns);
   }
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = queue_.next();
@@ -102,6 +106,12 @@ void Reader::publish_counters() noexcept {
   books_.write(now_);
 }
 
+void Reader::look_outside() noexcept {
+  for (int i = facts_.frame_channels; i < facts_.channels; ++i)
+    outside_now_[static_cast<std::size_t>(i - facts_.frame_channels)] =
+        outside_->latest(i - facts_.frame_channels);
+}
+
 void Reader::stand_back() noexcept {
   const std::int64_t rest_ns = share_.rest_ns(turn_ns_, thread_time_ns);
   if (rest_ns == 0) return;
@@ -116,16 +126,23 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
     incrementer_.discontinuity();
     events_.report({.kind = EventKind::reopened});
   }
-  if (!delivery.empty()) {
+  if (!delivery.empty() || delivery.restarted) {
     turn_ns_ = arrival_clock_ns();
     // A recording that is read at its own pace brings its own times of day.
     if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.now();
+    look_outside();
   }
   const auto sink = [this](const ifog_sample& sample) { take(sample); };
   if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);
   for (const ifog_can_frame& frame : delivery.frames) driver_.decode_can(frame, sink);
   publish_counters();
   hand_over_.delivered();
+  // After all that anybody waits for.
+  if (tape_ != nullptr && (!delivery.empty() || delivery.restarted))
+    tape_->put(
+        delivery, turn_ns_,
+        std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
+        reading_.wall_shift_ns);
   counters_.turns.add(1);
   // A source that waits to be read has nobody else's time.
   if (!delivery.empty() && !transport_->holds_back()) stand_back();

@@ -1,6 +1,7 @@
 // The reader thread's work: transport → plugin → increments → queue. Stage 1 of a pipeline.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/processor_share.h"
+#include "daemon/recorder/tape.h"
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
@@ -34,9 +36,10 @@ struct ReaderCounters {
 
 class Reader {
  public:
+  // tape: of the flight recorder, null without one.
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
          std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-         SharedBooks& books, EventQueue& events);
+         SharedBooks& books, EventQueue& events, Tape* tape);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
   void run() noexcept;
@@ -52,6 +55,7 @@ class Reader {
 
  private:
   void take(const ifog_sample& sample) noexcept;
+  void look_outside() noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
   void publish_counters() noexcept;
   void stand_back() noexcept;
@@ -65,7 +69,10 @@ class Reader {
   HandOver& hand_over_;
   SharedBooks& books_;
   EventQueue& events_;
+  Tape* tape_;
   Reading reading_;
+  // Channels from elsewhere, the same for all samples of a delivery: so they are recorded.
+  std::array<ChannelValue, kMaxChannels> outside_now_;
   WallShift wall_shift_;
   ProcessorShare share_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn

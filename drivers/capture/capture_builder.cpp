@@ -17,12 +17,14 @@ bool never_known(const std::vector<double>& values) {
 
 }  // namespace
 
-CaptureBuilder::CaptureBuilder(const ifog_description& description) : description_(description) {
+CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
+    : description_(description) {
   for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
   capture_.rate_radps.resize(description.axes);
   capture_.reference_rate_radps.resize(description.axes);
   for (std::uint32_t i = 0; i < description.environments; ++i)
     capture_.channels.push_back({description.environment[i], {}});
+  for (const std::string& name : outside) capture_.channels.push_back({name, {}});
 }
 
 void CaptureBuilder::choose_clock(const ifog_sample& sample) {
@@ -59,33 +61,35 @@ double CaptureBuilder::seconds(const ifog_sample& sample) const {
       1e9;  // divided by, so that the result is the double nearest to the decimal time
   switch (clock_) {
     case Clock::device:
-      return static_cast<double>(sample.device_time_ns) / kNsPerSecond;
+      return static_cast<double>(sample.device_time_ns) / kNsPerSecond + offset_s_;
     case Clock::arrival:
-      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond;
+      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
     default:
-      return static_cast<double>(count_) / description_.nominal_rate_hz;
+      return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
   }
 }
 
-void CaptureBuilder::add(const ifog_sample& sample) {
-  const bool first = capture_.time_s.empty();
-  if (first) choose_clock(sample);
-  const std::uint64_t steps = first ? 0 : steps_to(sample);
-  count_ += steps;
-  if (steps > 1) missing_ += steps - 1;
-  const double now = seconds(sample);
-  const double elapsed = first ? kMissing : now - capture_.time_s.back();
-  if (elapsed <= 0.0)
-    throw std::runtime_error(
-        "sample " + std::to_string(capture_.size() + 1) + ": its time is " + std::to_string(now) + " s by " +
-        (clock_ == Clock::device    ? "the device's clock"
-         : clock_ == Clock::counter ? "its counter"
-                                    : "its arrival") +
-        ", expected more than the " + std::to_string(capture_.time_s.back()) + " s of the sample before");
-  double period = elapsed / static_cast<double>(std::max<std::uint64_t>(steps, 1));
-  if (first && description_.nominal_rate_hz > 0.0) period = 1.0 / description_.nominal_rate_hz;
+// The sample's clock is set so that it comes as much later than the one before as it arrived later.
+void CaptureBuilder::begin_anew(const ifog_sample& sample) {
+  broken_ = false;
+  const double later_s = static_cast<double>(sample.arrival_ns - last_.arrival_ns) * 1e-9;
+  const double rate_hz = description_.nominal_rate_hz;
+  const double least_s = rate_hz > 0.0 ? 1.0 / rate_hz : 1e-6;
+  const bool known = sample.arrival_ns != 0 && last_.arrival_ns != 0;
+  offset_s_ += capture_.time_s.back() + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
+  last_.valid_axes = 0;  // no difference of angles over it
+}
 
-  capture_.time_s.push_back(now);
+void CaptureBuilder::refuse(double now) const {
+  throw std::runtime_error(
+      "sample " + std::to_string(capture_.size() + 1) + ": its time is " + std::to_string(now) + " s by " +
+      (clock_ == Clock::device    ? "the device's clock"
+       : clock_ == Clock::counter ? "its counter"
+                                  : "its arrival") +
+      ", expected more than the " + std::to_string(capture_.time_s.back()) + " s of the sample before");
+}
+
+void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double period) {
   for (std::uint32_t i = 0; i < description_.axes; ++i) {
     double rate = kMissing;
     if ((sample.valid_axes & 1U << i) != 0) {
@@ -101,9 +105,38 @@ void CaptureBuilder::add(const ifog_sample& sample) {
     }
     capture_.rate_radps[i].push_back(rate);
   }
+}
+
+void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
+  const bool first = capture_.time_s.empty();
+  if (first) choose_clock(sample);
+  bool anew = broken_ && !first;
+  const std::uint64_t steps = first || anew ? 0 : steps_to(sample);
+  count_ += steps;
+  if (steps > 1) missing_ += steps - 1;
+  if (anew) begin_anew(sample);
+  broken_ = false;
+  double now = seconds(sample);
+  if (!first && now <= capture_.time_s.back()) {
+    if (!restarts_) refuse(now);
+    if (now == capture_.time_s.back()) return;
+    anew = true;
+    begin_anew(sample);
+    now = seconds(sample);
+  }
+  const double elapsed = first ? kMissing : now - capture_.time_s.back();
+  double period = elapsed / static_cast<double>(std::max<std::uint64_t>(steps, 1));
+  if ((first || anew) && description_.nominal_rate_hz > 0.0) period = 1.0 / description_.nominal_rate_hz;
+
+  capture_.time_s.push_back(now);
+  add_rates(sample, elapsed, period);
   for (std::uint32_t i = 0; i < description_.environments; ++i)
     capture_.channels[i].values.push_back((sample.environment_fresh & 1U << i) != 0 ? sample.environment[i]
                                                                                     : kMissing);
+  for (std::size_t i = description_.environments; i < capture_.channels.size(); ++i) {
+    const std::size_t o = i - description_.environments;
+    capture_.channels[i].values.push_back(o < outside.size() ? outside[o] : kMissing);
+  }
   last_ = sample;
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "drivers/capture/capture.h"
 #include "drivers/ifog/driver.h"
@@ -20,11 +22,19 @@ namespace ifog {
 // did not come with the sample are NaN.
 class CaptureBuilder {
  public:
-  explicit CaptureBuilder(const ifog_description& description);
+  // outside: names of channels that did not come in the frames.
+  explicit CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside = {});
 
   // Throws std::runtime_error with one line when time does not go on: the sample's number, both times, the
-  // cause.
-  void add(const ifog_sample& sample);
+  // cause. outside: values of those channels that came since the sample before, NaN where none did.
+  void add(const ifog_sample& sample, std::span<const double> outside = {});
+
+  // What comes next does not join what came: its clock and counter may have begun anew. The arrival times,
+  // which must be known, say how much later it is.
+  void discontinuity() { broken_ = true; }
+  // From here on a device whose clock jumps back has begun anew, and a sample that came twice is left out;
+  // else neither can be told from a wrong driver, and is refused.
+  void allow_restarts() { restarts_ = true; }
 
   // Leaves out axes and channels that never had a value. Throws std::runtime_error if nothing is left.
   Capture finish();
@@ -36,6 +46,9 @@ class CaptureBuilder {
   void choose_clock(const ifog_sample& sample);
   std::uint64_t steps_to(const ifog_sample& sample) const;
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
+  void begin_anew(const ifog_sample& sample);
+  void refuse(double now) const;
+  void add_rates(const ifog_sample& sample, double elapsed, double period);
 
   ifog_description description_;
   Capture capture_;
@@ -44,6 +57,8 @@ class CaptureBuilder {
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
   std::size_t missing_ = 0;
+  bool broken_ = false, restarts_ = false;
+  double offset_s_ = 0.0;  // of the clock since the last discontinuity
 };
 
 }  // namespace ifog

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -28,6 +29,25 @@ int opened(const std::string& path) {
   if (taken.test_and_set())
     throw std::runtime_error("-: standard input is read already, expected it once among the inputs");
   return fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
+}
+
+constexpr std::string_view kRecording = ".ifr", kOpenEnding = ".open";
+
+// A folder's flight recordings in their order: that of their names, the one being written last.
+std::deque<std::string> recordings_in(const std::string& folder) {
+  std::deque<std::string> out;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    std::string_view name = entry.path().native();
+    if (name.ends_with(kOpenEnding)) name.remove_suffix(kOpenEnding.size());
+    if (name.ends_with(kRecording)) out.push_back(entry.path().string());
+  }
+  if (error) throw std::runtime_error(folder + ": cannot read: " + error.message());
+  if (out.empty())
+    throw std::runtime_error(
+        folder + ": is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr)");
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 // A gzip file's content is held to this many times its size, beyond what any memory has room for.
@@ -67,7 +87,11 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
   struct stat info {};
   if (fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) {
     ::close(fd);
-    throw std::runtime_error(path_ + ": is a folder, expected a file");
+    more_ = recordings_in(path_);
+    open_next();
+    held_.resize(kHead);
+    held_.resize(unpack(held_.data(), kHead));
+    return;
   }
   file_.reset(gzdopen(fd, "rb"));
   if (!file_) {
@@ -83,6 +107,24 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
 }
 
 InputFile::InputFile(std::string path, std::string text) : path_(std::move(path)), held_(std::move(text)) {}
+
+// The folder's next file; false: there is none.
+bool InputFile::open_next() {
+  if (more_.empty()) return false;
+  const std::string path = std::move(more_.front());
+  more_.pop_front();
+  int fd = opened(path);
+  // It may have been ended meanwhile.
+  if (fd < 0 && errno == ENOENT && path.ends_with(kOpenEnding))
+    fd = opened(path.substr(0, path.size() - kOpenEnding.size()));
+  if (fd < 0) throw std::runtime_error(path + ": cannot open: " + reason());
+  file_.reset(gzdopen(fd, "rb"));
+  if (!file_) {
+    ::close(fd);
+    throw std::runtime_error(path + ": cannot open: " + reason());
+  }
+  return true;
+}
 
 std::size_t InputFile::unpack(char* to, std::size_t most) {
   std::size_t done = 0;
@@ -103,7 +145,7 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
                                (error == Z_BUF_ERROR ? "the gzip stream ends early (truncated file)"
                                 : error == Z_ERRNO   ? reason()
                                                      : std::string(message)));
-    break;
+    if (!open_next()) break;
   }
   return done;
 }

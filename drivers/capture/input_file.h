@@ -1,8 +1,10 @@
 // A file read once, from its start, plain or gzip by its first bytes, whatever its name. Nothing is opened
-// twice and nothing rewound, so that standard input, a FIFO and a shell's <(command) do as well as a file.
+// twice and nothing rewound, so that standard input, a FIFO and a shell's <(command) do as well as a file. A
+// folder of flight recordings is read as one file: theirs, one behind the other.
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -17,7 +19,7 @@ inline constexpr std::size_t kLongestLine = 1U << 20U;
 class InputFile {
  public:
   // "-" is standard input, once in a process. Throws std::runtime_error with one line: missing, unreadable, a
-  // folder.
+  // folder without flight recordings.
   explicit InputFile(std::string path);
   // A text already at hand; `path` stands for the file.
   InputFile(std::string path, std::string text);
@@ -46,10 +48,12 @@ class InputFile {
     void operator()(gzFile_s* file) const;
   };
   std::size_t unpack(char* to, std::size_t most);
+  bool open_next();
 
   std::string path_;
   std::unique_ptr<gzFile_s, Close> file_;
-  std::string held_;  // at hand: the head, or all of a given text
+  std::deque<std::string> more_;  // the folder's other files
+  std::string held_;              // at hand: the head, or all of a given text
   std::size_t taken_ = 0;
   bool reopens_ = false;
   std::size_t unpacked_ = 0, most_ = 0;  // most_ 0: as much as comes

@@ -14,6 +14,7 @@ FileKind file_kind(const std::string& path) {
   if (name.ends_with(".csv")) return FileKind::capture;
   if (name.ends_with(".log") || name.ends_with(".candump")) return FileKind::candump;
   if (name.ends_with(".lcm")) return FileKind::lcm_log;
+  if (name.ends_with(".ifr")) return FileKind::flight;
   for (const std::string_view ending : {".bin", ".kvh", ".raw", ".dat", ".txt"})
     if (name.ends_with(ending)) return FileKind::bytes;
   return FileKind::unknown;
@@ -23,6 +24,7 @@ FileKind file_kind(const InputFile& file) {
   const FileKind by_name = file_kind(file.path());
   if (by_name != FileKind::unknown) return by_name;
   std::string_view head = file.head();
+  if (head.starts_with("\xF1IFR")) return FileKind::flight;
   // lcm-logger's own names end in a number. Each event begins with this word.
   if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
   // Comments may stand before a capture's header and between a log's lines.
@@ -57,6 +59,23 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
   counts.bytes_at_end = driver.counters().bytes_skipped - before;
   counts.driver = driver.counters();
   return counts;
+}
+
+std::vector<std::string> losses(const RecordingCounts& counts) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::uint64_t n, const char* what) {
+    if (n != 0) lines.push_back(std::to_string(n) + " " + what);
+  };
+  say(counts.driver.frames_crc, "frames with a wrong checksum");
+  say(counts.driver.frames_format, "frames or samples that are not as the format or the options say");
+  say(counts.driver.bytes_skipped - counts.bytes_at_end, "bytes that are part of no frame");
+  say(counts.bytes_at_end, "bytes at the end are no whole frame (is the file cut off?)");
+  say(counts.driver.frames_repeated, "frames left out because they came twice");
+  say(counts.driver.samples_incomplete, "samples left out because some of their frames are missing");
+  say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
+  say(counts.remote_frames, "CAN remote frames passed over");
+  say(counts.error_frames, "CAN error frames passed over");
+  return lines;
 }
 
 }  // namespace ifog

@@ -1,10 +1,12 @@
 // A recording of what a device sent, put through its driver: raw bytes, or a candump log. Plain or gzip.
+// Flight recordings have a way of their own (drivers/flight).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "drivers/capture/input_file.h"
 #include "drivers/host/driver_instance.h"
@@ -16,6 +18,7 @@ enum class FileKind {
   candump,  // .log, .candump
   bytes,    // .bin, .kvh, .raw, .dat, .txt
   lcm_log,  // begins with an LCM event, or is called .lcm
+  flight,   // begins as a flight recording, or is called .ifr
   unknown
 };
 
@@ -32,6 +35,9 @@ struct RecordingCounts {
   std::size_t remote_frames = 0, error_frames = 0;  // of a candump log; passed over
   bool cut_off = false;                             // a candump log that ends within a line, left out
 };
+
+// "3 frames with a wrong checksum", … : one line for each counter that says something was lost.
+std::vector<std::string> losses(const RecordingCounts& counts);
 
 // Feeds the whole recording to the driver, as `candump` if the driver takes CAN frames, else as bytes; of a
 // candump log only one interface's frames unless `interface` is empty. A log's frames arrive at their

@@ -23,6 +23,7 @@ void add_denoise(CLI::App& app);
 void add_drivers(CLI::App& app);
 void add_monitor(CLI::App& app);
 void add_picture(CLI::App& app);
+void add_record(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_tune(CLI::App& app);
 void add_diagnose(CLI::App& app);

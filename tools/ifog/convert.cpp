@@ -42,8 +42,10 @@ void add_convert(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("convert", "Turn a capture into a device's bytes or CAN frames, or back");
   command
-      ->add_option("FROM", state->from,
-                   "Capture (.csv, .csv.gz), bytes (.bin, .kvh), candump log (.log), LCM log")
+      ->add_option(
+          "FROM", state->from,
+          "Capture (.csv, .csv.gz), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
+          "log (.log), LCM log")
       ->required();
   command->add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .bin, .kvh, .log")
       ->required();

@@ -22,10 +22,10 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
 #include "msgs/state_name.h"
+#include "tools/ifog/captures/lcm_loss.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
 
@@ -35,7 +35,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-  std::string sensor, record, url = "udpm://239.255.76.67:7667?ttl=0";
+  std::string sensor, url = "udpm://239.255.76.67:7667?ttl=0";
   double seconds = 0.0;  // 0: until interrupted
   bool once = false;
 };
@@ -48,8 +48,9 @@ struct AxisFigures {
 };
 
 struct Sensor {
-  std::int64_t messages = 0, shown = 0, lost = 0, gaps = 0, gated = 0, last_seq = -1;
+  std::int64_t messages = 0, shown = 0, gaps = 0, gated = 0;
   std::int64_t in_interval = 0;
+  LcmLoss way;
   std::vector<AxisFigures> axes;
   std::string model;
   bool has_status = false;
@@ -107,59 +108,9 @@ std::string channels_text(const status_t& status) {
   return out;
 }
 
-class Recorder {
- public:
-  explicit Recorder(const std::string& path) {
-    if (!path.empty()) file_.emplace(path);
-  }
-  void add(const std::string& sensor, const rate_t& message) {
-    if (!file_) return;
-    std::string line;
-    if (std::exchange(header_, false)) {
-      line = "sensor,utime,seq,flags";
-      for (int a = 0; a < message.axes; ++a) {
-        const std::string n = std::to_string(a);
-        line +=
-            ",raw_" + n + "_radps,compensated_" + n + "_radps,denoised_" + n + "_radps,angle_" + n + "_rad";
-      }
-      line += '\n';
-    }
-    line += in_csv(sensor) + ',' + std::to_string(message.utime) + ',' + std::to_string(message.seq) + ',' +
-            std::to_string(message.flags);
-    for (std::size_t a = 0; a < static_cast<std::size_t>(message.axes); ++a)
-      for (const double value :
-           {message.raw[a], message.compensated[a], message.denoised[a], message.angle[a]}) {
-        std::array<char, 32> digits{};
-        line += ',';
-        line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-      }
-    held_ += line + '\n';
-    if (held_.size() < kHeld) return;
-    file_->write(held_);
-    held_.clear();
-  }
-  void finish() {
-    if (!file_) return;
-    file_->write(held_);
-    file_->finish();
-  }
-
- private:
-  static constexpr std::size_t kHeld = 1U << 16U;
-  // The name comes from the network: it may neither end the cell nor the line.
-  static std::string in_csv(const std::string& name) {
-    std::string cell = printable(name);
-    std::replace(cell.begin(), cell.end(), ',', '_');
-    return cell;
-  }
-  std::optional<OutputFile> file_;
-  std::string held_;
-  bool header_ = true;
-};
-
 class Monitor {
  public:
-  explicit Monitor(const Options& options) : options_(options), recorder_(options.record) {
+  explicit Monitor(const Options& options) : options_(options) {
     lcm_ = lcm_create(options.url.c_str());
     if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + options.url + ": LCM cannot use it");
     std::string name = options.sensor;
@@ -195,8 +146,7 @@ class Monitor {
   [[nodiscard]] bool all_shown() const;
 
   const Options& options_;
-  Recorder recorder_;
-  std::exception_ptr failure_;  // of the first message that could not be taken or recorded
+  std::exception_ptr failure_;  // of the first message that could not be taken
   lcm_t* lcm_ = nullptr;
   std::map<std::string, Sensor> sensors_;
   std::uint64_t refused_ = 0;  // that are no message of their channel's type
@@ -223,7 +173,6 @@ void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
     return;
   }
   take_rate(sensors_[name], message);
-  recorder_.add(name, message);
 }
 
 void Monitor::take_rate(Sensor& sensor, const rate_t& message) {
@@ -232,11 +181,7 @@ void Monitor::take_rate(Sensor& sensor, const rate_t& message) {
   sensor.model = message.model;
   if ((message.flags & rate_t::FLAG_GAP) != 0) ++sensor.gaps;
   if ((message.flags & rate_t::FLAG_GATED) != 0) ++sensor.gated;
-  // A number passed over without the daemon's own gap flag or a merge was lost on the way here.
-  if (sensor.last_seq >= 0 && (message.flags & rate_t::FLAG_GAP) == 0 &&
-      (message.flags & rate_t::FLAG_MERGED) == 0)
-    sensor.lost += std::max<std::int64_t>(0, message.seq - sensor.last_seq - 1);
-  sensor.last_seq = message.seq;
+  sensor.way.take(message);
   sensor.axes.resize(static_cast<std::size_t>(message.axes));
   const auto n = static_cast<double>(sensor.in_interval);
   for (std::size_t a = 0; a < sensor.axes.size(); ++a) {
@@ -263,7 +208,7 @@ void Monitor::show(double interval_s) {
     std::snprintf(head.data(), head.size(),
                   "%s  %.1f Hz  %lld messages, %lld lost on LCM, %lld gaps, %lld gated%s%s", name.c_str(),
                   static_cast<double>(sensor.in_interval) / interval_s,
-                  static_cast<long long>(sensor.messages), static_cast<long long>(sensor.lost),
+                  static_cast<long long>(sensor.messages), static_cast<long long>(sensor.way.lost()),
                   static_cast<long long>(sensor.gaps), static_cast<long long>(sensor.gated),
                   sensor.model.empty() ? "" : "  model ", sensor.model.c_str());
     line(head.data());
@@ -346,7 +291,6 @@ bool Monitor::run() {
   }
   close(stop);
   if (!options_.once && seconds_since(shown) > 0.2) show(seconds_since(shown));
-  recorder_.finish();
   return std::any_of(sensors_.begin(), sensors_.end(),
                      [](const auto& entry) { return entry.second.messages > 0; });
 }
@@ -359,13 +303,11 @@ void add_monitor(CLI::App& app) {
   command->add_option("--sensor", options->sensor, "Only this sensor")->type_name("NAME");
   command->add_option("--seconds", options->seconds, "Stop after this long")->check(CLI::PositiveNumber);
   command->add_flag("--once", options->once, "Stop after one second of every sensor heard");
-  command->add_option("--record", options->record, "Write every message to a CSV file")->type_name("FILE");
   command->add_option("--lcm-url", options->url, "As in the daemon's configuration")->type_name("URL");
   command->callback([options] {
     // Without a time limit, --once waits for a daemon that may never come: give up as a script would want.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
-    will_write("--record", options->record);
     if (!Monitor(*options).run()) {
       warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
       throw Failed("nothing heard");

@@ -1,6 +1,7 @@
 // From a frame's last byte to the end of its LCM send, and processor time a sample: the daemon's pipeline
 // beside a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
-// ring, plugin or filter. Interleaved rounds in one process. Run it by tests/bench/latency/run, in a network
+// ring, plugin or filter. With --record a third time, with the flight recorder on. Interleaved rounds in one
+// process. Run it by tests/bench/latency/run, in a network
 // namespace of its own.
 #include <fcntl.h>
 #include <lcm/lcm.h>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "daemon/pipeline/pipeline.h"
+#include "daemon/recorder/recorder.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file.h"
@@ -60,7 +62,8 @@ class StampingPublisher final : public Publisher {
 struct Plan {
   double rate_hz = 1000.0, seconds = 3.0;
   int sensors = 1, rounds = 5;
-  bool spin = false, two_threads = false;
+  bool spin = false, two_threads = false, record = false;
+  std::string folder;  // of FIFOs and recordings
   std::string place = "any";
   std::string rule = "irwe-akfg";
 
@@ -138,13 +141,27 @@ void bare_loop(const Plan& plan, const std::string& fifo, Stamps& stamps, std::s
   lcm_destroy(lcm);
 }
 
+enum class Kind { bare, daemon, recording };
+
 struct Result {
   std::vector<double> latency_us;
   double cpu_us = 0.0;  // a sample, writer left out
   std::size_t lost = 0;
+  std::uint64_t unrecorded = 0;  // deliveries
 };
 
-std::unique_ptr<Pipeline> make_pipeline(const std::string& fifo, const Plan& plan, Stamps& stamps) {
+std::unique_ptr<Recorder> make_recorder(const Plan& plan, std::size_t sensor) {
+  FlightHeader header;
+  header.driver = "kvh1750";
+  ArchiveLimits limits;
+  auto recorder = std::make_unique<Recorder>(
+      "recorder", 4U << 20U, make_flight_folder(plan.folder + "/" + std::to_string(sensor)), limits, header);
+  recorder->start();
+  return recorder;
+}
+
+std::unique_ptr<Pipeline> make_pipeline(const std::string& fifo, const Plan& plan, Stamps& stamps,
+                                        Tape* tape) {
   DriverInstance driver = make_driver("kvh1750", {});
   PipelinePlan pipeline;
   pipeline.lcm_channel = "IFOG_BENCH";
@@ -152,6 +169,7 @@ std::unique_ptr<Pipeline> make_pipeline(const std::string& fifo, const Plan& pla
   pipeline.reader = {"read", 0, plan.reader_cpus()};
   pipeline.filter = {"filter", 0, plan.reader_cpus()};
   pipeline.spin = plan.spin;
+  pipeline.tape = tape;
   pipeline.direct = !plan.two_threads;
   ChainSettings chain;
   chain.facts = pipeline.facts;
@@ -168,17 +186,20 @@ std::unique_ptr<Pipeline> make_pipeline(const std::string& fifo, const Plan& pla
                                     std::make_unique<StampingPublisher>(stamps));
 }
 
-void run_round(bool daemon, const Plan& plan, const std::vector<std::string>& paths,
+void run_round(Kind kind, const Plan& plan, const std::vector<std::string>& paths,
                const std::vector<std::uint8_t>& bytes, std::size_t size, Result& result) {
   const std::size_t count = bytes.size() / kFrame;
   std::vector<std::unique_ptr<Stamps>> stamps;
+  std::vector<std::unique_ptr<Recorder>> recorders;
   std::vector<std::unique_ptr<Pipeline>> pipelines;
   std::vector<std::thread> loops;
   std::vector<int> fifos;
   for (const std::string& path : paths) {
     stamps.push_back(std::make_unique<Stamps>(count));
-    if (daemon) {
-      pipelines.push_back(make_pipeline(path, plan, *stamps.back()));
+    if (kind != Kind::bare) {
+      if (kind == Kind::recording) recorders.push_back(make_recorder(plan, recorders.size()));
+      pipelines.push_back(make_pipeline(path, plan, *stamps.back(),
+                                        kind == Kind::recording ? &recorders.back()->tape() : nullptr));
       pipelines.back()->open();
       pipelines.back()->start();
     } else {
@@ -196,6 +217,11 @@ void run_round(bool daemon, const Plan& plan, const std::vector<std::string>& pa
   result.cpu_us += 1e-3 * static_cast<double>(cpu_ns(CLOCK_PROCESS_CPUTIME_ID) - from_ns - writer_ns) /
                    static_cast<double>(count * paths.size()) / plan.rounds;
   for (auto& pipeline : pipelines) pipeline->stop();
+  for (auto& recorder : recorders) {
+    recorder->stop();
+    result.unrecorded += recorder->tape().counters().lost_deliveries.value();
+    if (recorder->tape().counters().bytes.value() != bytes.size()) std::abort();
+  }
   for (std::thread& loop : loops) loop.join();
   for (const int fd : fifos) close(fd);
   for (const auto& one : stamps)
@@ -235,6 +261,7 @@ int main(int argc, char** argv) {
          "the reader on another)")
       ->check(CLI::IsMember({"any", "same", "other"}));
   auto* const spin = app.add_flag("--spin", plan.spin, "filter threads never sleep");
+  app.add_flag("--record", plan.record, "beside both, with the flight recorder on");
   app.add_flag("--two-threads", plan.two_threads, "every step by the filter thread")->excludes(spin);
   CLI11_PARSE(app, argc, argv);
   const std::filesystem::path folder =
@@ -247,13 +274,17 @@ int main(int argc, char** argv) {
   }
   const std::vector<std::uint8_t> bytes = frames(static_cast<std::size_t>(plan.rate_hz * plan.seconds));
   const std::size_t size = message_size();
-  Result bare, daemon;
+  Result bare, daemon, recording;
+  plan.folder = folder;
   for (int round = 0; round < plan.rounds; ++round) {
-    run_round(false, plan, paths, bytes, size, bare);
-    run_round(true, plan, paths, bytes, size, daemon);
+    run_round(Kind::bare, plan, paths, bytes, size, bare);
+    // In turns the one and the other first: whatever the round before leaves behind is shared.
+    if (plan.record && round % 2 == 1) run_round(Kind::recording, plan, paths, bytes, size, recording);
+    run_round(Kind::daemon, plan, paths, bytes, size, daemon);
+    if (plan.record && round % 2 == 0) run_round(Kind::recording, plan, paths, bytes, size, recording);
   }
-  std::sort(bare.latency_us.begin(), bare.latency_us.end());
-  std::sort(daemon.latency_us.begin(), daemon.latency_us.end());
+  for (Result* const result : {&bare, &daemon, &recording})
+    std::sort(result->latency_us.begin(), result->latency_us.end());
   std::printf(
       "%d sensor(s) at %g Hz, %d interleaved rounds of %g s, processors %s, filter %s%s, messages of %zu "
       "bytes\n",
@@ -270,6 +301,15 @@ int main(int argc, char** argv) {
               percentile(daemon.latency_us, 0.99) / percentile(bare.latency_us, 0.99),
               percentile(daemon.latency_us, 0.999) / percentile(bare.latency_us, 0.999), "",
               daemon.cpu_us / bare.cpu_us);
+  if (plan.record) {
+    print("recording", recording.latency_us, recording.cpu_us, recording.lost);
+    std::printf(
+        "%-10s %8.2f %8.2f %8.2f %9s %12.2f   of the daemon without it; %llu deliveries not recorded\n",
+        "ratio", percentile(recording.latency_us, 0.5) / percentile(daemon.latency_us, 0.5),
+        percentile(recording.latency_us, 0.99) / percentile(daemon.latency_us, 0.99),
+        percentile(recording.latency_us, 0.999) / percentile(daemon.latency_us, 0.999), "",
+        recording.cpu_us / daemon.cpu_us, static_cast<unsigned long long>(recording.unrecorded));
+  }
   std::filesystem::remove_all(folder);
   return 0;
 }

@@ -87,7 +87,9 @@ TEST(InputFile, SaysWhatIsInTheWay) {
     return "accepted";
   };
   EXPECT_EQ(refusal("/nowhere/f"), "/nowhere/f: cannot open: No such file or directory");
-  EXPECT_EQ(refusal("/tmp"), "/tmp: is a folder, expected a file");
+  EXPECT_EQ(
+      refusal("/proc/self"),
+      "/proc/self: is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr)");
 }
 
 }  // namespace

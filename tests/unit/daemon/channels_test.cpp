@@ -174,7 +174,9 @@ struct Value {
 
 Value look(const ChannelTable& table) {
   Value out{};
-  table.get(0, realtime_ns(), out.value, out.age_s);
+  const ChannelValue latest = table.latest(0);
+  out.value = latest.value;
+  out.age_s = latest.age_s(realtime_ns());
   return out;
 }
 
@@ -267,10 +269,9 @@ TEST(ChannelSources, AFifoInTheFilesPlaceHoldsNothingUp) {
   ChannelSources sources({{waits, table, 0}, {works, table, 1}}, kUrl);
   sources.start();
   double value = NAN;
-  float age_s = 0.0F;
   for (int n = 0; n < 500 && std::isnan(value); ++n) {
     std::this_thread::sleep_for(10ms);
-    table->get(1, arrival_clock_ns(), value, age_s);
+    value = table->latest(1).value;
   }
   EXPECT_EQ(value, 7.0);
   sources.stop();  // hung, as the reader did

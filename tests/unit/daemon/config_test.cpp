@@ -227,7 +227,7 @@ TEST(Config, GathersAllErrors) {
             "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
             "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, "
             "max_step, maximum, "
-            "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, transport");
+            "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, record, transport");
 }
 
 TEST(Config, NothingToDoIsAnError) {
@@ -275,6 +275,52 @@ TEST(Config, TheUsersLimitsOfSensorAndChannel) {
                       "max_step = -1.0\n[sensor.transport]\ntype = \"file\"\npath = \"x\"\n"),
             "f.toml:6: sensor.max_step = -1: expected a number 0 ... 20000\n"
             "f.toml:5: sensor.maximum: not above minimum; expected minimum < maximum");
+}
+
+constexpr const char* kRecorded =
+    "[[sensor]]\nname = \"a\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = \"file\"\npath = \"x\"\n"
+    "[sensor.record]\n";
+
+TEST(Config, TheRecordersLimitsAreHeldToOneAnother) {
+  const Config reference = read_config(std::string(IFOG_SOURCE_DIR) + "/daemon/examples/reference.toml");
+  RecordConfig defaults;
+  defaults.folder = "/var/lib/ifogd/record";
+  EXPECT_EQ(reference.sensors.at(0).record, defaults);  // the reference shows the defaults
+  EXPECT_EQ(complaint(kRecorded),
+            "f.toml:7: sensor.record.folder: missing; expected a folder, "
+            "\"/var/lib/ifogd/record\"");
+  EXPECT_EQ(
+      complaint(std::string(kRecorded) + "folder = \"r\"\nbytes = 3_000_000\nfile_bytes = 1_000_000\n"),
+      "f.toml:9: sensor.record.bytes: bytes = 3000000 with file_bytes = 1000000: expected room for at least "
+      "four files");
+  EXPECT_EQ(complaint(std::string(kRecorded) + "folder = \"r\"\ndays = 0\n"),
+            "f.toml:9: sensor.record.days = 0: expected a number 0.001 ... 100000");
+}
+
+// What a flight recording carries is the sensor as it is now configured, and reads as that.
+TEST(Config, ASensorsTextReadsAsTheSensorAlsoWhenReloaded) {
+  const std::string file = std::string(IFOG_SOURCE_DIR) + "/daemon/examples/reference.toml";
+  const SensorConfig sensor = read_config(file).sensors.at(0);
+  const auto same = [&](const SensorConfig& read, const SensorConfig& expected) {
+    EXPECT_EQ(read.restart_for(expected), "");
+    EXPECT_EQ(read.name, expected.name);
+    EXPECT_EQ(read.model, expected.model);
+    EXPECT_EQ(read.start_up_s, expected.start_up_s);
+    EXPECT_EQ(read.filter.process_noise, expected.filter.process_noise);
+    EXPECT_EQ(read.filter.window, expected.filter.window);
+  };
+  same(parse_config(sensor.text, file).sensors.at(0), sensor);
+  const SensorConfig fresh =
+      parse_config(
+          "[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\nmodel = \"other.toml\"\nrange_radps = 1.0\n"
+          "[sensor.transport]\ntype = \"file\"\npath = \"x\"\n[sensor.filter]\nwindow = 77\n",
+          file)
+          .sensors.at(0);
+  const SensorConfig reloaded = sensor.reloaded(fresh);
+  EXPECT_EQ(reloaded.model, fresh.model);
+  EXPECT_EQ(reloaded.filter.window, 77);
+  EXPECT_EQ(reloaded.range_radps, sensor.range_radps);
+  same(parse_config(reloaded.text, file).sensors.at(0), reloaded);
 }
 
 TEST(Config, TheExamplesAreGood) {

@@ -101,13 +101,15 @@ inline std::vector<std::uint8_t> frames(int count, const std::function<double(in
 
 struct Rig {
   Rig(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back, std::size_t slots = 1024,
-      std::chrono::microseconds pause = std::chrono::microseconds(0), bool direct = true) {
+      std::chrono::microseconds pause = std::chrono::microseconds(0), bool direct = true,
+      Tape* tape = nullptr) {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
     plan.lcm_channel = "IFOG_TEST";
     plan.facts = sensor_facts(driver.description(), 1000.0, 0);
     plan.ring_slots = slots;
     plan.direct = direct;
+    plan.tape = tape;
     plan.reader.name = "read";
     plan.filter.name = "filter";
     chain.facts = plan.facts;

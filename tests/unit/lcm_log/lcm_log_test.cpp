@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <ifog/channel_t.hpp>
 #include <ifog/rate_t.hpp>
+#include <ifog/status_t.hpp>
 #include <lcm/lcm-cpp.hpp>
+#include <limits>
 #include <stdexcept>
 
 #include "drivers/capture/text_file.h"
@@ -147,6 +150,62 @@ TEST_F(LcmLog, RefusesAnotherNumberOfAxes) {
   add("IFOG_NOSE", sample(0, 1));
   add("IFOG_NOSE", sample(1, 3));
   EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE has another number of axes");
+}
+
+// A status tells each measurement once; a channel that is none of the sensor's comes by its own messages.
+TEST_F(LcmLog, ChannelsOfTheStatusAndOfMessagesAreColumns) {
+  status_t status{};
+  status.axes = 0;
+  status.channels = 3;
+  status.channel_name = {"supply_V", "never_degC", "no,name"};
+  const auto tell = [&](double utime_s, double supply, double age_s) {
+    status.utime = static_cast<std::int64_t>(utime_s * 1e6);
+    status.channel_value = {supply, 1.0, 2.0};
+    status.channel_age_s = {age_s, std::numeric_limits<double>::infinity(), 0.0};
+    add("IFOG_NOSE_STATUS", status);
+  };
+  channel_t hull{};
+  hull.name = "hull_degC";
+  channel_t supply{};
+  supply.name = "supply_V";
+  supply.value = -1.0;  // not as the daemon has it
+  add("HULL", supply);
+  for (int n = 0; n < 6; ++n) {
+    if (n == 1) tell(100.0, 12.5, 0.25);
+    if (n == 2) tell(101.0, 12.5, 1.25);  // the same measurement, a second older
+    if (n == 3) tell(102.0, 12.5, 0.25);  // another of the same value
+    if (n == 4) {
+      hull.value = 30.0 + n;
+      add("HULL", hull);
+      add("HULL", supply);
+    }
+    if (n == 5) tell(103.0, 13.0, 0.25);
+    add("IFOG_NOSE", sample(n, 1));
+  }
+  finish();
+  const Capture capture = read("");
+  ASSERT_EQ(capture.channels.size(), 2U);
+  const auto known = [&](const CaptureColumn& column) {
+    std::vector<std::pair<std::size_t, double>> out;
+    for (std::size_t i = 0; i < column.values.size(); ++i)
+      if (std::isfinite(column.values[i])) out.emplace_back(i, column.values[i]);
+    return out;
+  };
+  using Known = std::vector<std::pair<std::size_t, double>>;
+  EXPECT_EQ(capture.channels[0].name, "hull_degC");
+  EXPECT_EQ(known(capture.channels[0]), (Known{{4, 34.0}}));
+  EXPECT_EQ(capture.channels[1].name, "supply_V");
+  EXPECT_EQ(known(capture.channels[1]), (Known{{1, 12.5}, {3, 12.5}, {5, 13.0}}));
+}
+
+// The daemon was started again: its sensor's clock is at another place, the fitted time goes on.
+TEST_F(LcmLog, ADeviceWhoseClockBeginsAnewGoesOnByTheFittedTime) {
+  add("IFOG_NOSE", sample(0, 1, 5'000'000'000));
+  add("IFOG_NOSE", sample(1, 1, 5'001'000'000));
+  add("IFOG_NOSE", sample(11, 1, 7'000'000));
+  add("IFOG_NOSE", sample(12, 1, 8'000'000));
+  finish();
+  EXPECT_EQ(read("").time_s, (std::vector<double>{0.0, 0.001, 0.011, 0.012}));
 }
 
 TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {

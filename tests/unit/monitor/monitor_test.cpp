@@ -63,10 +63,9 @@ std::string text_of(const std::string& path) {
 TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
   if (const std::string why = ifog::enter_private_network(); !why.empty())
     GTEST_SKIP() << "no network namespace of its own (" << why << "); run as root";
-  const std::string folder = ::testing::TempDir(), out = folder + "monitor_out",
-                    record = folder + "monitor_record";
+  const std::string out = ::testing::TempDir() + "monitor_out";
   std::string command = IFOG_BINARY_DIR "/tools/ifog/ifog monitor --seconds 3 --lcm-url '";
-  command.append(kUrl).append("' --record ").append(record).append(" >").append(out).append(" 2>&1");
+  command.append(kUrl).append("' >").append(out).append(" 2>&1");
   int result = -1;
   std::thread monitor([&] { result = std::system(command.c_str()); });
   lcm::LCM lcm(kUrl);
@@ -99,12 +98,6 @@ TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
                            "46 published + 2 merged + 1 not sent + 1 waiting",
                            "model \\x1b]52", "messages that are none of ours"})
     EXPECT_NE(said.find(part), std::string::npos) << part << " is not in\n" << said;
-  // A row a message, each with the header's number of cells.
-  std::istringstream rows(text_of(record));
-  std::string row;
-  int count = 0;
-  for (; std::getline(rows, row); ++count) EXPECT_EQ(std::count(row.begin(), row.end(), ','), 7) << row;
-  EXPECT_GT(count, 10);
 }
 
 }  // namespace

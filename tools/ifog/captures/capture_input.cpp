@@ -7,6 +7,7 @@
 #include "drivers/capture/capture_builder.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
+#include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/console/say.h"
 
@@ -123,6 +124,13 @@ Capture CaptureInput::read(const std::string& path, std::string* sha256) const {
   return read(at_hand);
 }
 
+Capture CaptureInput::read_flight(InputFile& file) const {
+  if (recorded_messages(file)) return read_lcm_log(file, channel);
+  FlightInput flight(file);
+  DriverInstance instance = flight.make_driver(driver_name(), settings());
+  return flight.capture(instance);
+}
+
 Capture CaptureInput::read(InputFile& file) const {
   const std::string& path = file.path();
   const FileKind found = kind(file);
@@ -132,6 +140,7 @@ Capture CaptureInput::read(InputFile& file) const {
     return parse(file.text(), path);
   }
   if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
+  if (found == FileKind::flight) return read_flight(file);
   if (!has_driver())
     throw std::runtime_error(path +
                              ": is no CSV capture, expected --driver NAME (or --dbc FILE) to decode it with");
@@ -148,23 +157,6 @@ Capture CaptureInput::read(InputFile& file) const {
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter\n", path.c_str(), builder.missing());
   return builder.finish();
-}
-
-std::vector<std::string> losses(const RecordingCounts& counts) {
-  std::vector<std::string> lines;
-  const auto say = [&](std::uint64_t n, const char* what) {
-    if (n != 0) lines.push_back(std::to_string(n) + " " + what);
-  };
-  say(counts.driver.frames_crc, "frames with a wrong checksum");
-  say(counts.driver.frames_format, "frames or samples that are not as the format or the options say");
-  say(counts.driver.bytes_skipped - counts.bytes_at_end, "bytes that are part of no frame");
-  say(counts.bytes_at_end, "bytes at the end are no whole frame (is the file cut off?)");
-  say(counts.driver.frames_repeated, "frames left out because they came twice");
-  say(counts.driver.samples_incomplete, "samples left out because some of their frames are missing");
-  say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
-  say(counts.remote_frames, "CAN remote frames passed over");
-  say(counts.error_frames, "CAN error frames passed over");
-  return lines;
 }
 
 }  // namespace ifog::tools

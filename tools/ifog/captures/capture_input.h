@@ -1,5 +1,5 @@
 // A capture of any kind as the commands take it: CSV as it is; raw bytes and candump logs through a driver;
-// LCM logs.
+// flight recordings through the driver that they name, or another; LCM logs.
 #pragma once
 
 #include <functional>
@@ -64,9 +64,9 @@ struct CaptureInput {
   // `sha256`, where it is wanted: of the file as it was unpacked.
   [[nodiscard]] Capture read(InputFile& file) const;
   [[nodiscard]] Capture read(const std::string& path, std::string* sha256 = nullptr) const;
-};
 
-// "3 frames with a wrong checksum", … : one line for each counter that says something was lost.
-std::vector<std::string> losses(const RecordingCounts& counts);
+ private:
+  [[nodiscard]] Capture read_flight(InputFile& file) const;
+};
 
 }  // namespace ifog::tools

@@ -10,10 +10,15 @@
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/lcm_channels.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -23,25 +28,22 @@ bool carries_rates(const std::string& channel) {
   return channel.starts_with("IFOG_") && !channel.ends_with("_STATUS");
 }
 
-// LCM reads a log by its name and from any place in it. One that comes packed or through a pipe is kept in
-// memory, under a name that only this process knows.
+// LCM reads a log by its name and from any place in it. One that comes packed, through a pipe or as a flight
+// recording is kept in memory, under a name that only this process knows.
 class NamedLog {
  public:
   explicit NamedLog(InputFile& file) : name_(file.path()) {
-    if (file.reopens()) return;
+    const bool recorded = recorded_messages(file);
+    if (file.reopens() && !recorded) return;
     fd_ = memfd_create("lcm log", MFD_CLOEXEC);
     if (fd_ < 0) throw std::runtime_error(name_ + ": no memory to unpack it");
     name_ = "/proc/self/fd/" + std::to_string(fd_);
-    std::vector<char> block(1U << 20U);
-    while (const std::size_t n = file.read(block.data(), block.size()))
-      for (std::size_t done = 0; done < n;) {
-        const ssize_t wrote = ::write(fd_, block.data() + done, n - done);
-        if (wrote < 0 && errno != EINTR) {
-          ::close(fd_);
-          throw std::runtime_error(file.path() + ": no memory to unpack it");
-        }
-        done += static_cast<std::size_t>(std::max<ssize_t>(wrote, 0));
-      }
+    try {
+      recorded ? unpack_messages(file) : unpack(file);
+    } catch (...) {
+      ::close(fd_);
+      throw;
+    }
   }
   ~NamedLog() {
     if (fd_ >= 0) ::close(fd_);
@@ -52,6 +54,30 @@ class NamedLog {
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
+  void unpack(InputFile& file) const {
+    std::vector<char> block(1U << 20U);
+    while (const std::size_t n = file.read(block.data(), block.size()))
+      for (std::size_t done = 0; done < n;) {
+        const ssize_t wrote = ::write(fd_, block.data() + done, n - done);
+        if (wrote < 0 && errno != EINTR) throw std::runtime_error(file.path() + ": no memory to unpack it");
+        done += static_cast<std::size_t>(std::max<ssize_t>(wrote, 0));
+      }
+  }
+  void unpack_messages(InputFile& file) const {
+    FlightInput flight(file);
+    lcm::LogFile log(name_, "w");
+    flight.for_each_entry([&](const FlightEntry& entry) {
+      if (entry.head.kind != FlightKind::message || entry.head.index > entry.payload.size()) return;
+      std::vector<std::uint8_t> data(entry.payload.begin() + entry.head.index, entry.payload.end());
+      lcm::LogEvent event{};
+      event.timestamp = entry.head.time_ns / 1000;
+      event.channel.assign(reinterpret_cast<const char*>(entry.payload.data()), entry.head.index);
+      event.datalen = static_cast<int>(data.size());
+      event.data = data.data();
+      if (log.writeEvent(&event) != 0) throw std::runtime_error(file.path() + ": no memory to unpack it");
+    });
+  }
+
   std::string name_;
   int fd_ = -1;
 };
@@ -69,6 +95,18 @@ std::string chosen_channel(const std::string& path, const NamedLog& source) {
                                        : ": has several channels, expected --channel with one of " + list));
 }
 
+// A log, and the channel of it that carries the rates.
+struct ChosenLog {
+  ChosenLog(InputFile& file, const std::string& channel) : path(file.path()), source(file) {
+    if (!lcm::LogFile(source.name(), "r").good())
+      throw std::runtime_error(path + ": cannot open as an LCM log");
+    rates = channel.empty() ? chosen_channel(path, source) : channel;
+  }
+  std::string path;
+  NamedLog source;
+  std::string rates;
+};
+
 // The message carries no names; three axes are x, y, z.
 std::vector<std::string> axis_names(std::size_t axes) {
   if (axes == 1) return {""};
@@ -77,42 +115,66 @@ std::vector<std::string> axis_names(std::size_t axes) {
   return names;
 }
 
-// Hands each message of the channel to `sink` with its time in s from the first, later than the one before.
-void for_each_rate(InputFile& file, const std::string& channel,
-                   const std::function<void(const rate_t&, double)>& sink) {
-  const std::string& path = file.path();
-  const NamedLog source(file);
-  if (!lcm::LogFile(source.name(), "r").good())
-    throw std::runtime_error(path + ": cannot open as an LCM log");
-  const std::string wanted = channel.empty() ? chosen_channel(path, source) : channel;
-  lcm::LogFile log(source.name(), "r");
-  std::int64_t start_ns = 0;
+// The sensor's own clock where it has one, from the first message on. One that jumps back while the fitted
+// time goes on has begun anew, and goes on by that.
+class SensorSeconds {
+ public:
+  // Later than the one before, or -1: neither clock goes on.
+  double of(const rate_t& message) {
+    const std::int64_t fitted_ns = message.utime * 1000;
+    std::int64_t now_ns = (message.sensor_time_ns >= 0 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
+    if (started_ && now_ns <= last_ns_) {
+      if (fitted_ns <= last_fitted_ns_) return -1.0;
+      const std::int64_t back_ns = last_ns_ + (fitted_ns - last_fitted_ns_) - now_ns;
+      shift_ns_ += back_ns;
+      now_ns += back_ns;
+    }
+    if (!std::exchange(started_, true)) start_ns_ = now_ns;
+    last_ns_ = now_ns;
+    last_fitted_ns_ = fitted_ns;
+    return static_cast<double>(now_ns - start_ns_) / 1e9;
+  }
+
+ private:
+  bool started_ = false;
+  std::int64_t start_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, shift_ns_ = 0;
+};
+
+using RateSink = std::function<void(const rate_t&, double)>;
+using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
+
+// Hands each message of the channel to `sink` with its time in s from the first, later than the one before,
+// and those of all others to `others`, which may be empty.
+void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
+  const std::string &path = chosen.path, &wanted = chosen.rates;
+  lcm::LogFile log(chosen.source.name(), "r");
   std::size_t number = 0, axes = 0;
-  double last_s = -1.0;
+  SensorSeconds seconds;
   long end = 0;  // of the last whole message
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     ++number;
     end = std::ftell(log.getFilePtr());
-    if (event->channel != wanted) continue;
+    if (event->channel != wanted) {
+      if (others)
+        others(event->channel,
+               {static_cast<const std::uint8_t*>(event->data), static_cast<std::size_t>(event->datalen)});
+      continue;
+    }
     const auto refuse = [&](const std::string& why) {
       throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
     };
     rate_t message;
     if (!decode_message(event->data, static_cast<std::size_t>(event->datalen), message))
       refuse("is no ifog.rate_t of this version");
-    const std::int64_t now_ns = message.sensor_time_ns >= 0 ? message.sensor_time_ns : message.utime * 1000;
-    if (last_s < 0.0) {
-      start_ns = now_ns;
-      axes = message.raw.size();
-    }
+    const bool first = axes == 0;
+    if (first) axes = message.raw.size();
     if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
     if (message.raw.size() != axes) refuse("has another number of axes");
-    const double time_s = static_cast<double>(now_ns - start_ns) / 1e9;
-    if (time_s <= last_s) refuse("is not later than the one before");
-    last_s = time_s;
+    const double time_s = seconds.of(message);
+    if (time_s < 0.0) refuse("is not later than the one before");
     sink(message, time_s);
   }
-  if (last_s < 0.0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
   // LCM's reader does not tell the end of the file from a message that is cut off.
   std::fseek(log.getFilePtr(), 0, SEEK_END);
   if (const long left = std::ftell(log.getFilePtr()) - end; left > 0)
@@ -121,9 +183,15 @@ void for_each_rate(InputFile& file, const std::string& channel,
 
 }  // namespace
 
+bool recorded_messages(const InputFile& file) {
+  // The header's keys come in the order of drivers/flight/format.md, and no value has a line's end in it.
+  return file_kind(file) == FileKind::flight &&
+         file.head().find("\ncarries=messages\n") != std::string_view::npos;
+}
+
 Capture read_lcm_log(InputFile& file, const std::string& channel) {
   Capture capture;
-  for_each_rate(file, channel, [&capture](const rate_t& message, double time_s) {
+  const auto take_rate = [&capture](const rate_t& message, double time_s) {
     if (capture.time_s.empty()) {
       capture.axes = axis_names(message.raw.size());
       capture.rate_radps.resize(capture.axes.size());
@@ -131,14 +199,24 @@ Capture read_lcm_log(InputFile& file, const std::string& channel) {
     }
     capture.time_s.push_back(time_s);
     for (std::size_t i = 0; i < capture.axes.size(); ++i) capture.rate_radps[i].push_back(message.raw[i]);
-  });
+  };
+  const ChosenLog chosen(file, channel);
+  LcmChannels channels(chosen.rates);
+  for_each_rate(
+      chosen,
+      [&](const rate_t& message, double time_s) {
+        take_rate(message, time_s);
+        channels.end_row();
+      },
+      [&](const std::string& name, std::span<const std::uint8_t> message) { channels.take(name, message); });
+  capture.channels = channels.columns();
   return capture;
 }
 
 Table read_published(InputFile& file, const std::string& channel) {
   Table table;
   double time_s = 0.0;
-  for_each_rate(file, channel, [&](const rate_t& message, double) {
+  const auto take = [&](const rate_t& message, double) {
     // The sum of the steps: the sensor's own time also when a recording was played faster.
     if (!table.time_s.empty()) time_s += message.dt;
     if (table.time_s.empty()) {
@@ -153,7 +231,8 @@ Table read_published(InputFile& file, const std::string& channel) {
       for (const double value :
            {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
         (column++)->values.push_back(value);
-  });
+  };
+  for_each_rate(ChosenLog(file, channel), take, {});
   return table;
 }
 

@@ -1,4 +1,5 @@
-// The rate_t messages of a log made by lcm-logger, as a capture of what the sensor measured.
+// The messages of a log made by lcm-logger or of a flight recording made by `ifog record`, as a capture of
+// what the sensor measured.
 #pragma once
 
 #include <string>
@@ -9,10 +10,14 @@
 namespace ifog::tools {
 
 // `channel` empty: the log's only IFOG_… channel with rates. Time is the sensor's own clock where it has one,
-// else the fitted time, counted from the first message. Throws std::runtime_error with one line: no log, no
-// such channel (those there are named), several where none was chosen, a message that is no rate_t, time that
-// does not go on.
+// else the fitted time, counted from the first message. Environment channels are those of the sensor's status
+// and of ifog.channel_t, see lcm_channels.h. Throws std::runtime_error with one line: no log, no such channel
+// (those there are named), several where none was chosen, a message that is no rate_t, time that does not go
+// on.
 Capture read_lcm_log(InputFile& file, const std::string& channel);
+
+// A flight recording that holds LCM messages. Looks, reads nothing.
+bool recorded_messages(const InputFile& file);
 
 // What the daemon published, in the columns of `ifog denoise`: raw, compensated and denoised rate and
 // variance by axis. Throws as above.

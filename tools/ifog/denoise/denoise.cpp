@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
@@ -172,8 +175,10 @@ void draw(const std::string& path, const Columns& columns, const OfflineResult& 
   report::write_picture(path, report::picture_svg("Rate, denoised by " + result.filter.rule, rows));
 }
 
-OfflineSettings settings_of(Options& options, const InputFile& capture) {
+// flight: null for other captures.
+OfflineSettings settings_of(Options& options, const InputFile& capture, const FlightInput* flight) {
   OfflineSettings out;
+  if (flight != nullptr && options.config.empty()) out.sensor = flight->sensor();
   if (!options.config.empty()) {
     const Config config = read_config(options.config);
     const auto found =
@@ -196,7 +201,9 @@ OfflineSettings settings_of(Options& options, const InputFile& capture) {
   if (!options.model.empty()) out.sensor.model = options.model;
   if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
   if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;
-  out.model = read_sensor_model(out.sensor);
+  out.model = flight != nullptr && options.config.empty() && options.model.empty()
+                  ? flight->model(out.sensor)
+                  : read_sensor_model(out.sensor);
   out.first_sequence = options.first_sequence;
   if (!options.noise.empty()) out.learned = read_kept_noise(options.noise).noise;
   return out;
@@ -256,7 +263,10 @@ void run(Options options) {
   will_write("--json", options.json);
   will_write("--plot", options.picture);
   InputFile capture(options.capture);
-  const OfflineSettings settings = settings_of(options, capture);
+  const FileKind kind = options.input.kind(capture);
+  std::optional<FlightInput> flight;
+  if (kind == FileKind::flight && !recorded_messages(capture)) flight.emplace(capture);
+  const OfflineSettings settings = settings_of(options, capture, flight ? &*flight : nullptr);
   Columns columns;
   columns.axes.resize(kMaxAxes);
   const auto sink = [&](double time_s, const Increment& increment, const ChainOutput& out) {
@@ -275,8 +285,10 @@ void run(Options options) {
     if ((out.flags & kNoiseUnknown) != 0) ++columns.unknown_noise;
   };
   OfflineResult result;
-  const FileKind kind = options.input.kind(capture);
-  if (kind != FileKind::capture && kind != FileKind::lcm_log) {
+  if (flight) {
+    DriverInstance driver = flight->make_driver(options.input.driver_name(), options.input.settings());
+    result = denoise_flight(*flight, driver, settings, sink);
+  } else if (kind == FileKind::bytes || kind == FileKind::candump) {
     if (!options.input.has_driver())
       throw std::runtime_error(options.capture +
                                ": is no CSV capture, expected --driver NAME, --dbc FILE or --config F");
@@ -300,7 +312,10 @@ void add_denoise(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "denoise", "Denoise a capture as the daemon would, bit for bit with the same settings");
   auto options = std::make_shared<Options>();
-  command->add_option("CAPTURE", options->capture, "CSV capture, raw bytes, candump or LCM log")->required();
+  command
+      ->add_option("CAPTURE", options->capture,
+                   "CSV capture, flight recording (a file or its folder), raw bytes, candump or LCM log")
+      ->required();
   command
       ->add_option("--output", options->output, "CSV: time_s, raw, compensated, denoised, variance by axis")
       ->required()
@@ -315,7 +330,10 @@ void add_denoise(CLI::App& app) {
           "--noise", options->noise,
           "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
       ->type_name("FILE");
-  command->add_option("--config", options->config, "Take all settings from the daemon's configuration")
+  command
+      ->add_option("--config", options->config,
+                   "Take all settings from the daemon's configuration; of a flight recording else those it "
+                   "was recorded with")
       ->type_name("FILE");
   command->add_option("--sensor", options->sensor, "Which sensor of the configuration")->type_name("NAME");
   command

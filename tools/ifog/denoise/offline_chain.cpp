@@ -38,6 +38,7 @@ class Chain {
     chain_.process(increment_, out);
     return &increment_;
   }
+  void discontinuity() { incrementer_.discontinuity(); }
   OfflineResult finish() {
     result_.counts = incrementer_.counts();
     result_.filter = chain_.parts().filter();
@@ -145,6 +146,47 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
     sink(time_s, *increment, out);
   });
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
+  return chain.finish();
+}
+
+OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
+                             const OfflineSink& sink) {
+  const ChainSettings chain_settings =
+      sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  const SensorFacts& facts = chain_settings.facts;
+  const std::vector<ChannelConfig> outside = outside_channels(settings.sensor);
+  // By name: the settings may be others than those it was recorded with.
+  std::vector<std::size_t> recorded_at;
+  for (const ChannelConfig& channel : outside) {
+    const std::vector<std::string>& names = flight.header().channels;
+    recorded_at.push_back(
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
+  }
+  Chain chain(chain_settings);
+  Reading reading;
+  ChainOutput out;
+  double time_s = 0.0;
+  bool first = true;
+  const RecordedSamples samples{[&](const RecordedSample& recorded) {
+                                  read_sample(recorded.sample, facts.frame_channels, reading);
+                                  reading.wall_shift_ns = recorded.wall_shift_ns;
+                                  for (std::size_t i = 0; i < outside.size(); ++i) {
+                                    const std::size_t c = static_cast<std::size_t>(facts.frame_channels) + i;
+                                    const ChannelValue now = recorded_at[i] < recorded.outside.size()
+                                                                 ? recorded.outside[recorded_at[i]]
+                                                                 : ChannelValue{};
+                                    reading.channel[c] = now.value;
+                                    reading.channel_age_s[c] = now.age_s(recorded.came_ns);
+                                  }
+                                  const Increment* const increment = chain.run(reading, out);
+                                  if (increment == nullptr) return;
+                                  if (!std::exchange(first, false)) time_s += increment->dt_s;
+                                  sink(time_s, *increment, out);
+                                },
+                                [&] { chain.discontinuity(); }};
+  const RecordingCounts counts = flight.for_each_sample(driver, samples);
+  for (const std::string& loss : losses(counts))
+    warn("%s: %s\n", flight.header().sensor.c_str(), loss.c_str());
   return chain.finish();
 }
 

@@ -14,6 +14,7 @@
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/flight_input.h"
 
 namespace ifog::tools {
 
@@ -42,6 +43,9 @@ struct OfflineResult {
 // All throw std::runtime_error or std::invalid_argument with one line.
 OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& settings,
                               const OfflineSink& sink);
+// The samples, times and channels that the daemon had.
+OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
+                             const OfflineSink& sink);
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink);
 

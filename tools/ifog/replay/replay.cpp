@@ -180,7 +180,8 @@ void add_replay(CLI::App& app) {
   auto settings = std::make_shared<ReplaySettings>();
   CLI::App* command = app.add_subcommand("replay", "Send a recording to a device, as it was recorded");
   ReplaySource& source = settings->source;
-  command->add_option("capture", source.path, "candump log, raw bytes or CSV capture")->required();
+  command->add_option("capture", source.path, "Flight recording, candump log, raw bytes or CSV capture")
+      ->required();
   command
       ->add_option("--to", settings->to,
                    "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "

@@ -10,10 +10,19 @@
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/recording.h"
+#include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
+
+bool plugin_is_there(const std::string& name) {
+  try {
+    return find_plugin(name, plugin_folders()) != nullptr;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
@@ -111,6 +120,32 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   return timeline;
 }
 
+// Each delivery at the time at which it came.
+ReplayTimeline from_flight(const ReplaySource& source, InputFile& file) {
+  FlightInput flight(file);
+  ReplayTimeline timeline;
+  flight.for_each_entry([&](const FlightEntry& entry) {
+    ifog_can_frame frame{};
+    if (entry.head.kind == FlightKind::bytes && !entry.payload.empty()) {
+      timeline.bytes.insert(timeline.bytes.end(), entry.payload.begin(), entry.payload.end());
+      timeline.blocks.push_back({entry.head.time_ns, timeline.bytes.size()});
+    } else if (frame_of(entry, frame)) {
+      frame.arrival_ns = entry.head.time_ns;
+      timeline.frames.push_back(frame);
+    }
+  });
+  if (flight.header().carries == FlightHeader::Carries::messages)
+    throw std::runtime_error(source.path + ": is a recording of LCM messages, expected one of a device");
+  const SensorConfig sensor = flight.sensor();
+  if (!sensor.transport.interface.empty()) timeline.interface = sensor.transport.interface;
+  // The line's speed as it was; a driver that is not here leaves it to --baud.
+  timeline.baud = sensor.transport.serial.baud;
+  if (timeline.baud == 0 && plugin_is_there(flight.header().driver))
+    timeline.baud =
+        flight.make_driver(source.input.driver_name(), source.input.settings()).description().baud;
+  return timeline;
+}
+
 }  // namespace
 
 ReplayTimeline read_timeline(const ReplaySource& source) {
@@ -126,12 +161,15 @@ ReplayTimeline read_timeline(const ReplaySource& source) {
     case FileKind::capture:
       timeline = from_capture(source, file);
       break;
+    case FileKind::flight:
+      timeline = from_flight(source, file);
+      break;
     case FileKind::lcm_log:
     case FileKind::unknown:
-      throw std::runtime_error(
-          source.path +
-          ": neither a candump log, raw bytes nor a CSV capture by its name and first bytes; "
-          "--format says which");
+      throw std::runtime_error(source.path +
+                               ": neither a flight recording, a candump log, raw bytes nor a CSV capture by "
+                               "its name and first bytes; "
+                               "--format says which");
   }
   if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");
   return timeline;

@@ -1,0 +1,134 @@
+#include "daemon/recorder/recorder.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "daemon/realtime/realtime.h"
+#include "drivers/transport/clock.h"
+
+namespace ifog {
+namespace {
+
+constexpr auto kTurn = std::chrono::milliseconds(50);
+// A trouble is over when nothing has been lost for so long: a disk that keeps up every other second is slow.
+constexpr std::int64_t kQuiet_ns = 10'000'000'000;
+
+}  // namespace
+
+Recorder::Recorder(std::string name, std::size_t tape_bytes, std::unique_ptr<FlightFolder> folder,
+                   const ArchiveLimits& limits, FlightHeader header)
+    : name_(std::move(name)), tape_(tape_bytes), archive_(std::move(folder), limits, std::move(header)) {
+  payload_.reserve(Tape::kLeastBytes);
+}
+
+Recorder::~Recorder() { stop(); }
+
+void Recorder::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void Recorder::run() {
+  apply_to_this_thread({name_, 0, {}});
+  // Whoever started it: deflating and writing never stand in a reader's way.
+  const sched_param ordinary{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
+  while (!stopping_.load(std::memory_order_acquire)) {
+    turn(arrival_clock_ns(), realtime_ns());
+    std::this_thread::sleep_for(kTurn);
+  }
+}
+
+void Recorder::stop() {
+  if (!thread_.joinable()) return;
+  stopping_.store(true, std::memory_order_release);
+  thread_.join();
+  const std::int64_t now_ns = arrival_clock_ns(), wall_ns = realtime_ns();
+  drain(now_ns, wall_ns, true);
+  // Losses that no delivery came after.
+  const TapeCounters& counters = tape_.counters();
+  if (const std::uint64_t untold = counters.lost_deliveries.value() - told_[0]; untold > 0) {
+    const std::array<std::uint64_t, 2> lost{untold, counters.lost_bytes.value() - told_[1]};
+    archive_.add({FlightKind::lost, 0, 0, 0, now_ns},
+                 {reinterpret_cast<const std::uint8_t*>(lost.data()), sizeof lost});
+  }
+  unwritten_.set(archive_.close(now_ns, wall_ns));
+  file_bytes_.set(archive_.bytes_written());
+  files_removed_.set(archive_.files_removed());
+}
+
+void Recorder::set_header(FlightHeader header) {
+  const std::lock_guard lock(mutex_);
+  next_header_ = std::move(header);
+}
+
+void Recorder::turn(std::int64_t now_ns, std::int64_t wall_ns) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (next_header_) archive_.set_header(*std::exchange(next_header_, std::nullopt));
+  }
+  drain(now_ns, wall_ns, false);
+  file_bytes_.set(archive_.bytes_written());
+  files_removed_.set(archive_.files_removed());
+  judge(now_ns);
+}
+
+// Until the tape is empty or the disk takes no more.
+void Recorder::drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
+  FlightEntryHead head;
+  do {
+    while (!archive_.full() && tape_.take(head, payload_)) {
+      archive_.add(head, payload_);
+      if (head.kind != FlightKind::lost) continue;
+      std::array<std::uint64_t, 2> lost{};
+      std::memcpy(lost.data(), payload_.data(), sizeof lost);
+      for (std::size_t i = 0; i < lost.size(); ++i) told_[i] += lost[i];
+    }
+    const bool more = archive_.full();
+    archive_.turn(now_ns, wall_ns, flush);
+    if (!more) return;
+  } while (!archive_.full());
+}
+
+void Recorder::say(std::string message, bool good) {
+  const std::lock_guard lock(mutex_);
+  // Both of one turn of the housekeeping: the later stands, and says the earlier's end.
+  message_ = std::move(message);
+  message_good_ = good;
+}
+
+void Recorder::judge(std::int64_t now_ns) {
+  const std::uint64_t lost = tape_.counters().lost_deliveries.value();
+  if (std::exchange(lost_seen_, lost) != lost) last_loss_ns_ = now_ns;
+  const int error = archive_.error();
+  const bool losing = last_loss_ns_ != 0 && now_ns - last_loss_ns_ < kQuiet_ns;
+  if (!troubled_ && (error != 0 || losing)) {
+    troubled_ = true;
+    trouble_since_ns_ = now_ns;
+    say("recorder: " + archive_.path() + ": " +
+            (error != 0 ? std::system_category().message(error) + ", nothing is recorded until it takes more"
+                        : std::string("slower than what is to be recorded, a part is left out")) +
+            "; what is lost is counted",
+        false);
+  } else if (troubled_ && error == 0 && !losing) {
+    troubled_ = false;
+    say("recorder: " + archive_.path() + ": all is recorded again, after " +
+            std::to_string((now_ns - trouble_since_ns_) / 1'000'000'000) + " s and " +
+            std::to_string(lost - lost_before_) + " deliveries lost",
+        true);
+    lost_before_ = lost;
+  }
+}
+
+std::string Recorder::take_message(bool& good) {
+  const std::lock_guard lock(mutex_);
+  good = message_good_;
+  return std::exchange(message_, {});
+}
+
+}  // namespace ifog

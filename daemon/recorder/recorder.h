@@ -1,0 +1,70 @@
+// The flight recorder of one sensor: a thread of ordinary priority that takes what the reader thread has put
+// on the tape to the disk. What the disk does, however slow or full, ends at the tape.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "daemon/recorder/tape.h"
+#include "drivers/flight/archive.h"
+
+namespace ifog {
+
+class Recorder {
+ public:
+  // `name`: of the thread.
+  Recorder(std::string name, std::size_t tape_bytes, std::unique_ptr<FlightFolder> folder,
+           const ArchiveLimits& limits, FlightHeader header);
+  ~Recorder();  // stops
+
+  [[nodiscard]] Tape& tape() noexcept { return tape_; }
+  // Throws std::system_error when the system has no thread left.
+  void start();
+  // After the reader thread: takes what is still on the tape to the disk and ends the file.
+  void stop();
+  // From now on; the file in work ends.
+  void set_header(FlightHeader header);
+
+  // What the log should say, each trouble once and its end once; "" for nothing new. good: it is over.
+  [[nodiscard]] std::string take_message(bool& good);
+  // Any thread.
+  [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_bytes_.value(); }
+  [[nodiscard]] std::uint64_t files_removed() const noexcept { return files_removed_.value(); }
+  [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return unwritten_.value(); }
+
+  // One round of the thread's work, at these times; for tests.
+  void turn(std::int64_t now_ns, std::int64_t wall_ns);
+
+ private:
+  void run();
+  void drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush);
+  void judge(std::int64_t now_ns);
+  void say(std::string message, bool good);
+
+  std::string name_;
+  Tape tape_;
+  FlightArchive archive_;
+  std::vector<std::uint8_t> payload_;
+  // Deliveries and bytes lost, by the entries that came off the tape.
+  std::array<std::uint64_t, 2> told_{};
+  // A trouble: since when, and what had been lost before it.
+  bool troubled_ = false;
+  std::int64_t trouble_since_ns_ = 0, last_loss_ns_ = 0;
+  std::uint64_t lost_before_ = 0, lost_seen_ = 0;
+
+  std::mutex mutex_;  // never taken by a real-time thread
+  std::optional<FlightHeader> next_header_;
+  std::string message_;
+  bool message_good_ = false;
+
+  Counter file_bytes_, files_removed_, unwritten_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace ifog

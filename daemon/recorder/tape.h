@@ -1,0 +1,59 @@
+// From the reader thread to the recorder thread: entries of a flight recording in a bounded queue of bytes
+// that is allocated once. The reader only copies; where there is no room the delivery is not recorded, which
+// is counted here and told in the recording itself.
+#pragma once
+
+#include <array>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "drivers/flight/channel_value.h"
+#include "drivers/flight/entry.h"
+#include "drivers/transport/counter.h"
+#include "drivers/transport/transport.h"
+#include "filters/chain/reading.h"
+
+namespace ifog {
+
+// Deliveries and bytes (payload) that came, and those of them that found no room. Any thread may read them.
+struct TapeCounters {
+  Counter deliveries, bytes, lost_deliveries, lost_bytes;
+};
+
+class Tape {
+ public:
+  // Most that one delivery takes, however many CAN frames or channels it brings: a tape is no smaller.
+  static constexpr std::size_t kLeastBytes = 1U << 18U;
+  explicit Tape(std::size_t bytes);
+
+  // Reader thread; allocates nothing, waits for nothing. `read_ns` is when it was read, for what came at no
+  // known time; `channels` and `wall_shift_ns` are what it was decoded with, recorded where they have
+  // changed.
+  void put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
+           std::int64_t wall_shift_ns) noexcept;
+
+  // Recorder thread: the oldest entry; false: there is none, or it is still being written.
+  bool take(FlightEntryHead& head, std::vector<std::uint8_t>& payload);
+
+  [[nodiscard]] const TapeCounters& counters() const noexcept { return counters_; }
+
+ private:
+  void push(const FlightEntryHead& head, const void* payload, std::size_t length) noexcept;
+  void push_state(std::span<const ChannelValue> channels, std::int64_t wall_shift_ns) noexcept;
+  void push_frame(const ifog_can_frame& frame, std::uint8_t flags, std::int64_t read_ns) noexcept;
+
+  boost::lockfree::spsc_queue<std::uint8_t> queue_;
+  // Reader thread.
+  std::array<ChannelValue, kMaxChannels> recorded_{};  // of each channel, the last
+  std::int64_t wall_shift_ns_ = 0;
+  std::uint64_t untold_deliveries_ = 0, untold_bytes_ = 0;  // lost since the last `lost` entry
+  bool reopened_ = false;                                   // with a delivery that was lost
+  TapeCounters counters_;
+  // Recorder thread.
+  std::optional<FlightEntryHead> begun_;
+};
+
+}  // namespace ifog

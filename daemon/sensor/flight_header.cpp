@@ -1,0 +1,83 @@
+#include "daemon/sensor/flight_header.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace ifog {
+namespace {
+
+constexpr std::uintmax_t kMostAttached = 2U << 20U;
+
+void attach(const std::string& path, std::uintmax_t& room, FlightHeader& header) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size > room || header.files.contains(path)) return;
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  header.files[path] = text.str();
+  room -= size;
+}
+
+std::string source_of(const TransportConfig& transport) {
+  switch (transport.kind) {
+    case TransportConfig::Kind::serial:
+      return transport.serial.device;
+    case TransportConfig::Kind::can:
+      return transport.interface;
+    case TransportConfig::Kind::udp:
+      return "udp port " + std::to_string(transport.udp.port);
+    case TransportConfig::Kind::tcp:
+      return transport.tcp.host + " port " + std::to_string(transport.tcp.port);
+    case TransportConfig::Kind::file:
+      break;
+  }
+  return transport.path;
+}
+
+}  // namespace
+
+FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver) {
+  FlightHeader out;
+  out.program = IFOG_VERSION;
+  out.sensor = sensor.name;
+  const TransportConfig& transport = sensor.transport;
+  const bool can = transport.kind == TransportConfig::Kind::can ||
+                   (transport.kind == TransportConfig::Kind::file && transport.candump);
+  out.carries = can ? FlightHeader::Carries::can : FlightHeader::Carries::bytes;
+  out.source = source_of(transport);
+  out.driver = sensor.driver;
+  out.options = sensor.options;
+  for (const ChannelConfig& channel : sensor.channels)
+    if (channel.source != ChannelConfig::Source::frame) out.channels.push_back(channel.name);
+  out.configuration = sensor.text;
+  out.configuration_file = std::filesystem::absolute(config.file).string();
+  std::uintmax_t room = kMostAttached;
+  if (!sensor.model.empty()) attach(sensor.model, room, out);
+  for (const ifog_option* option = driver.table().options; option->key != nullptr; ++option) {
+    const auto set = out.options.find(option->key);
+    if (set == out.options.end() || set->second.empty() ||
+        std::string_view(option->values) != IFOG_OPTION_FILE)
+      continue;
+    set->second = (std::filesystem::path(sensor.folder) / set->second).lexically_normal().string();
+    attach(set->second, room, out);
+  }
+  return out;
+}
+
+SensorConfig recorded_sensor(const FlightHeader& header) {
+  Config config;
+  try {
+    config = parse_config(header.configuration, header.configuration_file);
+  } catch (const ConfigError& error) {
+    const std::string lines = error.what();
+    throw std::runtime_error("was recorded by version " + header.program +
+                             " with a configuration that this one does not take: " +
+                             lines.substr(0, lines.find('\n')) + "; expected --config with one that it does");
+  }
+  return config.sensors.front();
+}
+
+}  // namespace ifog

@@ -1,0 +1,21 @@
+// What a sensor's flight recordings say of it in their header, and back.
+#pragma once
+
+#include <string>
+
+#include "daemon/config/config.h"
+#include "drivers/flight/header.h"
+#include "drivers/host/driver_instance.h"
+
+namespace ifog {
+
+// With the text of the model and of the files that the driver's options name, so that another computer reads
+// the recording as this one would. Files that cannot be read now or are larger than all of 2 MiB are left to
+// their names.
+FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver);
+
+// The sensor as it was configured. Throws std::runtime_error with one line: what this version does not
+// understand of it.
+SensorConfig recorded_sensor(const FlightHeader& header);
+
+}  // namespace ifog

@@ -1,0 +1,234 @@
+#include "drivers/flight/archive.h"
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <string_view>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr std::string_view kEnding = ".ifr", kOpen = ".open";
+// A computer without a clock of its own starts in 1970: what it wrote then is of unknown age.
+constexpr std::int64_t kClockIsSet_ns = 1'577'836'800LL * 1'000'000'000;  // 2020-01-01
+
+std::uint64_t random_number() {
+  std::uint64_t out = 0;
+  // Without it the checksums still hold against all but a recording within a recording.
+  if (getrandom(&out, sizeof out, GRND_NONBLOCK) != sizeof out) out = 0;
+  return out;
+}
+
+std::string file_name(std::uint64_t number, std::int64_t wall_ns) {
+  const std::time_t seconds = wall_ns / 1'000'000'000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> date{};
+  std::strftime(date.data(), date.size(), "%Y%m%dT%H%M%SZ", &utc);
+  std::array<char, 64> name{};
+  std::snprintf(name.data(), name.size(), "%08llu-%s%s", static_cast<unsigned long long>(number), date.data(),
+                kEnding.data());
+  return name.data();
+}
+
+// The number of a name that this made; 0: it is of others.
+std::uint64_t number_of(std::string_view name) {
+  if (!name.ends_with(kEnding)) return 0;
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc() && end != name.data() + name.size() && *end == '-' ? number : 0;
+}
+
+}  // namespace
+
+FlightArchive::FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header)
+    : folder_(std::move(folder)), limits_(limits), header_(std::move(header)) {
+  header_.run = random_number();
+}
+
+FlightArchive::~FlightArchive() { close(now_ns_, wall_ns_); }
+
+void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_t> payload) {
+  append_entry(waiting_, head, payload);
+  ++entries_waiting_;
+}
+
+void FlightArchive::set_header(FlightHeader header) {
+  // The checksums of the file in work go on with its own until it ends.
+  next_header_ = std::move(header);
+}
+
+// What is there already, and what a recorder that was killed left open: that is closed as it is.
+int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
+  std::vector<FlightFolder::File> files;
+  if (const int error = folder_->list(files); error != 0) return error;
+  // What is known is not judged by the wall clock again, which may have been set meanwhile.
+  std::map<std::string, std::int64_t> known;
+  for (const Kept& file : kept_) known[file.name] = file.last_ns;
+  if (!open_name_.empty()) known[open_name_] = now_ns_;
+  kept_.clear();
+  kept_bytes_ = 0;
+  for (FlightFolder::File& file : files) {
+    std::string name = file.name;
+    if (name.ends_with(kOpen)) {
+      name.resize(name.size() - kOpen.size());
+      if (number_of(name) == 0) continue;
+      next_number_ = std::max(next_number_, number_of(name) + 1);
+      if (folder_->take_over(file.name, name) != 0) continue;
+    }
+    const std::uint64_t number = number_of(name);
+    if (number == 0) continue;
+    next_number_ = std::max(next_number_, number + 1);
+    const std::int64_t age_ns =
+        file.modified_ns < kClockIsSet_ns ? 0 : std::max<std::int64_t>(0, wall_ns - file.modified_ns);
+    const auto found = known.find(name);
+    const std::int64_t last_ns = found != known.end() ? found->second : now_ns - age_ns;
+    kept_.push_back({number, std::move(name), file.bytes, last_ns});
+    kept_bytes_ += file.bytes;
+  }
+  std::sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  looked_ = true;
+  return 0;
+}
+
+int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) {
+  block_.clear();
+  const BlockPlace place = type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_bytes_};
+  append_block(block_, type, place, content);
+  // Room is made before it is used: the limit is never exceeded.
+  while (!kept_.empty() && kept_bytes_ + file_bytes_ + block_.size() > limits_.bytes)
+    if (const int error = remove_oldest(); error != 0) return error;
+  const int error = folder_->append(block_);
+  if (error != 0) return error;
+  file_bytes_ += block_.size();
+  bytes_written_ += block_.size();
+  return 0;
+}
+
+int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
+  if (!looked_)
+    if (const int error = look(now_ns, wall_ns); error != 0) return error;
+  if (next_header_) {
+    next_header_->run = header_.run;
+    header_ = *std::exchange(next_header_, std::nullopt);
+  }
+  header_.file = random_number();
+  header_.number = next_number_;
+  header_.opened_ns = wall_ns;
+  open_name_ = file_name(next_number_, wall_ns);
+  if (const int error = folder_->begin(open_name_ + std::string(kOpen)); error != 0) {
+    if (error == EEXIST) ++next_number_;
+    looked_ = false;
+    return error;
+  }
+  file_bytes_ = file_entries_ = 0;
+  file_since_ns_ = now_ns;
+  std::vector<std::uint8_t> state;
+  for (const auto& [key, entry] : state_) state.insert(state.end(), entry.begin(), entry.end());
+  int error = write(BlockType::header, header_payload(header_));
+  if (error == 0 && !state.empty()) error = write(BlockType::data, state);
+  if (error != 0) {
+    // Nothing of use is in it, and its number is free again.
+    folder_->leave();
+    folder_->remove(open_name_ + std::string(kOpen));
+    file_bytes_ = 0;
+    return error;
+  }
+  file_entries_ = state_.size();
+  open_ = true;
+  ++next_number_;
+  return 0;
+}
+
+int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns) {
+  std::array<std::uint64_t, 2> told{file_entries_, static_cast<std::uint64_t>(wall_ns)};
+  std::array<std::uint8_t, sizeof told> bytes{};
+  std::memcpy(bytes.data(), told.data(), sizeof told);
+  // Without it the file is as one that was being written when its writer was killed: whole to its last block.
+  int error = write(BlockType::end, bytes);
+  if (const int finished = folder_->finish(open_name_); error == 0) error = finished;
+  open_ = false;
+  file_bytes_ = 0;
+  // Files may have been taken away or put back meanwhile; what could not be renamed is taken over.
+  looked_ = false;
+  if (const int looked = look(now_ns, wall_ns); error == 0) error = looked;
+  return error;
+}
+
+// The waiting entries that are state are what the next file begins with.
+void FlightArchive::remember_state() {
+  std::span<const std::uint8_t> rest = waiting_;
+  FlightEntry entry;
+  for (const std::uint8_t* at = rest.data(); take_entry(rest, entry); at = rest.data())
+    if (entry.head.kind == FlightKind::channel || entry.head.kind == FlightKind::wall)
+      state_[{entry.head.kind, entry.head.index}].assign(at, at + sizeof entry.head + entry.head.length);
+}
+
+bool FlightArchive::file_is_full(std::int64_t now_ns) const {
+  return open_ && (next_header_.has_value() || file_bytes_ >= limits_.file_bytes ||
+                   now_ns - file_since_ns_ >= limits_.file_ns);
+}
+
+int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {
+  if (!open_)
+    if (const int error = begin_file(now_ns, wall_ns); error != 0) return error;
+  const int error = write(BlockType::data, waiting_);
+  if (error == EBADF) open_ = looked_ = false;  // a half-written block could not be taken back: another file
+  if (error != 0) return error;
+  file_entries_ += entries_waiting_;
+  if (header_.carries != FlightHeader::Carries::messages) remember_state();
+  waiting_.clear();
+  entries_waiting_ = 0;
+  waiting_since_ns_ = -1;
+  return 0;
+}
+
+int FlightArchive::remove_oldest() {
+  const int error = folder_->remove(kept_.front().name);
+  if (error != 0 && error != ENOENT) return error;
+  kept_bytes_ -= kept_.front().bytes;
+  kept_.pop_front();
+  ++files_removed_;
+  return 0;
+}
+
+// Files, before anything is written; 0 or the disk's answer.
+int FlightArchive::tidy() {
+  if (!looked_)
+    if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
+  if (file_is_full(now_ns_))
+    if (const int error = end_file(now_ns_, wall_ns_); error != 0) return error;
+  while (!kept_.empty() && now_ns_ - kept_.front().last_ns > limits_.age_ns)
+    if (const int error = remove_oldest(); error != 0) return error;
+  return 0;
+}
+
+void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
+  // A disk that refused is asked once a second.
+  if (error_ != 0 && !flush && now_ns - asked_ns_ < limits_.flush_ns) return;
+  asked_ns_ = now_ns_ = now_ns;
+  wall_ns_ = wall_ns;
+  const int tidied = tidy();
+  if (tidied != 0) error_ = tidied;
+  if (waiting_.empty()) return;
+  if (waiting_since_ns_ < 0) waiting_since_ns_ = now_ns;
+  if (error_ == 0 && !flush && !full() && now_ns - waiting_since_ns_ < limits_.flush_ns) return;
+  const int written = write_waiting(now_ns, wall_ns);
+  error_ = written != 0 ? written : tidied;
+}
+
+std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
+  turn(now_ns, wall_ns, true);
+  if (open_) error_ = end_file(now_ns, wall_ns);
+  waiting_.clear();
+  return std::exchange(entries_waiting_, 0);
+}
+
+}  // namespace ifog

@@ -1,0 +1,102 @@
+// Keeps recordings in a folder: entries become blocks, blocks files, and the oldest files go when there are
+// too many. Whoever calls it waits for the disk, so no real-time thread does.
+//
+// Files are called NUMBER-UTC.ifr, with .open behind it while they are written; their order is that of the
+// numbers, whatever the wall clock did. A disk that takes nothing loses nothing here: what has been added
+// waits, and full() says that nothing more can be added until it has gone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/flight/block.h"
+#include "drivers/flight/entry.h"
+#include "drivers/flight/folder.h"
+#include "drivers/flight/header.h"
+
+namespace ifog {
+
+struct ArchiveLimits {
+  std::uint64_t bytes = 1'000'000'000;  // of all files together
+  std::int64_t age_ns = 30LL * 86'400 * 1'000'000'000;
+  std::uint64_t file_bytes = 16'000'000;
+  std::int64_t file_ns = 3'600LL * 1'000'000'000;
+  std::int64_t flush_ns = 1'000'000'000;  // nothing waits longer to be written
+};
+
+class FlightArchive {
+ public:
+  // now_ns throughout: a clock that nobody sets. wall_ns: for names and the age of files that were there.
+  FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header);
+  ~FlightArchive();  // close() at the time of the last turn()
+
+  // One entry behind the others. Only while not full().
+  void add(const FlightEntryHead& head, std::span<const std::uint8_t> payload);
+  [[nodiscard]] bool full() const { return waiting_.size() >= kBlockTarget; }
+  // Writes what is due, begins and ends files, removes old ones. `flush`: all that waits is due.
+  void turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush = false);
+  // From the next block on; ends the present file.
+  void set_header(FlightHeader header);
+  // Writes what waits and ends the file. What the disk does not take now is lost: its entries are returned.
+  std::uint64_t close(std::int64_t now_ns, std::int64_t wall_ns);
+
+  // errno of the disk's last answer, 0 while it is well.
+  [[nodiscard]] int error() const { return error_; }
+  [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
+  [[nodiscard]] std::uint64_t files_removed() const { return files_removed_; }
+  [[nodiscard]] std::uint64_t entries_waiting() const { return entries_waiting_; }
+  [[nodiscard]] std::string path() const { return folder_->path(); }
+
+ private:
+  struct Kept {
+    std::uint64_t number;
+    std::string name;
+    std::uint64_t bytes;
+    std::int64_t last_ns;  // when it was last written, by the clock of now_ns
+  };
+
+  int look(std::int64_t now_ns, std::int64_t wall_ns);
+  int begin_file(std::int64_t now_ns, std::int64_t wall_ns);
+  int end_file(std::int64_t now_ns, std::int64_t wall_ns);
+  int write(BlockType type, std::span<const std::uint8_t> content);
+  int write_waiting(std::int64_t now_ns, std::int64_t wall_ns);
+  void remember_state();
+  int remove_oldest();
+  int tidy();
+  [[nodiscard]] bool file_is_full(std::int64_t now_ns) const;
+
+  static constexpr std::size_t kBlockTarget = 1U << 16U;
+
+  std::unique_ptr<FlightFolder> folder_;
+  ArchiveLimits limits_;
+  FlightHeader header_;
+  std::deque<Kept> kept_;  // oldest first
+  std::uint64_t kept_bytes_ = 0;
+  bool looked_ = false;
+  std::uint64_t next_number_ = 1;
+
+  // The open file.
+  bool open_ = false;
+  std::optional<FlightHeader> next_header_;  // of the next file
+  std::string open_name_;                    // as it will be called
+  std::uint64_t file_bytes_ = 0, file_entries_ = 0;
+  std::int64_t file_since_ns_ = 0;
+
+  std::vector<std::uint8_t> waiting_, block_;
+  std::uint64_t entries_waiting_ = 0;
+  std::int64_t waiting_since_ns_ = -1;
+  std::int64_t now_ns_ = 0, wall_ns_ = 0, asked_ns_ = 0;
+  // The latest value of each channel and the wall clock's shift: each file begins with them.
+  std::map<std::pair<FlightKind, std::uint16_t>, std::vector<std::uint8_t>> state_;
+
+  int error_ = 0;
+  std::uint64_t bytes_written_ = 0, files_removed_ = 0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,78 @@
+// What a flight recording holds, entry by entry: format.md has every byte. The same bytes go from the reader
+// thread to the recorder thread and into the file, so that recording is copying.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace ifog {
+
+static_assert(std::endian::native == std::endian::little, "the format is little-endian, and copied as it is");
+
+enum class FlightKind : std::uint8_t {
+  bytes = 1,    // what one read of a byte transport brought; time: of its last byte
+  can = 2,      // one frame: u32 id, u8 flags (ifog_can_flags), u8 length, data
+  channel = 3,  // f64: the value of environment channel `index`; time: of the measurement
+  wall = 4,     // i64: how far the wall clock has been set since the arrival clock began, ns
+  lost = 5,     // u64 deliveries, u64 bytes: came before this and are not in the recording
+  message = 6,  // of LCM: `index` bytes of the channel's name, then the message; time: of its arrival
+};
+
+enum FlightFlag : std::uint8_t {
+  kFlightReadTime = 1,  // the time is that of the read: when it arrived is not known
+  kFlightReopened = 2,  // the first since the device was opened again
+  kFlightStamped = 4,   // the time is the kernel's
+};
+
+// In front of each entry's payload. Times are of the arrival clock (drivers/transport/clock.h), of LCM
+// messages of the wall clock; ns since the epoch.
+struct FlightEntryHead {
+  FlightKind kind = FlightKind::bytes;
+  std::uint8_t flags = 0;
+  std::uint16_t index = 0;
+  std::uint32_t length = 0;  // of the payload
+  std::int64_t time_ns = 0;
+};
+static_assert(sizeof(FlightEntryHead) == 16);
+
+inline constexpr std::size_t kMostFlightPayload = 1U << 20U;  // of one entry
+
+struct FlightEntry {
+  FlightEntryHead head;
+  std::span<const std::uint8_t> payload;
+
+  // A payload of the right size, as a number; false: of another size.
+  template <typename T>
+  bool value(T& out, std::size_t at = 0) const noexcept {
+    if (payload.size() < at + sizeof out) return false;
+    std::memcpy(&out, payload.data() + at, sizeof out);
+    return true;
+  }
+};
+
+// The entry at the front of `content`, which is then without it. False: there is no whole one, or one that
+// cannot be.
+inline bool take_entry(std::span<const std::uint8_t>& content, FlightEntry& out) noexcept {
+  if (content.size() < sizeof out.head) return false;
+  std::memcpy(&out.head, content.data(), sizeof out.head);
+  if (out.head.length > kMostFlightPayload || content.size() - sizeof out.head < out.head.length)
+    return false;
+  out.payload = content.subspan(sizeof out.head, out.head.length);
+  content = content.subspan(sizeof out.head + out.head.length);
+  return true;
+}
+
+inline void append_entry(std::vector<std::uint8_t>& to, FlightEntryHead head,
+                         std::span<const std::uint8_t> payload) {
+  head.length = static_cast<std::uint32_t>(payload.size());
+  const std::size_t at = to.size();
+  to.resize(at + sizeof head + payload.size());
+  std::memcpy(to.data() + at, &head, sizeof head);
+  if (!payload.empty()) std::memcpy(to.data() + at + sizeof head, payload.data(), payload.size());
+}
+
+}  // namespace ifog

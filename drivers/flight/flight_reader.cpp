@@ -1,0 +1,167 @@
+#include "drivers/flight/flight_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kPortion = 1U << 16U;
+
+}  // namespace
+
+bool FlightReader::ensure(std::size_t bytes) {
+  if (at_ > (kPortion << 4U)) {
+    held_.erase(0, at_);
+    at_ = 0;
+  }
+  while (held_.size() - at_ < bytes && !source_ended_) {
+    const std::size_t before = held_.size();
+    held_.resize(before + kPortion);
+    const std::size_t got = source_(held_.data() + before, kPortion);
+    held_.resize(before + got);
+    source_ended_ = got < kPortion;
+  }
+  return held_.size() - at_ >= bytes;
+}
+
+void FlightReader::drop(std::size_t bytes) {
+  at_ += bytes;
+  passed_ += bytes;
+}
+
+// The whole good block that begins here, into block_ and content_: of this file, or the header of another.
+bool FlightReader::block_here() {
+  if (!ensure(kBlockHead)) return false;
+  for (const bool header : {false, true}) {
+    const BlockPlace place = header ? BlockPlace{} : BlockPlace{header_.file, passed_ - file_at_};
+    if (!header && !in_file_) continue;
+    if (!read_block_head(ahead(), place, block_) || (block_.type == BlockType::header) != header) continue;
+    if (!ensure(block_.size()) || !read_block(ahead().first(block_.size()), place, block_, content_))
+      continue;
+    header_block_ = header;
+    return true;
+  }
+  return false;
+}
+
+FlightReader::Found FlightReader::next_block() {
+  std::uint64_t skipped = 0;
+  while (!block_here()) {
+    if (!ensure(1)) break;
+    // To the next byte that may begin one.
+    const std::span<const std::uint8_t> bytes = ahead();
+    const void* const next =
+        bytes.size() > 1 ? std::memchr(bytes.data() + 1, kBlockSync & 0xFFU, bytes.size() - 1) : nullptr;
+    const std::size_t step =
+        next == nullptr ? bytes.size()
+                        : static_cast<std::size_t>(static_cast<const std::uint8_t*>(next) - bytes.data());
+    skipped += step;
+    drop(step);
+  }
+  const bool ended = !ensure(1);
+  if (!in_file_ && (ended || skipped > 0))
+    throw std::runtime_error("is no flight recording, expected one that begins with its header");
+  if (skipped == 0) return ended ? Found::end : Found::block;
+  whole_ = false;
+  (ended || header_block_ ? counts_.torn_bytes : counts_.damaged_bytes) += skipped;
+  return ended ? Found::end : Found::gap;
+}
+
+void FlightReader::finish_file() {
+  if (in_file_ && !closed_) ++counts_.open_files;
+}
+
+FlightReader::Item FlightReader::begin_file() {
+  FlightHeader fresh = parse_header(content_);
+  // The next file of the same run goes on in the middle of a frame.
+  const bool goes_on =
+      in_file_ && closed_ && whole_ && fresh.run == header_.run && fresh.number == header_.number + 1;
+  const bool first = !in_file_;
+  finish_file();
+  header_ = std::move(fresh);
+  file_at_ = passed_;
+  file_entries_ = 0;
+  in_file_ = true;
+  closed_ = false;
+  whole_ = true;
+  ++counts_.files;
+  drop(block_.size());
+  if (first || goes_on) return Item::header;
+  header_due_ = true;
+  return Item::hole;
+}
+
+// A data block becomes entries, an end is held against what came.
+void FlightReader::take_block() {
+  drop(block_.size());
+  if (block_.type == BlockType::data) {
+    ++counts_.blocks;
+    rest_ = content_;
+    return;
+  }
+  std::uint64_t told = 0;
+  if (content_.size() >= sizeof told) std::memcpy(&told, content_.data(), sizeof told);
+  closed_ = true;
+  if (told > file_entries_) {
+    counts_.missing_entries += told - file_entries_;
+    whole_ = false;
+  }
+}
+
+// False: it says what is missing, which is a hole.
+bool FlightReader::take_entry_ahead() {
+  if (!take_entry(rest_, entry_)) {
+    // Its checksum is right: what wrote it was wrong, or is newer than this.
+    counts_.damaged_bytes += rest_.size();
+    rest_ = {};
+    whole_ = false;
+    return false;
+  }
+  ++counts_.entries;
+  ++file_entries_;
+  if (entry_.head.kind != FlightKind::lost) return true;
+  std::uint64_t deliveries = 0, bytes = 0;
+  if (entry_.value(deliveries) && entry_.value(bytes, sizeof deliveries)) {
+    counts_.lost_deliveries += deliveries;
+    counts_.lost_bytes += bytes;
+  }
+  return false;
+}
+
+FlightReader::Item FlightReader::next() {
+  if (std::exchange(header_due_, false)) return Item::header;
+  while (!ended_) {
+    if (!rest_.empty()) return take_entry_ahead() ? Item::entry : Item::hole;
+    const Found found = next_block();
+    if (found == Found::end) {
+      finish_file();
+      ended_ = true;
+    } else if (header_block_) {
+      return begin_file();
+    } else if (found == Found::gap) {
+      return Item::hole;  // the block behind it comes with the next call
+    } else {
+      take_block();
+    }
+  }
+  return Item::end;
+}
+
+std::vector<std::string> losses(const FlightCounts& counts) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::uint64_t n, const std::string& what) {
+    if (n != 0) lines.push_back(std::to_string(n) + " " + what);
+  };
+  say(counts.damaged_bytes, "bytes are damaged and were passed over");
+  say(counts.torn_bytes, "bytes at the end of a recording are no whole block (what wrote it was killed)");
+  say(counts.open_files, "recording(s) without an end: still being written, or what wrote it was killed");
+  say(counts.missing_entries, "entries are missing by the recording's own count");
+  say(counts.lost_deliveries, "deliveries (" + std::to_string(counts.lost_bytes) +
+                                  " bytes) came and were not recorded: the disk was slow or full");
+  return lines;
+}
+
+}  // namespace ifog

@@ -1,0 +1,82 @@
+// Reads a flight recording, or several one after another, entry by entry, whatever happened to it: what is
+// torn or damaged is passed over, counted and never taken for data.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "drivers/flight/block.h"
+#include "drivers/flight/entry.h"
+#include "drivers/flight/header.h"
+
+namespace ifog {
+
+struct FlightCounts {
+  std::uint64_t files = 0, blocks = 0, entries = 0;
+  std::uint64_t damaged_bytes = 0;    // in the middle of a file
+  std::uint64_t torn_bytes = 0;       // at the end of a file: a block that was not written whole
+  std::uint64_t open_files = 0;       // without an end: still written, or what wrote it was killed
+  std::uint64_t missing_entries = 0;  // that a file's end tells of and are not there
+  std::uint64_t lost_deliveries = 0,
+                lost_bytes = 0;  // that came and were not recorded: the disk was too slow
+};
+
+class FlightReader {
+ public:
+  // As InputFile::read: up to so many bytes, fewer only at the end.
+  using Source = std::function<std::size_t(char*, std::size_t)>;
+  explicit FlightReader(Source source) : source_(std::move(source)) {}
+
+  enum class Item {
+    header,  // a file begins: header()
+    entry,   // entry(), valid until the next call; `lost` never comes, but as a hole
+    hole,    // between what came and what comes something is missing: forget half-read frames
+    end,
+  };
+  // Throws std::runtime_error, without the file's name: no flight recording, or one of another version.
+  Item next();
+
+  [[nodiscard]] const FlightHeader& header() const { return header_; }
+  [[nodiscard]] const FlightEntry& entry() const { return entry_; }
+  [[nodiscard]] const FlightCounts& counts() const { return counts_; }
+
+ private:
+  enum class Found { block, gap, end };
+  bool ensure(std::size_t bytes);
+  void drop(std::size_t bytes);
+  bool block_here();
+  Found next_block();
+  Item begin_file();
+  void take_block();
+  bool take_entry_ahead();
+  void finish_file();
+  [[nodiscard]] std::span<const std::uint8_t> ahead() const {
+    return {reinterpret_cast<const std::uint8_t*>(held_.data()) + at_, held_.size() - at_};
+  }
+
+  Source source_;
+  std::string held_;
+  std::size_t at_ = 0;        // in held_
+  std::uint64_t passed_ = 0;  // bytes of the stream before held_[at_]
+  bool source_ended_ = false;
+
+  FlightHeader header_;
+  FlightCounts counts_;
+  std::uint64_t file_at_ = 0;                             // where the file begins in the stream
+  std::uint64_t file_entries_ = 0;                        // of the present file, so far
+  bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
+  bool header_due_ = false, ended_ = false;
+  BlockHead block_;
+  bool header_block_ = false;
+  std::vector<std::uint8_t> content_;
+  std::span<const std::uint8_t> rest_;  // of content_: entries to come
+  FlightEntry entry_;
+};
+
+// "3 bytes damaged …", one line for each counter that says something is missing.
+std::vector<std::string> losses(const FlightCounts& counts);
+
+}  // namespace ifog

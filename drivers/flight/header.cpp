@@ -1,0 +1,141 @@
+#include "drivers/flight/header.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <stdexcept>
+
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::uint16_t kVersion = 1;
+constexpr std::size_t kFixed = 10;  // u64 file, u16 version
+constexpr const char* kCarries[] = {"bytes", "can", "messages"};
+
+std::string escaped(std::string_view value) {
+  std::string out;
+  for (const char c : value) {
+    if (c == '\\')
+      out += "\\\\";
+    else if (c == '\n')
+      out += "\\n";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string unescaped(std::string_view value) {
+  std::string out;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (value[i] != '\\' || i + 1 == value.size()) {
+      out += value[i];
+      continue;
+    }
+    ++i;
+    out += value[i] == 'n' ? '\n' : value[i];
+  }
+  return out;
+}
+
+template <typename T>
+T number(std::string_view key, const std::string& text) {
+  T out{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw std::runtime_error("its header says " + std::string(key) + " = " + in_quotes(text) +
+                             ", expected a whole number");
+  return out;
+}
+
+void take(FlightHeader& out, std::string_view key, std::string value) {
+  constexpr std::string_view kOption = "option.", kFile = "file.";
+  if (key == "run")
+    out.run = number<std::uint64_t>(key, value);
+  else if (key == "number")
+    out.number = number<std::uint64_t>(key, value);
+  else if (key == "opened_ns")
+    out.opened_ns = number<std::int64_t>(key, value);
+  else if (key == "program")
+    out.program = std::move(value);
+  else if (key == "sensor")
+    out.sensor = std::move(value);
+  else if (key == "source")
+    out.source = std::move(value);
+  else if (key == "driver")
+    out.driver = std::move(value);
+  else if (key == "channel")
+    out.channels.push_back(std::move(value));
+  else if (key == "configuration")
+    out.configuration = std::move(value);
+  else if (key == "configuration_file")
+    out.configuration_file = std::move(value);
+  else if (key.starts_with(kOption))
+    out.options[unescaped(key.substr(kOption.size()))] = std::move(value);
+  else if (key.starts_with(kFile))
+    out.files[unescaped(key.substr(kFile.size()))] = std::move(value);
+  else if (key == "carries") {
+    const auto* const found = std::find(std::begin(kCarries), std::end(kCarries), value);
+    if (found == std::end(kCarries))
+      throw std::runtime_error("its header says carries = " + in_quotes(value) +
+                               ", expected bytes, can or messages");
+    out.carries = static_cast<FlightHeader::Carries>(found - std::begin(kCarries));
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
+  std::string text;
+  // A key ends at the first '=': that of an option or a path has none left.
+  const auto add = [&text](std::string key, std::string_view value) {
+    text += key + "=" + escaped(value) + "\n";
+  };
+  const auto add_named = [&](const char* kind, const auto& named) {
+    for (const auto& [name, value] : named)
+      if (name.find('=') == std::string::npos) add(kind + escaped(name), value);
+  };
+  add("program", header.program);
+  add("sensor", header.sensor);
+  add("carries", kCarries[static_cast<int>(header.carries)]);
+  add("source", header.source);
+  add("driver", header.driver);
+  add_named("option.", header.options);
+  for (const std::string& channel : header.channels) add("channel", channel);
+  add("run", std::to_string(header.run));
+  add("number", std::to_string(header.number));
+  add("opened_ns", std::to_string(header.opened_ns));
+  add("configuration_file", header.configuration_file);
+  add("configuration", header.configuration);
+  add_named("file.", header.files);
+  std::vector<std::uint8_t> out(kFixed + text.size());
+  std::memcpy(out.data(), &header.file, sizeof header.file);
+  std::memcpy(out.data() + sizeof header.file, &kVersion, sizeof kVersion);
+  std::copy(text.begin(), text.end(), out.begin() + kFixed);
+  return out;
+}
+
+FlightHeader parse_header(std::span<const std::uint8_t> payload) {
+  FlightHeader out;
+  std::uint16_t version = 0;
+  if (payload.size() < kFixed) throw std::runtime_error("its header is cut off");
+  std::memcpy(&out.file, payload.data(), sizeof out.file);
+  std::memcpy(&version, payload.data() + sizeof out.file, sizeof version);
+  if (version != kVersion)
+    throw std::runtime_error("is a flight recording of version " + std::to_string(version) +
+                             ", expected version " + std::to_string(kVersion));
+  std::string_view text(reinterpret_cast<const char*>(payload.data()) + kFixed, payload.size() - kFixed);
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos)
+      throw std::runtime_error("its header has the line " + in_quotes(line) + ", expected KEY=VALUE");
+    take(out, line.substr(0, equals), unescaped(line.substr(equals + 1)));
+  }
+  return out;
+}
+
+}  // namespace ifog

@@ -1,0 +1,41 @@
+// What the head of a flight recording says: all that reading it later needs, so that it goes through the
+// driver and the configuration it came by on another computer, in another year.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ifog {
+
+struct FlightHeader {
+  enum class Carries { bytes, can, messages };
+
+  std::uint64_t file = 0;      // random, of this file: the checksums of its blocks hold in no other
+  std::uint64_t run = 0;       // random, of the recorder's run
+  std::uint64_t number = 0;    // of the file in its folder; the next of the same run goes on where this ends
+  std::int64_t opened_ns = 0;  // wall clock
+  std::string program;         // version of what recorded
+  std::string sensor;
+  Carries carries = Carries::bytes;
+  std::string source;                          // of the bytes, in words: "/dev/ttyUSB0", "can0"
+  std::string driver;                          // "" for messages
+  std::map<std::string, std::string> options;  // of the driver
+  std::vector<std::string> channels;           // those that came from elsewhere, by their index
+  std::string configuration;                   // the sensor's part of ifogd.toml, as text
+  std::string configuration_file;              // where that stood
+  std::map<std::string, std::string> files;    // what options and configuration name, by path: DBC, model
+
+  bool operator==(const FlightHeader&) const = default;
+};
+
+// The payload of a header block, and back. Unknown keys are passed over: a later version may say more.
+std::vector<std::uint8_t> header_payload(const FlightHeader& header);
+// Throws std::runtime_error with what is wrong with it, without the file's name: another version of the
+// format, a line that is none.
+FlightHeader parse_header(std::span<const std::uint8_t> payload);
+
+}  // namespace ifog

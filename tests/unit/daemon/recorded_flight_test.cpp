@@ -1,0 +1,261 @@
+// The daemon as it runs, its flight recorder on: what the command line makes of the recording is what the
+// daemon published and what the device sent.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <ifog/decode.h>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+#include "tests/unit/daemon/private_network.h"
+
+namespace ifog {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class RecordedFlight : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("recorded-flight-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    if (const std::string why = enter_private_network(); !why.empty())
+      GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
+    ASSERT_EQ(mkfifo(path("line").c_str(), 0600), 0);
+    line_ = open(path("line").c_str(), O_RDWR | O_CLOEXEC);
+    lcm_ = lcm_create(kUrl);
+    lcm_subscription_t* const rates = lcm_subscribe(
+        lcm_, "IFOG_NOSE",
+        [](const lcm_recv_buf_t* buffer, const char*, void* user) {
+          auto* const self = static_cast<RecordedFlight*>(user);
+          ASSERT_TRUE(decode_message(buffer->data, buffer->data_size, self->published_.emplace_back()));
+        },
+        this);
+    lcm_subscription_set_queue_capacity(rates, 100'000);
+  }
+  void TearDown() override {
+    if (child_ > 0) kill(child_, SIGKILL);
+    if (child_ > 0) waitpid(child_, nullptr, 0);
+    if (lcm_ != nullptr) lcm_destroy(lcm_);
+    if (line_ >= 0) close(line_);
+    fs::remove_all(folder_);
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  void start() {
+    child_ = fork();
+    ASSERT_GE(child_, 0);
+    if (child_ != 0) return;
+    close(STDERR_FILENO);
+    open(path("said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    execl(IFOG_BINARY_DIR "/daemon/ifogd", "ifogd", "--config", path("ifogd.toml").c_str(), nullptr);
+    _exit(127);
+  }
+  int end(int signal) {
+    kill(child_, signal);
+    int status = 0;
+    waitpid(std::exchange(child_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  }
+  // Generous: only a test that fails waits so long.
+  bool await(std::size_t messages) {
+    for (int n = 0; n < 600 && published_.size() < messages; ++n) listen(50);
+    return published_.size() >= messages;
+  }
+  void listen(int milliseconds) {
+    pollfd wanted{lcm_get_fileno(lcm_), POLLIN, 0};
+    while (poll(&wanted, 1, milliseconds) > 0 && lcm_handle(lcm_) == 0) milliseconds = 0;
+  }
+  void send(int count) {
+    std::vector<std::uint8_t> bytes;
+    for (int n = 0; n < count; ++n, ++samples_) {
+      ifog_sample sample{};
+      sample.flags = IFOG_SAMPLE_SEQUENCE;
+      sample.sequence = samples_ % 128;
+      sample.valid_axes = 7;
+      for (int i = 0; i < 3; ++i)
+        sample.value[i] = 0.01 * (i + 1) + 1e-4 * std::sin(0.3 * samples_ * (i + 1));
+      for (double& value : sample.environment) value = 20.0 + samples_ / 100;
+      sample.environment_fresh = ~0U;
+      encoder_.encode_bytes(sample, bytes);
+    }
+    sent_.append(bytes.begin(), bytes.end());
+    ASSERT_EQ(::write(line_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  // In portions that the buffers of LCM's sockets hold.
+  bool send_and_await(int count) {
+    const std::size_t before = published_.size();
+    for (int n = 50; n <= count; n += 50) {
+      send(50);
+      if (!await(before + static_cast<std::size_t>(n))) return false;
+    }
+    return true;
+  }
+  // The command line; what it said to standard error is in `complaint_`.
+  int ifog(const std::string& arguments) {
+    const int status = std::system(
+        (IFOG_BINARY_DIR "/tools/ifog/ifog " + arguments + " >/dev/null 2>" + path("complaint")).c_str());
+    complaint_ = text_of(path("complaint"));
+    return status;
+  }
+  // Two columns of every axis; NaN where a cell is empty.
+  std::vector<std::vector<double>> rows_of(const std::string& name) const {
+    std::istringstream in(text_of(path(name)));
+    std::vector<std::vector<double>> out;
+    std::string line, cell;
+    for (bool header = true; std::getline(in, line); header = false) {
+      if (header || line.starts_with('#')) continue;
+      std::istringstream cells(line);
+      out.emplace_back();
+      while (std::getline(cells, cell, ',')) out.back().push_back(cell.empty() ? NAN : std::stod(cell));
+    }
+    return out;
+  }
+  void configure() {
+    write("supply", "11500\n");
+    write("model.toml",
+          "version = 1\nsensor = \"made\"\n"
+          "[[effect]]\nform = \"linear\"\nchannel = \"supply_V\"\naxis = \"y\"\nreference = 12.0\n"
+          "[[effect.parameter]]\nname = \"coefficient\"\nvalue = 1e-3\nstd_error = 1e-6\n"
+          "unit = \"rad/s/V\"\n");
+    write("ifogd.toml",
+          "[daemon]\nlock_memory = false\n[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n"
+          "nominal_rate_hz = " +
+              rate_hz_ + "\n" + model_line_ +
+              "[sensor.options]\nformat = \"a\"\n[sensor.transport]\ntype = \"file\"\npath = \"line\"\n"
+              "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n"
+              "[sensor.record]\nfolder = \"record\"\nfile_bytes = 100_000\nbytes = 1_000_000\n"
+              "[[sensor.channel]]\nname = \"supply_V\"\nsource = \"file\"\npath = \"supply\"\nscale = 1e-3\n"
+              "period_s = 0.01\nmax_age_s = 0.5\n");
+  }
+
+  fs::path folder_;
+  lcm_t* lcm_ = nullptr;
+  int line_ = -1;
+  pid_t child_ = -1;
+  std::string model_line_ = "model = \"model.toml\"\n";
+  std::string rate_hz_ = "1000";
+  std::vector<rate_t> published_;
+  std::uint32_t samples_ = 0;
+  std::string sent_, complaint_;
+  DriverInstance encoder_ = make_driver("kvh1750", {{"format", "a"}});
+};
+
+TEST_F(RecordedFlight, DenoiseGivesWhatTheDaemonPublishedToTheBit) {
+  configure();
+  start();
+  for (int n = 0; n < 60; ++n) {
+    send(50);
+    if (n % 15 == 7) write("supply", std::to_string(11'600 + 100 * n) + "\n");
+    ASSERT_TRUE(await(static_cast<std::size_t>(samples_))) << text_of(path("said"));
+  }
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  EXPECT_NE(text_of(path("said")).find(" 0 lost, "), std::string::npos) << text_of(path("said"));
+  // Neither model nor configuration nor channel is there any more: the recording carries what it needs.
+  fs::remove(path("model.toml"));
+  fs::remove(path("ifogd.toml"));
+  fs::remove(path("supply"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  EXPECT_EQ(complaint_, "");
+  const auto rows = rows_of("denoised.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  bool corrected = false;
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const rate_t& message = published_[n];
+      ASSERT_EQ(rows[n][1 + 4 * axis], message.raw[axis]) << n;
+      ASSERT_EQ(rows[n][2 + 4 * axis], message.compensated[axis]) << n;
+      ASSERT_EQ(rows[n][3 + 4 * axis], message.denoised[axis]) << n;
+      corrected = corrected || message.compensated[axis] != message.raw[axis];
+    }
+  EXPECT_TRUE(corrected);
+  // Every command reads it as a capture, the channel from elsewhere among its columns.
+  ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
+  EXPECT_NE(text_of(path("capture.csv")).substr(0, 200).find("supply_V"), std::string::npos);
+  EXPECT_EQ(rows_of("capture.csv").size(), published_.size());
+  EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
+  // And it is sent again as it came, to the bit.
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
+}
+
+TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) {
+  model_line_ = "";
+  configure();
+  start();
+  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ASSERT_EQ(end(SIGKILL), 1000 + SIGKILL);
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
+  EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
+  published_.clear();
+  start();
+  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0);
+  for (const auto& entry : fs::directory_iterator(path("record/nose")))
+    EXPECT_EQ(entry.path().extension(), ".ifr") << entry.path();
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
+}
+
+TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
+  rate_hz_ = "100";
+  configure();
+  const pid_t recorder = fork();
+  ASSERT_GE(recorder, 0);
+  if (recorder == 0) {
+    close(STDOUT_FILENO);
+    open("/dev/null", O_WRONLY);
+    execl(IFOG_BINARY_DIR "/tools/ifog/ifog", "ifog", "record", "--output", path("heard").c_str(), "--sensor",
+          "nose", nullptr);
+    _exit(127);
+  }
+  // It listens once its folder is there; a message that came before is none of it.
+  start();
+  for (int n = 0; n < 600 && !fs::exists(path("heard")); ++n) listen(10);
+  const std::size_t before = published_.size();
+  // At the sensor's own rate, so that the fitted time goes on.
+  auto due = std::chrono::steady_clock::now();
+  for (int n = 0; n < 300; ++n) {
+    std::this_thread::sleep_until(due += std::chrono::milliseconds(10));
+    send(1);
+    ASSERT_TRUE(await(before + static_cast<std::size_t>(samples_))) << text_of(path("said"));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(2200));  // two status messages
+  ASSERT_EQ(end(SIGTERM), 0);
+  kill(recorder, SIGTERM);
+  int status = 0;
+  waitpid(recorder, &status, 0);
+  EXPECT_EQ(status, 0);
+  ASSERT_EQ(ifog("convert " + path("heard") + " " + path("capture.csv")), 0) << complaint_;
+  const std::string capture = text_of(path("capture.csv"));
+  EXPECT_NE(capture.substr(0, 200).find("supply_V"), std::string::npos) << capture.substr(0, 200);
+  const auto rows = rows_of("capture.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) ASSERT_EQ(rows[n][1], published_[n].raw[0]) << n;
+  EXPECT_EQ(ifog("allan " + path("heard") + " --json " + path("allan.json")), 0) << complaint_;
+}
+
+}  // namespace
+}  // namespace ifog

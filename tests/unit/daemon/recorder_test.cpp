@@ -1,0 +1,270 @@
+// The flight recorder in the daemon: what the reader thread puts on the tape, and what the recorder makes of
+// it.
+#include "daemon/recorder/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include "drivers/flight/decode.h"
+#include "tests/unit/daemon/rig.h"
+#include "tests/unit/flight/recordings.h"
+
+namespace ifog {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kSecond = 1'000'000'000, kWall = 1'700'000'000 * kSecond;
+
+FlightHeader header() {
+  FlightHeader out;
+  out.sensor = "nose";
+  out.driver = "kvh1750";
+  out.options = {{"format", "a"}};
+  out.channels = {"supply_V", "coil_degC"};
+  return out;
+}
+
+Delivery delivery(const std::vector<std::uint8_t>& bytes, std::int64_t arrival_ns) {
+  Delivery out;
+  out.bytes = bytes;
+  out.arrival_ns = arrival_ns;
+  return out;
+}
+
+struct Taken {
+  std::vector<FlightEntryHead> heads;
+  std::vector<std::vector<std::uint8_t>> payloads;
+};
+
+Taken all_of(Tape& tape) {
+  Taken out;
+  FlightEntryHead head;
+  std::vector<std::uint8_t> payload;
+  while (tape.take(head, payload)) {
+    out.heads.push_back(head);
+    out.payloads.push_back(payload);
+  }
+  return out;
+}
+
+TEST(Tape, ChannelsAndTheWallClockAreRecordedWhenTheyChange) {
+  Tape tape(Tape::kLeastBytes);
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  std::vector<ChannelValue> channels(2);
+  tape.put(delivery(bytes, 10), 11, channels, 0);
+  channels[1] = {12.5, 9};
+  tape.put(delivery(bytes, 20), 21, channels, 0);
+  tape.put(delivery(bytes, 30), 31, channels, 5);
+  tape.put(delivery(bytes, 40), 41, channels, 5);
+  channels[1].value = 13.0;  // set between the reading of its time and of its value
+  tape.put(delivery(bytes, 0), 51, channels, 5);
+  const Taken taken = all_of(tape);
+  std::vector<FlightKind> kinds;
+  for (const FlightEntryHead& head : taken.heads) kinds.push_back(head.kind);
+  using K = FlightKind;
+  EXPECT_EQ(kinds, (std::vector<K>{K::bytes, K::channel, K::bytes, K::wall, K::bytes, K::bytes, K::channel,
+                                   K::bytes}));
+  EXPECT_EQ(taken.heads[1].time_ns, 9);
+  EXPECT_EQ(taken.heads[1].index, 1);
+  EXPECT_EQ(taken.heads[5].flags, 0);
+  EXPECT_EQ(taken.heads[7].flags, kFlightReadTime);  // when it arrived is not known
+  EXPECT_EQ(taken.heads[7].time_ns, 51);
+}
+
+TEST(Tape, WhatFindsNoRoomIsLeftOutCountedAndTold) {
+  Tape tape(Tape::kLeastBytes);
+  const std::vector<std::uint8_t> bytes(1000, 7);
+  std::vector<ChannelValue> channels(1);
+  Delivery opened = delivery(bytes, 1);
+  for (int n = 0; n < 300; ++n) {
+    opened.restarted = n == 280;  // among those that find no room
+    tape.put(opened, n + 1, channels, 0);
+  }
+  const std::uint64_t lost = tape.counters().lost_deliveries.value();
+  EXPECT_GT(lost, 20U);
+  EXPECT_EQ(tape.counters().deliveries.value(), 300U);
+  EXPECT_EQ(tape.counters().lost_bytes.value(), lost * 1000);
+  EXPECT_EQ(all_of(tape).heads.size(), 300 - lost);
+  // With room again: first what is missing, then the channel that changed meanwhile, then what came.
+  channels[0] = {3.0, 2};
+  opened.restarted = false;
+  tape.put(opened, 400, channels, 0);
+  const Taken taken = all_of(tape);
+  ASSERT_EQ(taken.heads.size(), 3U);
+  EXPECT_EQ(taken.heads[0].kind, FlightKind::lost);
+  std::uint64_t told[2];
+  ASSERT_EQ(taken.payloads[0].size(), sizeof told);
+  std::memcpy(told, taken.payloads[0].data(), sizeof told);
+  EXPECT_EQ(told[0], lost);
+  EXPECT_EQ(told[1], lost * 1000);
+  EXPECT_EQ(taken.heads[1].kind, FlightKind::channel);
+  EXPECT_NE(taken.heads[2].flags & kFlightReopened, 0);
+}
+
+TEST(Tape, EachCanFrameHasItsTime) {
+  Tape tape(Tape::kLeastBytes);
+  std::vector<ifog_can_frame> frames(3);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].id = static_cast<std::uint32_t>(0x100 + i);
+    frames[i].length = static_cast<std::uint8_t>(i * 4);
+    frames[i].data[0] = static_cast<std::uint8_t>(i);
+    frames[i].arrival_ns = i == 2 ? 0 : static_cast<std::int64_t>(i + 50);
+  }
+  Delivery from_bus;
+  from_bus.frames = frames;
+  from_bus.restarted = true;
+  tape.put(from_bus, 99, {}, 0);
+  const Taken taken = all_of(tape);
+  ASSERT_EQ(taken.heads.size(), 3U);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ifog_can_frame back{};
+    ASSERT_TRUE(frame_of({taken.heads[i], taken.payloads[i]}, back));
+    EXPECT_EQ(back.id, frames[i].id);
+    EXPECT_EQ(back.length, frames[i].length);
+    EXPECT_EQ(back.arrival_ns, frames[i].arrival_ns);
+    EXPECT_EQ(taken.heads[i].time_ns, i == 2 ? 99 : static_cast<std::int64_t>(i + 50));
+    EXPECT_EQ((taken.heads[i].flags & kFlightReopened) != 0, i == 0);
+  }
+}
+
+// Two real threads over a small queue: nothing changes on the way, and what is missing is what was counted.
+TEST(Tape, BetweenTwoThreadsNothingIsTornOrOutOfOrder) {
+  Tape tape(Tape::kLeastBytes);
+  constexpr std::uint64_t kCount = 200'000;
+  std::atomic<bool> done{false};
+  std::thread producer([&] {
+    for (std::uint64_t n = 0; n < kCount; ++n) {
+      const std::vector<std::uint8_t> bytes = numbered(n, 50);
+      tape.put(delivery(bytes, static_cast<std::int64_t>(n + 1)), 1, {}, 0);
+    }
+    done = true;
+  });
+  std::uint64_t next = 0, lost = 0;
+  bool last = false;
+  while (!last) {
+    last = done.load();
+    const Taken taken = all_of(tape);
+    for (std::size_t i = 0; i < taken.heads.size(); ++i) {
+      if (taken.heads[i].kind == FlightKind::lost) {
+        std::uint64_t told = 0;
+        std::memcpy(&told, taken.payloads[i].data(), sizeof told);
+        next += told;
+        lost += told;
+        continue;
+      }
+      ASSERT_EQ(taken.payloads[i], numbered(next, 50));
+      ASSERT_EQ(taken.heads[i].time_ns, static_cast<std::int64_t>(next + 1));
+      ++next;
+    }
+    if (next % 3 == 0) std::this_thread::sleep_for(2ms);
+  }
+  producer.join();
+  EXPECT_EQ(next + (tape.counters().lost_deliveries.value() - lost), kCount);
+}
+
+TEST(Recorder, APipelinesBytesAreInTheFileAsTheyCame) {
+  MemoryDisk disk;
+  const std::vector<std::uint8_t> sent = frames(20'000);
+  {
+    Recorder recorder("rec", 4U << 20U, std::make_unique<MemoryFolder>(disk), {}, header());
+    recorder.start();
+    Rig rig(sent, 100, true, 1024, 0us, true, &recorder.tape());
+    rig.run_to_the_end();
+    EXPECT_EQ(rig.publisher->messages().size(), 20'000U);
+    recorder.stop();
+    EXPECT_EQ(recorder.tape().counters().lost_deliveries.value(), 0U);
+    EXPECT_EQ(recorder.tape().counters().bytes.value(), sent.size());
+    EXPECT_EQ(recorder.entries_unwritten(), 0U);
+    EXPECT_EQ(recorder.file_bytes(), disk.used());
+  }
+  const ReadBack read = read_back(all_of(disk));
+  EXPECT_TRUE(losses(read.counts).empty());
+  std::vector<std::uint8_t> recorded;
+  for (const auto& payload : read.payloads) recorded.insert(recorded.end(), payload.begin(), payload.end());
+  EXPECT_EQ(recorded, sent);
+}
+
+// The disk stands still while a sensor sends: what it has no room for is lost, counted and told once; the
+// samples all go their way; and with room all is recorded again.
+TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
+  MemoryDisk disk;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  Rig rig(frames(30'000), 360, true, 1024, 0us, true, &recorder.tape());
+  rig.transport->allowed_ = 0;
+  rig.pipeline->start();
+  const auto give = [&](std::size_t upto) {
+    rig.transport->allowed_ = upto * kFrame;
+    while (rig.pipeline->reader().books().bytes_read < upto * kFrame) std::this_thread::sleep_for(1ms);
+    std::this_thread::sleep_for(5ms);  // the reader's turn goes on to the tape
+  };
+  std::vector<std::pair<std::string, bool>> messages;
+  std::int64_t now_ns = 0;
+  const auto seconds = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      now_ns += kSecond;
+      recorder.turn(now_ns, kWall + now_ns);
+      bool good = false;
+      if (std::string message = recorder.take_message(good); !message.empty())
+        messages.emplace_back(message, good);
+    }
+  };
+  give(1000);
+  seconds(3);
+  EXPECT_TRUE(messages.empty());
+  disk.refuses = ENOSPC;
+  for (std::size_t n = 2000; n <= 20'000; n += 1000) {
+    give(n);
+    seconds(1);
+  }
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(
+      messages[0].first,
+      "recorder: memory: No space left on device, nothing is recorded until it takes more; what is lost is "
+      "counted");
+  disk.refuses = 0;
+  give(21'000);
+  seconds(15);
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_TRUE(messages[1].second);
+  EXPECT_NE(messages[1].first.find("all is recorded again"), std::string::npos);
+  rig.transport->allowed_ = ~std::size_t{0};
+  while (!rig.pipeline->ended()) {
+    seconds(1);
+    std::this_thread::sleep_for(1ms);
+  }
+  rig.wait_for_the_end();
+  seconds(2);
+  EXPECT_EQ(messages.size(), 2U);
+  EXPECT_EQ(rig.publisher->messages().size(), 30'000U);
+  const std::uint64_t lost = recorder.tape().counters().lost_bytes.value();
+  EXPECT_GT(lost, 100'000U);
+  const ReadBack read = read_back(all_of(disk));
+  std::uint64_t recorded = 0;
+  for (const auto& payload : read.payloads) recorded += payload.size();
+  EXPECT_EQ(recorded + lost, 30'000 * kFrame);
+  EXPECT_EQ(read.counts.lost_bytes, lost);
+}
+
+TEST(Recorder, AnotherHeaderBeginsAnotherFile) {
+  MemoryDisk disk;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  recorder.tape().put(delivery(bytes, 1), 1, {}, 0);
+  recorder.turn(1 * kSecond, kWall);
+  recorder.turn(3 * kSecond, kWall);
+  FlightHeader other = header();
+  other.configuration = "another model";
+  recorder.set_header(other);
+  recorder.tape().put(delivery(bytes, 2), 2, {}, 0);
+  recorder.turn(4 * kSecond, kWall);
+  recorder.turn(6 * kSecond, kWall);
+  const ReadBack read = read_back(all_of(disk));
+  ASSERT_EQ(read.headers.size(), 2U);
+  EXPECT_EQ(read.headers[0].configuration, "");
+  EXPECT_EQ(read.headers[1].configuration, "another model");
+  EXPECT_EQ(read.payloads.size(), 2U);
+  EXPECT_TRUE(read.holes.empty());
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,322 @@
+// Files that begin, end and go; a disk that is full, damaged, or shared with others; a year of it.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/unit/flight/recordings.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000, kDay = 86'400 * kSecond;
+constexpr std::int64_t kWall = 1'700'000'000 * kSecond;  // 2023-11-14T22:13:20Z
+
+std::vector<std::uint64_t> numbers(const ReadBack& read) {
+  std::vector<std::uint64_t> out;
+  for (const auto& payload : read.payloads) {
+    out.emplace_back();
+    std::memcpy(&out.back(), payload.data(), 8);
+    EXPECT_EQ(payload, numbered(out.back()));
+  }
+  return out;
+}
+
+std::vector<std::uint64_t> counting(std::uint64_t from, std::uint64_t to) {
+  std::vector<std::uint64_t> out;
+  for (; from < to; ++from) out.push_back(from);
+  return out;
+}
+
+struct Bench {
+  explicit Bench(ArchiveLimits limits)
+      : archive(std::make_unique<MemoryFolder>(disk), limits, some_header()) {}
+  void add(std::uint64_t n) { archive.add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(n)); }
+  void turn() {
+    disk.now_ns = kWall + now_ns;
+    archive.turn(now_ns, kWall + now_ns);
+  }
+  MemoryDisk disk;
+  FlightArchive archive;
+  std::int64_t now_ns = 0;
+};
+
+TEST(FlightArchive, WhatWaitsIsWrittenWithinASecondAndReadableWhileItIsOpen) {
+  Bench bench({});
+  bench.add(0);
+  bench.turn();
+  EXPECT_TRUE(bench.disk.files.empty());  // not due
+  bench.now_ns = kSecond;
+  bench.turn();
+  ASSERT_EQ(bench.disk.files.size(), 1U);
+  EXPECT_EQ(bench.disk.files.begin()->first, "00000001-20231114T221321Z.ifr.open");
+  EXPECT_EQ(numbers(read_back(all_of(bench.disk))), counting(0, 1));
+  bench.archive.close(bench.now_ns, kWall);
+  EXPECT_EQ(bench.disk.files.begin()->first, "00000001-20231114T221321Z.ifr");
+  EXPECT_TRUE(losses(read_back(all_of(bench.disk)).counts).empty());
+}
+
+TEST(FlightArchive, FilesEndBySizeAndAgeAndGoOnWithoutAHole) {
+  ArchiveLimits limits;
+  limits.file_bytes = 20'000;
+  limits.file_ns = 100 * kSecond;
+  Bench bench(limits);
+  for (std::uint64_t n = 0; n < 5000; ++n) {
+    bench.now_ns += n < 4000 ? kSecond / 100 : 2 * kSecond;
+    bench.add(n);
+    bench.turn();
+  }
+  bench.archive.close(bench.now_ns, kWall + bench.now_ns);
+  EXPECT_GT(bench.disk.files.size(), 20U);
+  const ReadBack read = read_back(all_of(bench.disk));
+  EXPECT_EQ(numbers(read), counting(0, 5000));
+  EXPECT_TRUE(read.holes.empty());
+  EXPECT_EQ(read.headers.size(), bench.disk.files.size());
+}
+
+// A file begins with the latest values, so that it can be read by itself.
+TEST(FlightArchive, EachFileBeginsWithTheStateOfTheChannels) {
+  ArchiveLimits limits;
+  limits.file_ns = 10 * kSecond;
+  Bench bench(limits);
+  const double first = 12.5, second = 13.5;
+  const auto put = [&](const double& value) {
+    bench.archive.add({FlightKind::channel, 0, 1, 0, bench.now_ns},
+                      {reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
+  };
+  put(first);
+  for (std::uint64_t n = 0; n < 30; ++n) {
+    bench.now_ns += 2 * kSecond;
+    bench.add(n);
+    if (n == 17) put(second);
+    bench.turn();
+  }
+  bench.archive.close(bench.now_ns, kWall);
+  ASSERT_GT(bench.disk.files.size(), 4U);
+  double last = 0.0;
+  for (const auto& [name, bytes] : bench.disk.files) {
+    std::size_t at = 0;
+    FlightReader reader([&, &file = bytes](char* to, std::size_t most) {
+      const std::size_t n = std::min(most, file.size() - at);
+      std::memcpy(to, file.data() + at, n);
+      at += n;
+      return n;
+    });
+    ASSERT_EQ(reader.next(), FlightReader::Item::header);
+    ASSERT_EQ(reader.next(), FlightReader::Item::entry);
+    ASSERT_EQ(reader.entry().head.kind, FlightKind::channel) << name;
+    ASSERT_EQ(reader.entry().head.index, 1) << name;
+    double value = 0.0;
+    ASSERT_TRUE(reader.entry().value(value));
+    EXPECT_TRUE(value == first || value == second);
+    EXPECT_GE(value, last);
+    last = value;
+  }
+  EXPECT_EQ(last, second);
+}
+
+TEST(FlightArchive, ADiskThatRefusesLosesNothingThatWaits) {
+  Bench bench({});
+  std::uint64_t n = 0;
+  const auto seconds = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      bench.now_ns += kSecond;
+      if (!bench.archive.full()) bench.add(n++);
+      bench.turn();
+    }
+  };
+  seconds(10);
+  for (const int error : {ENOSPC, EIO, EROFS}) {
+    bench.disk.refuses = error;
+    seconds(20);
+    EXPECT_EQ(bench.archive.error(), error);
+    bench.disk.refuses = 0;
+    seconds(5);
+    EXPECT_EQ(bench.archive.error(), 0);
+  }
+  EXPECT_EQ(bench.archive.close(bench.now_ns, kWall), 0U);
+  EXPECT_EQ(numbers(read_back(all_of(bench.disk))), counting(0, n));
+  EXPECT_TRUE(losses(read_back(all_of(bench.disk)).counts).empty());
+}
+
+TEST(FlightArchive, ABlockHalfWrittenOnAFullDiskIsWrittenAnewInAnotherFile) {
+  Bench bench({});
+  bench.disk.cuts_back = false;
+  for (std::uint64_t n = 0; n < 100; ++n) {
+    bench.now_ns += kSecond;
+    if (n == 50) bench.disk.room = bench.disk.used() + 40;
+    if (n == 80) bench.disk.room = UINT64_MAX;
+    bench.add(n);
+    bench.turn();
+  }
+  bench.archive.close(bench.now_ns, kWall);
+  const ReadBack read = read_back(all_of(bench.disk));
+  EXPECT_EQ(numbers(read), counting(0, 100));
+  EXPECT_EQ(read.counts.torn_bytes, 40U);
+  EXPECT_EQ(read.counts.open_files, 1U);
+  EXPECT_EQ(bench.disk.files.size(), 2U);
+}
+
+TEST(FlightArchive, WhatAKilledRecorderLeftOpenIsKeptAndCountsAgainstTheLimit) {
+  MemoryDisk disk;
+  ArchiveLimits limits;
+  limits.bytes = 100'000;
+  limits.file_bytes = 10'000;
+  std::uint64_t n = 0;
+  std::int64_t now_ns = 0;
+  for (int run = 0; run < 30; ++run) {
+    auto archive =
+        std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk), limits, some_header());
+    for (int second = 0; second < 40; ++second) {
+      now_ns += kSecond;
+      for (int i = 0; i < 5; ++i) archive->add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(n++, 200));
+      archive->turn(now_ns, kWall + now_ns);
+    }
+    archive->turn(now_ns, kWall + now_ns, true);
+    // As a process that is killed: nothing more reaches the disk.
+    MemoryDisk at_death = disk;
+    at_death.open.clear();
+    archive.reset();
+    disk = at_death;
+    EXPECT_LE(disk.used(), limits.bytes);
+  }
+  FlightArchive last(std::make_unique<MemoryFolder>(disk), limits, some_header());
+  last.turn(now_ns, kWall + now_ns);
+  for (const auto& [name, bytes] : disk.files) EXPECT_TRUE(name.ends_with(".ifr")) << name;
+  const ReadBack read = read_back(all_of(disk));
+  const auto first = read.payloads.front();
+  std::uint64_t from = 0;
+  std::memcpy(&from, first.data(), 8);
+  ASSERT_EQ(read.payloads.size(), n - from);  // the newest, without a gap
+  EXPECT_EQ(read.payloads.back(), numbered(n - 1, 200));
+  EXPECT_GT(disk.used(), limits.bytes / 2);
+}
+
+// The wall clock of a computer without a battery: 1970 at the start, right later. It removes nothing.
+TEST(FlightArchive, AClockThatIsSetRemovesNoFile) {
+  MemoryDisk disk;
+  ArchiveLimits limits;
+  limits.file_ns = 10 * kSecond;
+  limits.age_ns = kDay;
+  FlightArchive archive(std::make_unique<MemoryFolder>(disk), limits, some_header());
+  for (std::uint64_t n = 0; n < 200; ++n) {
+    const std::int64_t now_ns = static_cast<std::int64_t>(n) * kSecond;
+    disk.now_ns = (n < 100 ? 0 : kWall) + now_ns;
+    archive.add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(n));
+    archive.turn(now_ns, disk.now_ns);
+  }
+  archive.close(200 * kSecond, kWall + 200 * kSecond);
+  EXPECT_EQ(archive.files_removed(), 0U);
+  EXPECT_EQ(numbers(read_back(all_of(disk))), counting(0, 200));
+  // The next day's recorder finds files of an unknown age, and leaves those, too.
+  FlightArchive next(std::make_unique<MemoryFolder>(disk), limits, some_header());
+  next.turn(0, kWall + 300 * kSecond);
+  EXPECT_EQ(next.files_removed(), 0U);
+}
+
+// A recorder on a disk that others fill and empty, which is killed and started again now and then.
+class HardYear {
+ public:
+  static constexpr std::int64_t kStep = 600 * kSecond, kLength = 365 * kDay;
+
+  HardYear() {
+    limits.bytes = 400'000;
+    limits.file_bytes = 20'000;
+    limits.file_ns = 6 * 3600 * kSecond;
+    limits.age_ns = 5 * kDay;
+    limits.flush_ns = 60 * kSecond;
+    start();
+  }
+  // Much in the first half, where the limit of bytes is what counts, little in the second: that of days.
+  static std::vector<std::uint8_t> payload(std::uint64_t n) {
+    return numbered(n, n < kLength / kStep * 4 / 2 ? 400 : 20);
+  }
+  void step(std::int64_t now_ns) {
+    disk.now_ns = kWall + now_ns;
+    if (chance(0.002)) disk.room = disk.used() + static_cast<std::uint64_t>(random_() % 3000);
+    if (chance(0.02)) disk.room = UINT64_MAX;
+    disk.cuts_back = !chance(0.1);
+    for (int i = 0; i < 4; ++i, ++count) {
+      when[count] = now_ns;
+      // As the tape does it: what finds no room is left out, and that is known.
+      if (archive->full())
+        left_out.insert(count);
+      else
+        archive->add({FlightKind::bytes, 0, 0, 0, now_ns}, payload(added_.emplace_back(count)));
+    }
+    archive->turn(now_ns, disk.now_ns);
+    archive->turn(now_ns + 60 * kSecond, disk.now_ns + 60 * kSecond);
+    fullest = std::max(fullest, disk.used());
+    const bool refuses = archive->error() != 0;
+    refusals += refuses && !refused_ ? 1 : 0;
+    recoveries += !refuses && refused_ ? 1 : 0;
+    refused_ = refuses;
+    if (chance(0.003)) kill();
+  }
+
+  MemoryDisk disk;
+  ArchiveLimits limits;
+  std::unique_ptr<FlightArchive> archive;
+  std::set<std::uint64_t> left_out;
+  std::map<std::uint64_t, std::int64_t> when;
+  std::uint64_t count = 0, fullest = 0;
+  int refusals = 0, recoveries = 0, kills = 0;
+
+ private:
+  bool chance(double p) { return std::uniform_real_distribution<>(0.0, 1.0)(random_) < p; }
+  void start() {
+    archive = std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk), limits, some_header());
+  }
+  // What waited has not reached the disk.
+  void kill() {
+    ++kills;
+    const MemoryDisk at_death = disk;
+    for (std::uint64_t waited = archive->entries_waiting(); waited > 0; --waited) {
+      left_out.insert(added_.back());
+      added_.pop_back();
+    }
+    archive.reset();
+    disk = at_death;
+    disk.open.clear();
+    start();
+    refused_ = false;
+  }
+
+  std::mt19937 random_{365};
+  std::vector<std::uint64_t> added_;
+  bool refused_ = false;
+};
+
+// Limits are held at every moment, each refusal ends when there is room, and what is on the disk is what was
+// added, without a gap that is not known.
+TEST(FlightArchive, AYearOfDiskPressure) {
+  HardYear year;
+  for (std::int64_t now_ns = 0; now_ns < HardYear::kLength; now_ns += HardYear::kStep) year.step(now_ns);
+  EXPECT_LE(year.fullest, year.limits.bytes);
+  EXPECT_GT(year.fullest, year.limits.bytes * 9 / 10);
+  EXPECT_GT(year.refusals, 30);
+  EXPECT_GT(year.recoveries, 25);
+  EXPECT_GT(year.kills, 100);
+  year.disk.room = UINT64_MAX;
+  year.archive->close(HardYear::kLength, kWall + HardYear::kLength);
+  const ReadBack read = read_back(all_of(year.disk));
+  EXPECT_EQ(read.counts.damaged_bytes, 0U);
+  ASSERT_GT(read.payloads.size(), 1000U);
+  std::uint64_t first = 0, before = 0, holes = 0;
+  std::memcpy(&first, read.payloads.front().data(), 8);
+  for (std::size_t i = 0; i < read.payloads.size(); ++i) {
+    std::uint64_t number = 0;
+    std::memcpy(&number, read.payloads[i].data(), 8);
+    ASSERT_EQ(read.payloads[i], HardYear::payload(number));
+    ASSERT_TRUE(i == 0 || number > before);
+    for (std::uint64_t gone = before + 1; i > 0 && gone < number; ++gone)
+      holes += year.left_out.contains(gone) ? 0 : 1;
+    before = number;
+  }
+  EXPECT_EQ(holes, 0U);
+  EXPECT_EQ(before, year.count - 1);
+  // Of the last five days and no more than a file's time older.
+  EXPECT_GE(year.when[first], HardYear::kLength - year.limits.age_ns - year.limits.file_ns - HardYear::kStep);
+}
+
+}  // namespace
+}  // namespace ifog

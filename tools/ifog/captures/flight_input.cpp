@@ -1,0 +1,139 @@
+#include "tools/ifog/captures/flight_input.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "daemon/sensor/flight_header.h"
+#include "daemon/sensor/sensor_parts.h"
+#include "drivers/capture/capture_builder.h"
+#include "tools/ifog/console/say.h"
+
+namespace ifog::tools {
+namespace {
+
+// A text under a name that only this process knows, for what wants to open a file.
+class NamedText {
+ public:
+  explicit NamedText(std::string_view text) : fd_(memfd_create("of the recording", MFD_CLOEXEC)) {
+    if (fd_ < 0 || ::write(fd_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+      throw std::runtime_error("no memory for a file that the recording carries");
+  }
+  ~NamedText() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  NamedText(const NamedText&) = delete;
+  NamedText& operator=(const NamedText&) = delete;
+  [[nodiscard]] std::string name() const { return "/proc/self/fd/" + std::to_string(fd_); }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+template <typename Work>
+auto FlightInput::with_name(Work&& work) const {
+  try {
+    return work();
+  } catch (const std::runtime_error& error) {
+    const std::string line = error.what();
+    throw std::runtime_error(line.starts_with(file_.path()) ? line : file_.path() + ": " + line);
+  }
+}
+
+FlightInput::FlightInput(InputFile& file)
+    : file_(file), reader_([&file](char* to, std::size_t most) { return file.read(to, most); }) {
+  with_name([this] { reader_.next(); });
+}
+
+DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options) const {
+  const bool other = !driver.empty() && driver != header().driver;
+  DriverSettings settings = other ? DriverSettings{} : header().options;
+  std::vector<std::unique_ptr<NamedText>> carried;
+  for (auto& [key, value] : settings)
+    if (const auto found = header().files.find(value); found != header().files.end())
+      value = carried.emplace_back(std::make_unique<NamedText>(found->second))->name();
+  for (const auto& [key, value] : options) settings[key] = value;
+  return with_name([&] {
+    if (header().driver.empty() && !other)
+      throw std::runtime_error(
+          "is a recording of LCM messages, expected none of --driver and --option with it");
+    DriverInstance made = ifog::make_driver(other ? driver : header().driver, settings);
+    for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
+    return made;
+  });
+}
+
+SensorConfig FlightInput::sensor() const {
+  return with_name([this] { return recorded_sensor(header()); });
+}
+
+std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) const {
+  const auto found = header().files.find(sensor.model);
+  if (found == header().files.end()) return read_sensor_model(sensor);
+  return std::make_shared<const Model>(parse_model(found->second, sensor.model));
+}
+
+void FlightInput::tell_losses() const {
+  for (const std::string& loss : losses(reader_.counts()))
+    warn("%s: %s\n", file_.path().c_str(), loss.c_str());
+}
+
+RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const RecordedSamples& sink) {
+  return with_name([&] {
+    RecordingCounts counts;
+    const RecordedSamples counting{[&](const RecordedSample& sample) {
+                                     ++counts.samples;
+                                     sink.sample(sample);
+                                   },
+                                   sink.discontinuity};
+    decode_flight(reader_, driver, counting);
+    const std::uint64_t before = driver.counters().bytes_skipped;
+    driver.reset();
+    counts.bytes_at_end = driver.counters().bytes_skipped - before;
+    counts.driver = driver.counters();
+    tell_losses();
+    if (counts.samples == 0)
+      throw std::runtime_error("driver " + std::string(driver.table().name) + " finds no sample in it");
+    return counts;
+  });
+}
+
+Capture FlightInput::capture(DriverInstance& driver) {
+  return with_name([&] {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    CaptureBuilder builder(driver.description(), header().channels);
+    builder.allow_restarts();
+    std::vector<ChannelValue> before(header().channels.size());
+    std::vector<double> fresh(before.size());
+    const RecordingCounts counts =
+        for_each_sample(driver, {[&](const RecordedSample& recorded) {
+                                   for (std::size_t i = 0; i < before.size(); ++i) {
+                                     const ChannelValue& now = recorded.outside[i];
+                                     fresh[i] = now.same(before[i]) ? kNone : now.value;
+                                     before[i] = now;
+                                   }
+                                   builder.add(recorded.sample, fresh);
+                                 },
+                                 [&] { builder.discontinuity(); }});
+    for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
+    if (builder.missing() != 0)
+      warn("%s: %zu samples are missing by the device's counter\n", file_.path().c_str(), builder.missing());
+    return builder.finish();
+  });
+}
+
+void FlightInput::for_each_entry(const std::function<void(const FlightEntry&)>& sink) {
+  with_name([&] {
+    for (auto item = reader_.next(); item != FlightReader::Item::end; item = reader_.next())
+      if (item == FlightReader::Item::entry) sink(reader_.entry());
+    tell_losses();
+  });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,50 @@
+// A flight recording as the commands read it: what its header says becomes the driver and the sensor.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "drivers/capture/capture.h"
+#include "drivers/capture/input_file.h"
+#include "drivers/capture/recording.h"
+#include "drivers/flight/decode.h"
+#include "drivers/host/driver_instance.h"
+#include "filters/model_file/model.h"
+
+namespace ifog::tools {
+
+class FlightInput {
+ public:
+  // Reads the header; the file must outlive this. Throws std::runtime_error with one line.
+  explicit FlightInput(InputFile& file);
+
+  [[nodiscard]] const FlightHeader& header() const { return reader_.header(); }
+
+  // The driver of the recording with its options, those of `options` over them; another one, which then has
+  // only `options`, where `driver` names it.
+  [[nodiscard]] DriverInstance make_driver(const std::string& driver, const DriverSettings& options) const;
+  // As the daemon had it configured, and the model it used: what the recording carries of it, else the file
+  // that it names. Null: none.
+  [[nodiscard]] SensorConfig sensor() const;
+  [[nodiscard]] std::shared_ptr<const Model> model(const SensorConfig& sensor) const;
+
+  // All samples; what is missing is told on standard error. Throws as above, also when there is no sample.
+  RecordingCounts for_each_sample(DriverInstance& driver, const RecordedSamples& sink);
+  // As columns, channels from elsewhere, too.
+  Capture capture(DriverInstance& driver);
+  // What came as it came, for `ifog replay`: `bytes`, `can` and `message` entries.
+  void for_each_entry(const std::function<void(const FlightEntry&)>& sink);
+
+ private:
+  template <typename Work>
+  auto with_name(Work&& work) const;
+  void tell_losses() const;
+
+  InputFile& file_;
+  FlightReader reader_;
+};
+
+}  // namespace ifog::tools
