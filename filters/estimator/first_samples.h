@@ -1,5 +1,5 @@
-// Variance of a raw rate while nothing is known of its noise yet: of the first samples all that they say, from
-// the fourth on what neighbours differ by, with what so few differences leave open.
+// Variance of a raw rate while nothing is known of its noise yet: of the first samples all that they say,
+// from the fourth on what neighbours differ by, with what so few differences leave open.
 #pragma once
 
 #include <algorithm>
