@@ -1,6 +1,6 @@
 """How loggers fail. A fault acts on a column (name -> series, nan for an empty cell) or on the rows. What is a
-property of the wiring (late, early because the gyro's own data are buffered, polled, coarse) is the same in both captures; what befalls a record (holes,
-stuck stretches, sentinels, glitches) strikes each anew."""
+property of the wiring (late, early because the gyro's own data are buffered, polled, coarse) is the same in both
+captures; what befalls a record (holes, stuck stretches, sentinels, glitches) strikes each anew."""
 import numpy as np
 
 WIRING = ("late", "early", "polled, held", "polled, empty", "coarse")
