@@ -237,6 +237,7 @@ void Housekeeping::reload() {
     Sensor* sensor;
     SensorConfig config;
     std::unique_ptr<ChainParts> parts;
+    std::string noise;  // that the parts begin with, as it is kept
   };
   notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
   std::vector<Renewed> renewed;
@@ -257,7 +258,8 @@ void Housekeeping::reload() {
           config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
       settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
       auto parts = std::make_unique<ChainParts>(settings);
-      renewed.push_back({sensor.get(), std::move(config), std::move(parts)});
+      renewed.push_back(
+          {sensor.get(), std::move(config), std::move(parts), sensor->parts.noise.text(settings.learned)});
     } catch (const std::exception& error) {
       errors.push_back("sensor \"" + printable(config.name) + "\": " + error.what());
     }
@@ -272,7 +274,7 @@ void Housekeeping::reload() {
                              each.config.model.empty() ? "none" : each.config.model);
       each.sensor->config = std::move(each.config);
       each.sensor->parts.pipeline->filter().offer(std::move(each.parts));
-      record_anew(*each.sensor);
+      record_anew(*each.sensor, each.noise);
     }
   } else {
     log_->error("reload refused: nothing has changed for any sensor");
@@ -280,10 +282,10 @@ void Housekeeping::reload() {
   notify("READY=1");
 }
 
-void Housekeeping::record_anew(Sensor& sensor) {
+void Housekeeping::record_anew(Sensor& sensor, const std::string& noise) {
   if (sensor.parts.recorder == nullptr) return;
   sensor.parts.recorder->set_header(
-      flight_header(sensor.config, config_, sensor.parts.pipeline->reader().driver()));
+      flight_header(sensor.config, config_, sensor.parts.pipeline->reader().driver(), noise));
 }
 
 void Housekeeping::stop_all() {

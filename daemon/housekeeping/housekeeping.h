@@ -56,7 +56,7 @@ class Housekeeping {
   void reload();
   void say_what_needs_a_restart(const Config& fresh);
   // The sensor's next recording begins with the settings it has now.
-  void record_anew(Sensor& sensor);
+  void record_anew(Sensor& sensor, const std::string& noise);
   void stop_all();
   void notify(const std::string& state);
 

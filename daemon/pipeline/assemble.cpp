@@ -10,7 +10,7 @@ namespace ifog {
 namespace {
 
 std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config& config,
-                                        const DriverInstance& driver) {
+                                        const DriverInstance& driver, const NoiseMemory& noise) {
   const RecordConfig& record = sensor.record;
   if (record.folder.empty()) return nullptr;
   ArchiveLimits limits;
@@ -20,7 +20,7 @@ std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config
   limits.file_ns = static_cast<std::int64_t>(record.file_s * 1e9);
   return std::make_unique<Recorder>(sensor.name + ":rec", record.buffer_bytes,
                                     make_flight_folder(record.folder + "/" + sensor.name), limits,
-                                    flight_header(sensor, config, driver));
+                                    flight_header(sensor, config, driver, noise.text(noise.recalled())));
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   settings.learned = out.noise.recalled();
   auto parts = std::make_unique<ChainParts>(settings);
   out.left_out = parts->left_out();
-  out.recorder = make_recorder(sensor, config, driver);
+  out.recorder = make_recorder(sensor, config, driver, out.noise);
   PipelinePlan plan;
   if (out.recorder != nullptr) plan.tape = &out.recorder->tape();
   plan.lcm_channel = sensor.lcm_channel();

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "daemon/sensor/noise_memory.h"
+
 namespace ifog {
 namespace {
 
@@ -39,7 +41,8 @@ std::string source_of(const TransportConfig& transport) {
 
 }  // namespace
 
-FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver) {
+FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
+                           const std::string& noise) {
   FlightHeader out;
   out.program = IFOG_VERSION;
   out.sensor = sensor.name;
@@ -54,6 +57,7 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
     if (channel.source != ChannelConfig::Source::frame) out.channels.push_back(channel.name);
   out.configuration = sensor.text;
   out.configuration_file = std::filesystem::absolute(config.file).string();
+  if (!noise.empty()) out.files[noise_file_name(sensor.name)] = noise;
   std::uintmax_t room = kMostAttached;
   if (!sensor.model.empty()) attach(sensor.model, room, out);
   for (const ifog_option* option = driver.table().options; option->key != nullptr; ++option) {

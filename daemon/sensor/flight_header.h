@@ -11,8 +11,9 @@ namespace ifog {
 
 // With the text of the model and of the files that the driver's options name, so that another computer reads
 // the recording as this one would. Files that cannot be read now or are larger than all of 2 MiB are left to
-// their names.
-FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver);
+// their names. `noise`: what the filter begins with of earlier runs, as the file it is kept in; "" for none.
+FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
+                           const std::string& noise);
 
 // The sensor as it was configured. Throws std::runtime_error with one line: what this version does not
 // understand of it.

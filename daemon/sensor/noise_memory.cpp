@@ -39,7 +39,7 @@ std::string state_folder(const std::string& configured) {
 NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, const std::string& driver,
                          const SensorFacts& facts) {
   if (folder.empty()) return;
-  path_ = (std::filesystem::path(folder) / (sensor + ".noise.toml")).string();
+  path_ = (std::filesystem::path(folder) / noise_file_name(sensor)).string();
   kept_.sensor = sensor;
   kept_.driver = driver;
   kept_.axes = facts.axes;
@@ -52,6 +52,7 @@ NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, c
                       std::abs(found.sample_rate_hz / facts.nominal_rate_hz - 1.0) < kSameRate;
     if (same) {
       recalled_ = found.noise;
+      kept_.learned = found.learned;
       remark_ = in_words(found);
     } else {
       remark_ = path_ + ": is of driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
@@ -60,6 +61,13 @@ NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, c
   } catch (const std::exception& error) {
     remark_ = std::string(error.what()) + ": learned anew";
   }
+}
+
+std::string NoiseMemory::text(const std::optional<LearnedNoise>& learned) const {
+  if (!learned) return "";
+  KeptNoise out = kept_;
+  out.noise = *learned;
+  return kept_noise_text(out);
 }
 
 std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, bool at_once) {

@@ -13,6 +13,9 @@
 
 namespace ifog {
 
+// Of the file, in the state folder as in a flight recording.
+[[nodiscard]] inline std::string noise_file_name(const std::string& sensor) { return sensor + ".noise.toml"; }
+
 // The folder as configured, else the first of the service manager's STATE_DIRECTORY, else "".
 [[nodiscard]] std::string state_folder(const std::string& configured);
 
@@ -28,6 +31,9 @@ class NoiseMemory {
   // What is to be said of the file that was found, "" for nothing; good: it is in use.
   [[nodiscard]] const std::string& remark() const noexcept { return remark_; }
   [[nodiscard]] bool good() const noexcept { return recalled_.has_value(); }
+
+  // The file's text with these figures in it; "" for none.
+  [[nodiscard]] std::string text(const std::optional<LearnedNoise>& learned) const;
 
   // Writes what is new, ten minutes after the last time or, at the end of a run, at once. now_ns: monotonic.
   // Gives a complaint, once until it has succeeded again; "" for none.

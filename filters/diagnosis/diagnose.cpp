@@ -90,7 +90,9 @@ class Run {
   void look_at_channels() {
     for (const Record& record : records_) result_.samples += record.time_s.size();
     result_.sample_rate_hz = 1.0 / data_.grid.sample_s;
-    say(unused_channels(records_, data_));
+    std::vector<std::string> ramps;
+    for (const RampFit& ramp : ramps_) ramps.push_back(ramp.effect.channel);
+    say(unused_channels(records_, data_, ramps));
     reconstructed_ = with_reconstructed_channels(data_);
   }
 

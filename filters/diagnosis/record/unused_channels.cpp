@@ -19,11 +19,12 @@ void append(std::string& list, const std::string& name) { list += (list.empty() 
 
 }  // namespace
 
-std::string unused_channels(const std::vector<Record>& records, const BlockData& data) {
+std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
+                            const std::vector<std::string>& ramps) {
   std::string missing;
   std::string empty;
   std::string constant;
-  std::vector<std::string> seen;
+  std::vector<std::string> seen = ramps;
   for (const Record& record : records) {
     for (const RecordChannel& channel : record.channels) {
       if (std::find(seen.begin(), seen.end(), channel.name) != seen.end()) continue;

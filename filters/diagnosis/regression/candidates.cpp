@@ -13,6 +13,9 @@ constexpr double kHour = 3600.0;
 constexpr double kGridFactor = 2.5;  // between time constants: neighbours correlate above 0.95
 // A smooth channel's derivative needs smoothing over the quantisation of its thermometer, so it starts here.
 constexpr double kBlocksOfRate = 2.0;
+// What warms up has a mass. What settles faster is how the record began: a reference that came late, a hand
+// that let go.
+constexpr double kShortestWarmUp_s = 10.0;
 
 ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel, double first,
                           double second) {
@@ -92,7 +95,8 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   double from = grid.block_s * kBlocksOfRate;
   double to = std::min(kHour, longest / 3.0);
   if (form == Form::kSecondRate) to = std::min(to, longest / 10.0);
-  if (form == Form::kLagged) from = std::max(from, 3.0 * grid.block_s);
+  if (form == Form::kLagged || form == Form::kWarmUp) from = std::max(from, 3.0 * grid.block_s);
+  if (form == Form::kWarmUp) from = std::max(from, kShortestWarmUp_s);
   if (form == Form::kBandPower) {
     from = std::max(4.0 * grid.fine_s, 0.02);
     to = std::min(to, 100.0);
@@ -115,7 +119,7 @@ std::vector<Candidate> library(const BlockData& data) {
   of_time.form = Form::kRateRamp;
   found.push_back(of_time);
   of_time.form = Form::kWarmUp;
-  for (double tau : time_constants(data.grid, Form::kLagged)) {
+  for (double tau : time_constants(data.grid, Form::kWarmUp)) {
     of_time.time_constant_s = tau;
     found.push_back(of_time);
   }

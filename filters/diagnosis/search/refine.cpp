@@ -23,8 +23,8 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
   double low = std::log(model[at].*which / 2.5);
   double high = std::log(model[at].*which * 2.5);
   const double least = std::log(2.0 * data.grid.fine_s);
-  low = std::max(low, least);
   const std::vector<double> tried = time_constants(data.grid, model[at].form);
+  low = std::max(low, model[at].form == Form::kWarmUp && !tried.empty() ? std::log(tried.front()) : least);
   const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
   high = std::min(std::max(high, least), std::log(most));
   low = std::min(low, high);

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
+#include "filters/model_file/kept_noise.h"
 #include "tests/unit/daemon/private_network.h"
 
 namespace ifog {
@@ -139,11 +140,13 @@ class RecordedFlight : public testing::Test {
           "[[effect.parameter]]\nname = \"coefficient\"\nvalue = 1e-3\nstd_error = 1e-6\n"
           "unit = \"rad/s/V\"\n");
     write("ifogd.toml",
-          "[daemon]\nlock_memory = false\n[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n"
+          "[daemon]\nlock_memory = false\nstate_folder = \"state\"\n[[sensor]]\nname = \"nose\"\ndriver = "
+          "\"kvh1750\"\n"
           "nominal_rate_hz = " +
               rate_hz_ + "\n" + model_line_ +
-              "[sensor.options]\nformat = \"a\"\n[sensor.transport]\ntype = \"file\"\npath = \"line\"\n"
-              "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n"
+              "[sensor.options]\nformat = \"a\"\n[sensor.transport]\ntype = \"file\"\npath = "
+              "\"line\"\n" +
+              filter_lines_ +
               "[sensor.record]\nfolder = \"record\"\nfile_bytes = 100_000\nbytes = 1_000_000\n"
               "[[sensor.channel]]\nname = \"supply_V\"\nsource = \"file\"\npath = \"supply\"\nscale = 1e-3\n"
               "period_s = 0.01\nmax_age_s = 0.5\n");
@@ -155,6 +158,7 @@ class RecordedFlight : public testing::Test {
   pid_t child_ = -1;
   std::string model_line_ = "model = \"model.toml\"\n";
   std::string rate_hz_ = "1000";
+  std::string filter_lines_ = "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n";
   std::vector<rate_t> published_;
   std::uint32_t samples_ = 0;
   std::string sent_, complaint_;
@@ -197,6 +201,38 @@ TEST_F(RecordedFlight, DenoiseGivesWhatTheDaemonPublishedToTheBit) {
   // And it is sent again as it came, to the bit.
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
   EXPECT_EQ(text_of(path("again")), sent_);
+}
+
+// Of a sensor that has run before: what it knew of its noise is in the recording, too, though the state
+// folder has gone on since.
+TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
+  KeptNoise kept;
+  kept.sensor = "nose";
+  kept.driver = "kvh1750";
+  kept.axes = 3;
+  kept.sample_rate_hz = 1000.0;
+  kept.learned = "2026-01-31T13:05:09Z";
+  kept.noise.process_noise = 3e-11;
+  kept.noise.measurement_noise = 2e-8;
+  kept.noise.colour = {1.0, 1.1, 0.9};
+  kept.noise.octaves.samples = 1e6;
+  fs::create_directories(path("state"));
+  write("state/nose.noise.toml", kept_noise_text(kept));
+  filter_lines_ = "";
+  configure();
+  start();
+  ASSERT_TRUE(send_and_await(1500)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  fs::remove_all(path("state"));
+  fs::remove(path("ifogd.toml"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  const auto rows = rows_of("denoised.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
+  // The noise did come from there: without it the first seconds are the raw rate.
+  EXPECT_NE(published_[1000].denoised[0], published_[1000].compensated[0]);
 }
 
 TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) {

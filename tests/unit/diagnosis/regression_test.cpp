@@ -115,6 +115,8 @@ TEST(Candidates, NoTimeConstantIsLongerThanTheRecordCanShow) {
     EXPECT_LE(times.back(), 300.3);
   }
   EXPECT_LE(time_constants(grid, Form::kSecondRate).back(), 90.1);
+  // What warms up has a mass: however short the blocks are.
+  EXPECT_GE(time_constants(grid, Form::kWarmUp).front(), 10.0);
 }
 
 // The derivative by the logarithm of a lag, against the exponential answer to a step of the channel:

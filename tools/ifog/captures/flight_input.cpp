@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
+#include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
+#include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -77,6 +79,12 @@ std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) cons
   const auto found = header().files.find(sensor.model);
   if (found == header().files.end()) return read_sensor_model(sensor);
   return std::make_shared<const Model>(parse_model(found->second, sensor.model));
+}
+
+std::optional<LearnedNoise> FlightInput::noise(const SensorConfig& sensor) const {
+  const auto found = header().files.find(noise_file_name(sensor.name));
+  if (found == header().files.end()) return std::nullopt;
+  return parse_kept_noise(found->second, file_.path() + ": " + found->first).noise;
 }
 
 void FlightInput::tell_losses() const {

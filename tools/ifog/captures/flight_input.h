@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/flight/decode.h"
 #include "drivers/host/driver_instance.h"
+#include "filters/estimator/learned_noise.h"
 #include "filters/model_file/model.h"
 
 namespace ifog::tools {
@@ -30,6 +32,8 @@ class FlightInput {
   // that it names. Null: none.
   [[nodiscard]] SensorConfig sensor() const;
   [[nodiscard]] std::shared_ptr<const Model> model(const SensorConfig& sensor) const;
+  // The noise that the daemon's filter began with; nothing where it learned it in this recording.
+  [[nodiscard]] std::optional<LearnedNoise> noise(const SensorConfig& sensor) const;
 
   // All samples; what is missing is told on standard error. Throws as above, also when there is no sample.
   RecordingCounts for_each_sample(DriverInstance& driver, const RecordedSamples& sink);

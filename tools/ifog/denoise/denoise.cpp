@@ -205,7 +205,10 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
                   ? flight->model(out.sensor)
                   : read_sensor_model(out.sensor);
   out.first_sequence = options.first_sequence;
-  if (!options.noise.empty()) out.learned = read_kept_noise(options.noise).noise;
+  if (!options.noise.empty())
+    out.learned = read_kept_noise(options.noise).noise;
+  else if (flight != nullptr && options.config.empty())
+    out.learned = flight->noise(out.sensor);
   return out;
 }
 

@@ -151,8 +151,8 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
 
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
                              const OfflineSink& sink) {
-  const ChainSettings chain_settings =
-      sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
+  chain_settings.learned = settings.learned;
   const SensorFacts& facts = chain_settings.facts;
   const std::vector<ChannelConfig> outside = outside_channels(settings.sensor);
   // By name: the settings may be others than those it was recorded with.
@@ -162,7 +162,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
     recorded_at.push_back(
         static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
   }
-  Chain chain(chain_settings);
+  Chain chain(chain_settings, settings.first_sequence);
   Reading reading;
   ChainOutput out;
   double time_s = 0.0;
