@@ -151,9 +151,8 @@ TEST_F(Replay, AnInterruptEndsItWithTheReport) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    execl(IFOG_BINARY_DIR "/tools/ifog/ifog", "ifog", "replay", capture.c_str(), "--to",
-          ("file:" + path("again.log")).c_str(), "--loop", "0", "--json", path("report.json").c_str(),
-          nullptr);
+    execl(IFOG_PROGRAM, "ifog", "replay", capture.c_str(), "--to", ("file:" + path("again.log")).c_str(),
+          "--loop", "0", "--json", path("report.json").c_str(), nullptr);
     _exit(127);
   }
   // Until it is whole the file has no name: it is seen among what the process has open.
@@ -166,9 +165,12 @@ TEST_F(Replay, AnInterruptEndsItWithTheReport) {
     }
     return most;
   };
-  while (written() < 1000) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  kill(child, SIGINT);
   int status = 0;
+  while (written() < 1000) {
+    ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended by itself";
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  kill(child, SIGINT);
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
