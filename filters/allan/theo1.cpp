@@ -71,9 +71,11 @@ std::vector<WeightedChiSquared> law_of(const Eigen::MatrixXd& form, const Eigen:
 std::vector<std::size_t> spans(double from, double to, int per_decade) {
   std::vector<std::size_t> m;
   const double step = std::pow(10.0, 1.0 / per_decade);
-  for (double tau = to; tau > from; tau /= step) {
+  double tau = to;
+  while (tau > from) {
     const auto even = 2 * static_cast<std::size_t>(std::floor(0.5 * tau / kTauOfSpan + 1e-9));
     if (m.empty() || even < m.back()) m.push_back(even);
+    tau /= step;
   }
   std::reverse(m.begin(), m.end());
   return m;

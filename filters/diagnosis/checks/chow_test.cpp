@@ -20,7 +20,8 @@ Unsteadiness unsteadiness(const BlockData& data, const std::vector<Candidate>& m
   others << white.middleCols(1, mine - 1), white.rightCols(p - mine);
   const Eigen::VectorXd x = left_by(others, white.col(mine));
   const Eigen::VectorXd left = left_by(white.rightCols(p), white.col(0));
-  const double variance = left.squaredNorm() / std::max(1.0, static_cast<double>(data.grid.used() - p));
+  const double variance = left.squaredNorm() /
+                          std::max(1.0, static_cast<double>(static_cast<Eigen::Index>(data.grid.used()) - p));
   const double all = x.squaredNorm();
   if (!(all > 0.0)) return {};
 

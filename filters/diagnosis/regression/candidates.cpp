@@ -103,7 +103,11 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   }
   std::vector<double> times;
   const double factor = form == Form::kBandPower ? 10.0 : kGridFactor;
-  for (double tau = from; tau <= to * 1.001; tau *= factor) times.push_back(tau);
+  double tau = from;
+  while (tau <= to * 1.001) {
+    times.push_back(tau);
+    tau *= factor;
+  }
   return times;
 }
 
