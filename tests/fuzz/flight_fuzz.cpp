@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -20,7 +19,7 @@ void read_all(std::span<const std::uint8_t> recording) {
   std::size_t at = 0;
   FlightReader reader([&](char* to, std::size_t most) {
     const std::size_t n = std::min(most, recording.size() - at);
-    std::memcpy(to, recording.data() + at, n);
+    std::copy_n(recording.begin() + static_cast<std::ptrdiff_t>(at), n, to);
     at += n;
     return n;
   });

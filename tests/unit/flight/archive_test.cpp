@@ -1,6 +1,7 @@
 // Files that begin, end and go; a disk that is full, damaged, or shared with others; a year of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/unit/flight/recordings.h"
@@ -97,7 +98,7 @@ TEST(FlightArchive, EachFileBeginsWithTheStateOfTheChannels) {
     std::size_t at = 0;
     FlightReader reader([&, &file = bytes](char* to, std::size_t most) {
       const std::size_t n = std::min(most, file.size() - at);
-      std::memcpy(to, file.data() + at, n);
+      std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(at), n, to);
       at += n;
       return n;
     });
