@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/flight/recordings.h"
 
 namespace ifog {
@@ -38,7 +40,7 @@ std::vector<Seen> decoded(const std::vector<std::uint8_t>& recording, int& break
   std::size_t at = 0;
   FlightReader reader([&](char* to, std::size_t most) {
     const std::size_t n = std::min(most, recording.size() - at);
-    std::memcpy(to, recording.data() + at, n);
+    std::copy_n(recording.begin() + static_cast<std::ptrdiff_t>(at), n, to);
     at += n;
     return n;
   });
