@@ -90,7 +90,7 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
 std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   std::string text;
   // A key ends at the first '=': that of an option or a path has none left.
-  const auto add = [&text](std::string key, std::string_view value) {
+  const auto add = [&text](const std::string& key, std::string_view value) {
     text += key + "=" + escaped(value) + "\n";
   };
   const auto add_named = [&](const char* kind, const auto& named) {
