@@ -241,7 +241,7 @@ void Monitor::show(double interval_s) {
           status.latency_p50_us, status.latency_p99_us, status.latency_max_us,
           static_cast<long long>(status.frames_crc), static_cast<long long>(status.bytes_skipped),
           static_cast<long long>(status.sequence_missing),
-          static_cast<long long>(status.frames_repeated + status.samples_repeated),
+          static_cast<long long>(status.frames_repeated) + status.samples_repeated,
           static_cast<long long>(status.samples_incomplete), static_cast<long long>(status.samples_merged),
           static_cast<long long>(status.kernel_drops), static_cast<long long>(status.channel_drops),
           static_cast<long long>(status.can_error_frames), static_cast<long long>(status.channel_stale),

@@ -163,7 +163,7 @@ void LcmRecorder::run() {
   for (const auto& [channel, way] : ways_) on_the_way += way.lost();
   say("%s: %llu messages, %llu bytes written, %llu lost here, %lld lost on LCM\n", options_.folder.c_str(),
       static_cast<unsigned long long>(messages_), static_cast<unsigned long long>(archive_.bytes_written()),
-      static_cast<unsigned long long>(lost_total_ + unwritten), static_cast<long long>(on_the_way));
+      static_cast<unsigned long long>(lost_total_) + unwritten, static_cast<long long>(on_the_way));
   if (messages_ == 0) throw Failed("nothing heard");
   if (archive_.error() != 0)
     throw std::runtime_error(options_.folder + ": " + std::system_category().message(archive_.error()));

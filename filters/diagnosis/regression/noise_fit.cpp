@@ -103,7 +103,7 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
   if (grid.dwells) return fit_noise(grid, columns, {});
   const NoiseFit plain = fit_walk_and_flicker(grid, columns);
   const NoiseFit markov = with_markov(grid, columns, plain);
-  const NoiseFit last = with_harmonics(grid, columns, markov);
+  NoiseFit last = with_harmonics(grid, columns, markov);
   if (markov.shape.markov == 0.0) {
     return last.shape.harmonics.empty() ? last : with_markov(grid, columns, last);
   }

@@ -41,8 +41,11 @@ Eigen::VectorXd answer_to_step(const BlockGrid& grid, const NoiseShape& shape, c
 
 std::vector<double> flicker_bank(const BlockGrid& grid) {
   std::vector<double> times;
-  for (double tau = 2.0; tau < static_cast<double>(grid.longest()); tau *= kFlickerSpacing)
+  double tau = 2.0;
+  while (tau < static_cast<double>(grid.longest())) {
     times.push_back(tau);
+    tau *= kFlickerSpacing;
+  }
   return times;
 }
 

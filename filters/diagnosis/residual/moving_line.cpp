@@ -53,7 +53,9 @@ double best_power(std::span<const double> error, double mean, const std::vector<
   }
   const double bin = 1.0 / static_cast<double>(n);
   double best = 0.0;
-  for (double offset = -bins; offset <= bins; offset += 0.25) {
+  const auto quarters = static_cast<int>(std::floor(8.0 * bins));
+  for (int quarter = 0; quarter <= quarters; ++quarter) {
+    const double offset = 0.25 * quarter - bins;
     Complex sum(0.0, 0.0);
     for (std::size_t p = 0; p < kPieces; ++p) {
       sum += sums[p] * std::polar(1.0, -2.0 * std::numbers::pi * offset * bin * middle[p]);
