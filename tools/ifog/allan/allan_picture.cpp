@@ -46,7 +46,7 @@ bool several_files(const std::vector<AllanRecord>& records) {
 }
 
 std::string title_of(const AllanRecord& record, bool several) {
-  const std::string label = record.label();
+  std::string label = record.label();
   if (!several && !label.empty()) return label;
   return label.empty() ? file_name(record) : file_name(record) + " " + label;
 }
