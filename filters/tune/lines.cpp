@@ -93,7 +93,9 @@ SpectralLine take_out_strongest_line(std::vector<std::vector<double>>& axes) {
   double centre = static_cast<double>(highest(power)) / n;
   double at = square(axes, centre);
   // The main lobe is a bin wide to either side: a search by thirds inside it.
-  for (double reach = 0.5 / n; reach > 1e-3 / n; reach *= 0.5) {
+  constexpr int kHalvings = 9;  // to a thousandth of a bin
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double reach = std::ldexp(0.5 / n, -halving);
     for (const double side : {-1.0, 1.0}) {
       const double other = std::clamp(centre + side * reach, 0.5 / n, 0.5 - 0.5 / n);
       const double there = square(axes, other);
