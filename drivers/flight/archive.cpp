@@ -38,12 +38,17 @@ std::string file_name(std::uint64_t number, std::int64_t wall_ns) {
   return name.data();
 }
 
+// More files than any recorder makes: a name with a greater number is somebody else's, and the next one would
+// not follow it.
+constexpr std::uint64_t kMostFiles = 1'000'000'000'000;
+
 // The number of a name that this made; 0: it is of others.
 std::uint64_t number_of(std::string_view name) {
   if (!name.ends_with(kEnding)) return 0;
   std::uint64_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  return error == std::errc() && end != name.data() + name.size() && *end == '-' ? number : 0;
+  const bool made_here = error == std::errc() && end != name.data() + name.size() && *end == '-';
+  return made_here && number < kMostFiles ? number : 0;
 }
 
 }  // namespace

@@ -12,6 +12,14 @@ constexpr std::size_t kPortion = 1U << 16U;
 
 }  // namespace
 
+FlightReader::FlightReader(std::span<const std::uint8_t> recording)
+    : source_([rest = recording](char* to, std::size_t most) mutable {
+        const std::size_t n = std::min(most, rest.size());
+        std::copy_n(rest.begin(), n, to);
+        rest = rest.subspan(n);
+        return n;
+      }) {}
+
 bool FlightReader::ensure(std::size_t bytes) {
   if (at_ > (kPortion << 4U)) {
     held_.erase(0, at_);

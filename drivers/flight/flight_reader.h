@@ -29,6 +29,8 @@ class FlightReader {
   // As InputFile::read: up to so many bytes, fewer only at the end.
   using Source = std::function<std::size_t(char*, std::size_t)>;
   explicit FlightReader(Source source) : source_(std::move(source)) {}
+  // Of a recording in memory, which stays as it is as long as the reader is used.
+  explicit FlightReader(std::span<const std::uint8_t> recording);
 
   enum class Item {
     header,  // a file begins: header()

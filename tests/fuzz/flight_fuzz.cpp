@@ -16,13 +16,7 @@ namespace {
 using namespace ifog;
 
 void read_all(std::span<const std::uint8_t> recording) {
-  std::size_t at = 0;
-  FlightReader reader([&](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, recording.size() - at);
-    std::copy_n(recording.begin() + static_cast<std::ptrdiff_t>(at), n, to);
-    at += n;
-    return n;
-  });
+  FlightReader reader(recording);
   std::uint64_t sum = 0, entries = 0;
   try {
     for (auto item = reader.next(); item != FlightReader::Item::end; item = reader.next()) {

@@ -1,5 +1,4 @@
 // ifog monitor: what the daemon publishes, live, as an engineer wants to see it.
-#include <lcm/lcm.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/signalfd.h>
@@ -13,7 +12,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,9 +20,9 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
 #include "msgs/state_name.h"
+#include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/captures/lcm_loss.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
@@ -110,44 +108,25 @@ std::string channels_text(const status_t& status) {
 
 class Monitor {
  public:
-  explicit Monitor(const Options& options) : options_(options) {
-    lcm_ = lcm_create(options.url.c_str());
-    if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + options.url + ": LCM cannot use it");
-    std::string name = options.sensor;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    const std::string pattern = name.empty() ? "IFOG_.*" : "IFOG_" + name + "(_STATUS)?";
-    lcm_subscription_t* const subscription = lcm_subscribe(lcm_, pattern.c_str(), &Monitor::received, this);
-    if (subscription == nullptr)
-      throw std::runtime_error("--sensor " + options.sensor + ": no name LCM can listen to");
-    // A terminal that is slow for a moment must not look like lost messages.
-    lcm_subscription_set_queue_capacity(subscription, 100'000);
+  explicit Monitor(const Options& options)
+      : options_(options),
+        listener_(options.url, [this](const lcm_recv_buf_t& message, const std::string& channel) {
+          take(message, channel);
+        }) {
+    listener_.listen_to_sensor(options.sensor);
   }
-  ~Monitor() { lcm_destroy(lcm_); }
-  Monitor(const Monitor&) = delete;
-  Monitor& operator=(const Monitor&) = delete;
 
   // False: nothing was heard.
   bool run();
 
  private:
-  // Called from C, through which nothing may be thrown.
-  static void received(const lcm_recv_buf_t* buffer, const char* channel, void* user) noexcept {
-    auto* const self = static_cast<Monitor*>(user);
-    try {
-      self->take(*buffer, channel);
-    } catch (...) {
-      if (!self->failure_) self->failure_ = std::current_exception();
-    }
-  }
   void take(const lcm_recv_buf_t& buffer, const std::string& channel);
   void take_rate(Sensor& sensor, const rate_t& message);
   void show(double interval_s);
   [[nodiscard]] bool all_shown() const;
 
   const Options& options_;
-  std::exception_ptr failure_;  // of the first message that could not be taken
-  lcm_t* lcm_ = nullptr;
+  LcmListener listener_;
   std::map<std::string, Sensor> sensors_;
   std::uint64_t refused_ = 0;  // that are no message of their channel's type
   std::size_t lines_drawn_ = 0;
@@ -276,12 +255,11 @@ bool Monitor::run() {
   const auto seconds_since = [](Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
   };
-  std::array<pollfd, 2> wanted{pollfd{stop, POLLIN, 0}, pollfd{lcm_get_fileno(lcm_), POLLIN, 0}};
+  std::array<pollfd, 2> wanted{pollfd{stop, POLLIN, 0}, pollfd{listener_.descriptor(), POLLIN, 0}};
   for (;;) {
     const int ready = poll(wanted.data(), wanted.size(), 50);
     if (ready > 0 && (wanted[0].revents & POLLIN) != 0) break;
-    if (ready > 0 && (wanted[1].revents & POLLIN) != 0) lcm_handle(lcm_);
-    if (failure_) std::rethrow_exception(failure_);
+    if (ready > 0 && (wanted[1].revents & POLLIN) != 0) listener_.take();
     if (seconds_since(shown) >= 1.0) {
       show(seconds_since(shown));
       shown = Clock::now();

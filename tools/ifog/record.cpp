@@ -1,15 +1,11 @@
 // ifog record: what the daemon publishes, from LCM into flight recordings on this computer, which every
 // command reads.
-#include <lcm/lcm.h>
 #include <poll.h>
 #include <CLI/CLI.hpp>
 
 #include <ifog/decode.h>
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdint>
-#include <exception>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -18,8 +14,8 @@
 #include <vector>
 
 #include "drivers/flight/archive.h"
-#include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/captures/lcm_loss.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/interrupt.h"
@@ -40,20 +36,14 @@ constexpr int kTurn_ms = 50;
 class LcmRecorder {
  public:
   explicit LcmRecorder(const Options& options)
-      : options_(options), archive_(make_flight_folder(options.folder), limits(options), header(options)) {
-    lcm_ = lcm_create(options.url.c_str());
-    if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + options.url + ": LCM cannot use it");
-    std::string name = options.sensor;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    subscribe(name.empty() ? "IFOG_.*" : "IFOG_" + name + "(_STATUS)?");
-    for (const std::string& channel : options.channels) subscribe(channel);
+      : options_(options),
+        archive_(make_flight_folder(options.folder), limits(options), header(options)),
+        listener_(options.url, [this](const lcm_recv_buf_t& message, const std::string& channel) {
+          take(message, channel);
+        }) {
+    listener_.listen_to_sensor(options.sensor);
+    for (const std::string& channel : options.channels) listener_.listen_to(channel);
   }
-  ~LcmRecorder() {
-    if (lcm_ != nullptr) lcm_destroy(lcm_);
-  }
-  LcmRecorder(const LcmRecorder&) = delete;
-  LcmRecorder& operator=(const LcmRecorder&) = delete;
 
   void run();
 
@@ -73,31 +63,13 @@ class LcmRecorder {
     out.source = options.url;
     return out;
   }
-  void subscribe(const std::string& pattern) {
-    lcm_subscription_t* const subscription =
-        lcm_subscribe(lcm_, pattern.c_str(), &LcmRecorder::received, this);
-    if (subscription == nullptr)
-      throw std::runtime_error("\"" + printable(pattern) + "\": no name LCM can listen to");
-    // What the disk does not take for a while waits here.
-    lcm_subscription_set_queue_capacity(subscription, 100'000);
-  }
-  // Called from C, through which nothing may be thrown.
-  static void received(const lcm_recv_buf_t* buffer, const char* channel, void* user) noexcept {
-    auto* const self = static_cast<LcmRecorder*>(user);
-    try {
-      self->take(*buffer, channel);
-    } catch (...) {
-      if (!self->failure_) self->failure_ = std::current_exception();
-    }
-  }
   void take(const lcm_recv_buf_t& buffer, const std::string& channel);
   void add_lost(std::uint64_t messages, std::uint64_t bytes);
   void tell_trouble();
 
   const Options& options_;
   FlightArchive archive_;
-  lcm_t* lcm_ = nullptr;
-  std::exception_ptr failure_;
+  LcmListener listener_;
   std::map<std::string, LcmLoss> ways_;
   std::vector<std::uint8_t> payload_;
   std::uint64_t messages_ = 0, lost_here_ = 0, lost_here_bytes_ = 0, lost_total_ = 0;
@@ -150,10 +122,9 @@ void LcmRecorder::run() {
   catch_interrupts();
   const std::int64_t start_ns = monotonic_ns();
   const auto end_ns = start_ns + static_cast<std::int64_t>(options_.seconds * 1e9);
-  pollfd wanted{lcm_get_fileno(lcm_), POLLIN, 0};
+  pollfd wanted{listener_.descriptor(), POLLIN, 0};
   while (!interrupted() && (options_.seconds <= 0.0 || monotonic_ns() < end_ns)) {
-    if (poll(&wanted, 1, kTurn_ms) > 0) lcm_handle(lcm_);
-    if (failure_) std::rethrow_exception(failure_);
+    if (poll(&wanted, 1, kTurn_ms) > 0) listener_.take();
     archive_.turn(arrival_clock_ns(), realtime_ns());
     tell_trouble();
   }

@@ -214,6 +214,27 @@ TEST(FlightArchive, AClockThatIsSetRemovesNoFile) {
   EXPECT_EQ(next.files_removed(), 0U);
 }
 
+// What is numbered as no recorder ever comes to: the next number would not follow it.
+TEST(FlightArchive, AFileOfOthersWithAHugeNumberIsLeftAlone) {
+  MemoryDisk disk;
+  const std::vector<std::string> of_others{"18446744073709551615-20260101T000000Z.ifr",
+                                           "18446744073709551615-20260101T000000Z.ifr.open",
+                                           "99999999999999999999999-x.ifr", "7.ifr", "-1-x.ifr"};
+  for (const std::string& name : of_others) disk.files[name] = {1, 2, 3};
+  ArchiveLimits limits;
+  limits.bytes = 2000;
+  limits.file_bytes = 500;
+  FlightArchive archive(std::make_unique<MemoryFolder>(disk), limits, some_header());
+  for (std::uint64_t n = 0; n < 200; ++n) {
+    archive.add({FlightKind::bytes, 0, 0, 0, static_cast<std::int64_t>(n) * kSecond}, numbered(n));
+    archive.turn(static_cast<std::int64_t>(n) * kSecond, kWall + static_cast<std::int64_t>(n) * kSecond);
+  }
+  archive.close(200 * kSecond, kWall + 200 * kSecond);
+  EXPECT_GT(archive.files_removed(), 10U);
+  EXPECT_LT(disk.used(), 2000U + 5 * 3);
+  for (const std::string& name : of_others) EXPECT_TRUE(disk.files.contains(name)) << name;
+}
+
 // A recorder on a disk that others fill and empty, which is killed and started again now and then.
 class HardYear {
  public:

@@ -37,13 +37,7 @@ struct Stream {
 };
 
 std::vector<Seen> decoded(const std::vector<std::uint8_t>& recording, int& breaks) {
-  std::size_t at = 0;
-  FlightReader reader([&](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, recording.size() - at);
-    std::copy_n(recording.begin() + static_cast<std::ptrdiff_t>(at), n, to);
-    at += n;
-    return n;
-  });
+  FlightReader reader(recording);
   EXPECT_EQ(reader.next(), FlightReader::Item::header);
   DriverInstance driver = make_driver(reader.header().driver, reader.header().options);
   std::vector<Seen> out;

@@ -102,13 +102,7 @@ struct ReadBack {
 };
 
 inline ReadBack read_back(const std::vector<std::uint8_t>& recording) {
-  std::size_t at = 0;
-  FlightReader reader([&](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, recording.size() - at);
-    std::copy_n(recording.begin() + static_cast<std::ptrdiff_t>(at), n, to);
-    at += n;
-    return n;
-  });
+  FlightReader reader(recording);
   ReadBack out;
   for (auto item = reader.next(); item != FlightReader::Item::end; item = reader.next()) {
     if (item == FlightReader::Item::header) out.headers.push_back(reader.header());

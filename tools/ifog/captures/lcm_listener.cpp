@@ -1,0 +1,51 @@
+#include "tools/ifog/captures/lcm_listener.h"
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/ifog/quoted.h"
+
+namespace ifog::tools {
+
+LcmListener::LcmListener(const std::string& url, Handler handler)
+    : handler_(std::move(handler)), lcm_(lcm_create(url.c_str())) {
+  if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + printable(url) + ": LCM cannot use it");
+}
+
+LcmListener::~LcmListener() { lcm_destroy(lcm_); }
+
+void LcmListener::listen_to(const std::string& pattern) {
+  lcm_subscription_t* const subscription = lcm_subscribe(lcm_, pattern.c_str(), &LcmListener::received, this);
+  if (subscription == nullptr)
+    throw std::runtime_error("\"" + printable(pattern) + "\": no name LCM can listen to");
+  // A terminal or a disk that is slow for a moment must not look like lost messages.
+  lcm_subscription_set_queue_capacity(subscription, 100'000);
+}
+
+void LcmListener::listen_to_sensor(const std::string& name) {
+  std::string upper = name;
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  listen_to(upper.empty() ? "IFOG_.*" : "IFOG_" + upper + "(_STATUS)?");
+}
+
+int LcmListener::descriptor() const { return lcm_get_fileno(lcm_); }
+
+void LcmListener::take() {
+  lcm_handle(lcm_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+// Called from C, through which nothing may be thrown.
+void LcmListener::received(const lcm_recv_buf_t* message, const char* channel, void* user) noexcept {
+  auto* const self = static_cast<LcmListener*>(user);
+  try {
+    self->handler_(*message, channel);
+  } catch (...) {
+    if (!self->failure_) self->failure_ = std::current_exception();
+  }
+}
+
+}  // namespace ifog::tools
