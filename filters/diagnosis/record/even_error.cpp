@@ -36,9 +36,8 @@ void refuse_constant(const std::vector<Record>& records) {
     const double first = error.empty() ? 0.0 : error.front();
     if (!std::all_of(error.begin(), error.end(), [&](double value) { return value == first; })) return;
   }
-  throw std::invalid_argument(records.front().name +
-                              ": the rate, less the reference if there is one, never changes; expected "
-                              "measurements");
+  throw std::invalid_argument(
+      "the rate, less the reference if there is one, never changes; expected measurements");
 }
 
 }  // namespace ifog

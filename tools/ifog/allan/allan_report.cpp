@@ -54,7 +54,7 @@ ordered_json theo1_json(const std::vector<LongPoint>& points) {
 void print_point(double tau_s, double variance, const AllanInterval& interval, const char* remark) {
   say("  %12.6g  %12.5g  %12.5g … %-10.5g  %9.4g  %s%s\n", tau_s, std::sqrt(variance) / kDegreePerHour,
       interval.lower_radps / kDegreePerHour, interval.upper_radps / kDegreePerHour, interval.degrees,
-      name_of(interval.strongest), remark);
+      variance > 0.0 ? name_of(interval.strongest) : "none", remark);
 }
 
 }  // namespace
@@ -117,11 +117,14 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
     if (options.tau_s.empty() && record.tau_s[i] < next && !last) continue;
     next = record.tau_s[i] * 2.1;
     print_point(record.tau_s[i], record.points[i].variance, record.intervals[i],
-                record.tau_s[i] > record.trusted_tau_s * 1.0001 ? "  (too few averages to trust)" : "");
+                record.trusted_tau_s > 0.0 && record.tau_s[i] > record.trusted_tau_s * 1.0001
+                    ? "  (too few averages to trust)"
+                    : "");
   }
   for (const LongPoint& point : record.longer)
     print_point(point.tau, point.variance, point.interval, "  (Theo1, bias taken out)");
-  say("  To be trusted to a quarter up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
+  if (record.trusted_tau_s > 0.0)
+    say("  To be trusted to a quarter up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
   if (record.fit) say("%s", report::coefficient_lines(*record.fit).c_str());
 }
 
