@@ -93,7 +93,7 @@ TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
         << static_cast<int>(c) << " in\n"
         << said;
   for (const char* part : {"NO\\x1b[31mSE,  ", "temp\\x1b[2J\\x9b31m\\nX_degC 20", "gone\\x0d\\x1b[1A",
-                           "kernel drops 11 (channels 1)",
+                           "kernel drops 11", "channel messages dropped 1",
                            "books: 60 CAN frames = 50 decoded + 7 refused + 3 not the sensor's; 50 samples = "
                            "46 published + 2 merged + 1 not sent + 1 waiting",
                            "model \\x1b]52", "messages that are none of ours"})

@@ -1,0 +1,148 @@
+// What `ifog monitor` shows of a sensor, at any width; and messages as JSON.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ifog/rate_t.hpp>
+#include <ifog/status_t.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/ifog/monitor/message_json.h"
+#include "tools/ifog/monitor/sensor_view.h"
+#include "tools/ifog/monitor/spark_line.h"
+#include "tools/ifog/monitor/view_lines.h"
+
+namespace ifog::tools {
+namespace {
+
+rate_t rate(std::int64_t seq, std::vector<double> denoised) {
+  rate_t out{};
+  out.seq = seq;
+  out.axes = static_cast<std::int8_t>(denoised.size());
+  for (auto* field : {&out.compensated, &out.variance, &out.delta_theta, &out.covered, &out.angle,
+                      &out.innovation, &out.innovation_variance, &out.gain})
+    field->assign(denoised.size(), 0.0);
+  out.raw = out.denoised = std::move(denoised);
+  return out;
+}
+
+status_t status() {
+  status_t out{};
+  out.state = status_t::STATE_RUNNING;
+  out.axes = 3;
+  out.nis_mean = {1.0, 1.01, 0.99};
+  out.whiteness = {0.0, 0.01, -0.02};
+  out.measurement_noise = {1.0, 1.0, 1.0};
+  out.bytes_read = out.bytes_framed = 1'234'567'890'123;
+  out.samples_in = out.samples_published = 34'293'552'503;
+  out.fault = "the device is gone: /dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A9048XYZ-if00-port0";
+  out.channels = 3;
+  out.channel_name = {"coil_degC", "supply_V", "hull\x1b[2J"};
+  out.channel_value = {25.0, 12.0, 1.0};
+  out.channel_age_s = {0.1, 5.0, std::numeric_limits<double>::infinity()};
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string out;
+  for (const std::string& line : lines) out += line + "\n";
+  return out;
+}
+
+TEST(MonitorView, FiguresOfASecondAreThoseOfItsMessages) {
+  SensorView view;
+  // Mean 2, deviation sqrt(((-1)^2 + 0 + 1)/2) = 1, times 1e-6 rad/s = 0.2063 °/h.
+  for (int i = 0; i < 3; ++i) view.take(rate(i, {1e-6 * (1 + i), 0.0, std::nan("")}));
+  view.end_interval(1.5);
+  ASSERT_EQ(view.axes().size(), 3U);
+  EXPECT_DOUBLE_EQ(view.message_rate_hz(), 2.0);
+  EXPECT_NEAR(view.axes()[0].rate_radps, 2e-6, 1e-18);
+  EXPECT_NEAR(view.axes()[0].noise_radps, 1e-6, 1e-18);
+  EXPECT_TRUE(std::isnan(view.axes()[2].rate_radps));
+  const std::string text = joined(view_lines("NOSE", view, {}));
+  EXPECT_NE(text.find("  x  +0.4125 °/h  noise 0.2063 (raw 0.2063)  angle +0.000000°"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("  y  "), std::string::npos);
+  EXPECT_NE(text.find("  z  "), std::string::npos);
+  EXPECT_NE(text.find("nothing lost"), std::string::npos);
+  view.end_interval(1.0);
+  EXPECT_TRUE(view.axes().empty());
+}
+
+TEST(MonitorView, FlagsAndLossesInWords) {
+  SensorView view;
+  rate_t message = rate(10, {0.0});
+  message.flags = 8192 + 4;  // at rest, stale channel
+  view.take(message);
+  view.take(rate(14, {0.0}));  // 11 to 13 were lost on the way
+  status_t health = status();
+  health.frames_crc = 7;
+  view.take(health);
+  view.end_interval(1.0);
+  std::string text = joined(view_lines("NOSE", view, {}));
+  for (const char* part :
+       {"at rest 1", "channel stale 1", "lost on LCM 3", "frames with a wrong checksum 7", "  rate  "})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
+  view.forget_losses();
+  health.frames_crc = 9;
+  view.take(health);
+  text = joined(view_lines("NOSE", view, {}));
+  EXPECT_EQ(text.find("lost on LCM"), std::string::npos) << text;
+  EXPECT_NE(text.find("frames with a wrong checksum 2"), std::string::npos) << text;
+}
+
+TEST(MonitorView, NoLineIsWiderThanTheScreen) {
+  SensorView view;
+  for (int i = 0; i < 200; ++i) {
+    view.take(rate(i, {1e-5 * i, -3.0, 1e-9}));
+    view.end_interval(1.0);
+  }
+  view.take(status());
+  for (std::size_t width = 60; width < 200; ++width)
+    for (const RateUnit unit :
+         {RateUnit::automatic, RateUnit::degree_per_hour, RateUnit::radian_per_second}) {
+      const auto lines = view_lines("NOSE", view, {width, true, unit});
+      ASSERT_GT(lines.size(), 8U);
+      for (const std::string& line : lines) {
+        EXPECT_LE(columns_of(line), std::max<std::size_t>(width, 95)) << line;
+        if (line.find("angle") != std::string::npos) {
+          EXPECT_LE(columns_of(line), width) << line;
+        }
+        EXPECT_EQ(line.find('\x1b'), std::string::npos);
+      }
+    }
+  const auto wide = view_lines("NOSE", view, {200, true, RateUnit::automatic});
+  EXPECT_NE(wide[1].find("▁"), std::string::npos);
+  EXPECT_NE(wide[1].find("█"), std::string::npos);
+}
+
+TEST(MonitorView, ASparkLineGoesFromTheLeastToTheGreatest) {
+  EXPECT_EQ(spark_line(std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}, 20), "▁▂▃▄▅▆▇█");
+  EXPECT_EQ(spark_line(std::vector<double>{9, 0, std::nan(""), 1}, 3), "▁ █");
+  EXPECT_EQ(spark_line(std::vector<double>{5, 5}, 3), "▅▅");
+  EXPECT_EQ(spark_line(std::vector<double>{}, 3), "");
+}
+
+TEST(MonitorJson, EveryFieldByTheNameOfItsType) {
+  rate_t message = rate(41, {1.5, std::nan(""), -2.0});
+  message.flags = 1 + 32;  // gap, invalid
+  message.model = "\xff\x1b";
+  const auto json = nlohmann::json::parse(message_json("NOSE", message));
+  EXPECT_EQ(json["sensor"], "NOSE");
+  EXPECT_EQ(json["type"], "rate");
+  EXPECT_EQ(json["seq"], 41);
+  EXPECT_EQ(json["flag_words"], nlohmann::json({"gap", "invalid"}));
+  EXPECT_EQ(json["raw"][0], 1.5);
+  EXPECT_TRUE(json["raw"][1].is_null());
+  const std::string line = message_json("NOSE", status());
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const auto health = nlohmann::json::parse(line);
+  EXPECT_EQ(health["state_name"], "running");
+  EXPECT_EQ(health["channel_name"][1], "supply_V");
+  EXPECT_EQ(health["bytes_read"], 1'234'567'890'123);
+}
+
+}  // namespace
+}  // namespace ifog::tools

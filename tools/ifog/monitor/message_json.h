@@ -1,0 +1,16 @@
+// A message of the daemon as JSON on one line, with the names that its type gives the fields. What is no
+// number is null.
+#pragma once
+
+#include <ifog/rate_t.hpp>
+#include <ifog/status_t.hpp>
+#include <string>
+#include <string_view>
+
+namespace ifog::tools {
+
+// "sensor" is the channel's name without IFOG_, "type" "rate" or "status". No line end.
+std::string message_json(std::string_view sensor, const rate_t& message);
+std::string message_json(std::string_view sensor, const status_t& message);
+
+}  // namespace ifog::tools

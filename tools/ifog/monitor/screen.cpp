@@ -1,0 +1,125 @@
+#include "tools/ifog/monitor/screen.h"
+
+#define NCURSES_WIDECHAR 1
+#define NCURSES_NOMACROS 1
+#include <curses.h>
+#include <langinfo.h>
+
+#include <algorithm>
+#include <clocale>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <cwchar>
+#include <stdexcept>
+
+namespace ifog::tools {
+namespace {
+
+// As much of it as has room: what is longer would go on in the next line.
+std::string cut(const std::string& text, int columns) {
+  std::mbstate_t state{};
+  int taken = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    wchar_t wide = 0;
+    const std::size_t length = std::mbrtowc(&wide, text.data() + at, text.size() - at, &state);
+    if (length == 0 || length > text.size() - at) return text.substr(0, at);
+    taken += std::max(0, wcwidth(wide));
+    if (taken > columns) return text.substr(0, at);
+    at += length;
+  }
+  return text;
+}
+
+}  // namespace
+
+Screen::Screen() {
+  // Units and spark lines are UTF-8, whatever the rest of the locale is.
+  if (std::setlocale(LC_CTYPE, "") == nullptr || std::strcmp(nl_langinfo(CODESET), "UTF-8") != 0)
+    std::setlocale(LC_CTYPE, "C.UTF-8");
+  // initscr() ends the program where the terminal is unknown; newterm() says so.
+  screen_ = newterm(nullptr, stdout, stdin);
+  if (screen_ == nullptr) {
+    const char* const term = std::getenv("TERM");
+    throw std::runtime_error(std::string("terminal ") + (term != nullptr ? term : "of no name (TERM)") +
+                             ": cannot be drawn on; --plain writes lines");
+  }
+  cbreak();
+  noecho();
+  keypad(stdscr, TRUE);
+  nodelay(stdscr, TRUE);
+  curs_set(0);
+}
+
+Screen::~Screen() {
+  endwin();
+  delscreen(static_cast<SCREEN*>(screen_));
+}
+
+std::size_t Screen::width() const { return static_cast<std::size_t>(std::max(1, getmaxx(stdscr))); }
+
+Screen::Key Screen::key() {
+  switch (getch()) {
+    case 'q':
+    case 'Q':
+    case 27:  // escape
+      return Key::quit;
+    case ' ':
+    case 'p':
+      return Key::pause;
+    case 'd':
+      return Key::details;
+    case 'u':
+      return Key::unit;
+    case 's':
+    case '\t':
+      return Key::sensor;
+    case 'r':
+      return Key::forget;
+    case '?':
+    case 'h':
+      return Key::help;
+    case KEY_UP:
+    case 'k':
+      return Key::up;
+    case KEY_DOWN:
+    case 'j':
+      return Key::down;
+    case KEY_PPAGE:
+      return Key::page_up;
+    case KEY_NPAGE:
+      return Key::page_down;
+    case KEY_RESIZE:
+      return Key::resized;
+    case ERR:
+      return Key::none;
+    default:
+      return Key::help;
+  }
+}
+
+void Screen::scroll(int by) {
+  const auto last = static_cast<std::ptrdiff_t>(lines_) - 1;
+  first_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(first_) + by, 0,
+                                                               std::max<std::ptrdiff_t>(0, last)));
+}
+
+void Screen::draw(const std::vector<std::string>& lines, const std::string& foot) {
+  const int rows = getmaxy(stdscr), columns = getmaxx(stdscr);
+  lines_ = lines.size();
+  const auto room = static_cast<std::size_t>(std::max(1, rows - 1));
+  // Nothing is scrolled out of sight that would fit.
+  first_ = std::min(first_, lines_ > room ? lines_ - room : 0);
+  erase();
+  for (std::size_t row = 0; row < room && first_ + row < lines_; ++row)
+    mvaddnstr(static_cast<int>(row), 0, cut(lines[first_ + row], columns).c_str(), -1);
+  if (rows > 1) {
+    attron(A_REVERSE);
+    mvhline(rows - 1, 0, ' ', columns);
+    mvaddnstr(rows - 1, 0, cut(foot, columns - 1).c_str(), -1);
+    attroff(A_REVERSE);
+  }
+  refresh();
+}
+
+}  // namespace ifog::tools

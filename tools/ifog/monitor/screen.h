@@ -1,0 +1,47 @@
+// A terminal as a whole, on ncurses: lines that can be scrolled, a line at its foot, keys. As long as it
+// lives nothing else may write there.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace ifog::tools {
+
+class Screen {
+ public:
+  // Throws std::runtime_error where the terminal cannot be drawn on.
+  Screen();
+  ~Screen();
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  enum class Key {
+    none,
+    quit,
+    pause,
+    details,
+    unit,
+    sensor,
+    forget,
+    help,
+    up,
+    down,
+    page_up,
+    page_down,
+    resized
+  };
+  // The next key that was pressed; none: none is waiting.
+  Key key();
+
+  [[nodiscard]] std::size_t width() const;
+  // Draws what fits, from the line that was scrolled to.
+  void draw(const std::vector<std::string>& lines, const std::string& foot);
+  void scroll(int by);
+
+ private:
+  std::size_t first_ = 0, lines_ = 0;
+  void* screen_ = nullptr;
+};
+
+}  // namespace ifog::tools

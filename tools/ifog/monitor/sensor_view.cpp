@@ -1,0 +1,108 @@
+#include "tools/ifog/monitor/sensor_view.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace ifog::tools {
+namespace {
+
+// Welford's recurrence: numbers that are none are passed over.
+void add(double value, std::int64_t& count, double& mean, double& square) {
+  if (!std::isfinite(value)) return;
+  ++count;
+  const double difference = value - mean;
+  mean += difference / static_cast<double>(count);
+  square += difference * (value - mean);
+}
+
+double deviation(std::int64_t count, double square) {
+  return count < 2 ? std::numeric_limits<double>::quiet_NaN()
+                   : std::sqrt(square / static_cast<double>(count - 1));
+}
+
+}  // namespace
+
+void SensorView::take(const rate_t& message) {
+  ++messages_;
+  ++in_interval_;
+  model_ = message.model;
+  way_.take(message);
+  for (std::size_t i = 0; i < kFlagNames.size(); ++i)
+    if ((message.flags & kFlagNames[i].flag) != 0) ++flagged_[i];
+  sums_.resize(static_cast<std::size_t>(message.axes));
+  for (std::size_t a = 0; a < sums_.size(); ++a) {
+    Sums& sums = sums_[a];
+    add(message.denoised[a], sums.count, sums.mean, sums.square);
+    add(message.raw[a], sums.raw_count, sums.raw_mean, sums.raw_square);
+    sums.angle = message.angle[a];
+  }
+}
+
+void SensorView::take(status_t message) { status_ = std::move(message); }
+
+void SensorView::end_interval(double seconds) {
+  rate_hz_ = static_cast<double>(in_interval_) / seconds;
+  shown_ = shown_ || in_interval_ > 0;
+  flagged_before_ = std::exchange(flagged_, {});
+  axes_.clear();
+  if (in_interval_ > 0) history_.resize(sums_.size());
+  for (std::size_t a = 0; in_interval_ > 0 && a < sums_.size(); ++a) {
+    const Sums sums = std::exchange(sums_[a], {});
+    axes_.push_back({sums.count > 0 ? sums.mean : std::numeric_limits<double>::quiet_NaN(),
+                     deviation(sums.count, sums.square), deviation(sums.raw_count, sums.raw_square),
+                     sums.angle});
+    history_[a].push_back(axes_.back().rate_radps);
+    if (history_[a].size() > kRemembered) history_[a].pop_front();
+  }
+  in_interval_ = 0;
+}
+
+std::vector<SensorView::Count> SensorView::flags() const {
+  std::vector<Count> out;
+  for (std::size_t i = 0; i < kFlagNames.size(); ++i)
+    if (flagged_before_[i] > 0) out.push_back({kFlagNames[i].name, flagged_before_[i]});
+  return out;
+}
+
+std::vector<SensorView::Count> SensorView::all_losses() const {
+  const status_t s = status_.value_or(status_t{});
+  return {{"lost on LCM", way_.lost()},
+          {"missing by the device's counter", s.sequence_missing},
+          {"frames with a wrong checksum", s.frames_crc},
+          {"frames refused", s.frames_format},
+          {"bytes skipped", s.bytes_skipped},
+          {"frames repeated", s.frames_repeated},
+          {"samples repeated", s.samples_repeated},
+          {"samples incomplete", s.samples_incomplete},
+          {"merged", s.samples_merged},
+          {"not sent", s.lcm_failures},
+          {"kernel drops", s.kernel_drops},
+          {"channel messages dropped", s.channel_drops},
+          {"line errors", s.can_error_frames},
+          {"device reopened", s.reopened},
+          {"log faults", s.log_faults},
+          {"invalid", s.invalid_samples},
+          {"channel values that cannot be", s.channel_implausible},
+          {"samples with a stale channel", s.channel_stale},
+          {"corrections refused", s.corrections_refused},
+          {"not recorded", s.record_lost},
+          {"log lines dropped", s.events_lost}};
+}
+
+std::vector<SensorView::Count> SensorView::losses() const {
+  std::vector<Count> out = all_losses();
+  for (std::size_t i = 0; i < forgotten_.size(); ++i) {
+    // A daemon that was started again counts from nought.
+    if (out[i].count >= forgotten_[i]) out[i].count -= forgotten_[i];
+  }
+  std::erase_if(out, [](const Count& each) { return each.count == 0; });
+  return out;
+}
+
+void SensorView::forget_losses() {
+  forgotten_.clear();
+  for (const Count& each : all_losses()) forgotten_.push_back(each.count);
+}
+
+}  // namespace ifog::tools

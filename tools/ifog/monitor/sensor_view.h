@@ -1,0 +1,73 @@
+// What a person is shown of one sensor: figures of the last interval, what was lost, where the rate went.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <ifog/rate_t.hpp>
+#include <ifog/status_t.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "msgs/flag_names.h"
+#include "tools/ifog/captures/lcm_loss.h"
+
+namespace ifog::tools {
+
+struct AxisView {
+  double rate_radps = 0.0;                          // mean of denoised
+  double noise_radps = 0.0, raw_noise_radps = 0.0;  // standard deviations; NaN: fewer than two samples
+  double angle_rad = 0.0;
+};
+
+class SensorView {
+ public:
+  // Intervals the spark line remembers.
+  static constexpr std::size_t kRemembered = 120;
+
+  void take(const rate_t& message);
+  void take(status_t message);
+  // The figures are those since the last call from here on.
+  void end_interval(double seconds);
+  // Losses are counted from here on.
+  void forget_losses();
+
+  [[nodiscard]] std::int64_t messages() const { return messages_; }
+  [[nodiscard]] bool shown() const { return shown_; }  // an interval with messages has ended
+  [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
+  [[nodiscard]] const std::string& model() const { return model_; }
+  [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
+  [[nodiscard]] const std::deque<double>& history(std::size_t axis) const { return history_[axis]; }
+  [[nodiscard]] const std::optional<status_t>& status() const { return status_; }
+
+  struct Count {
+    std::string_view name;
+    std::int64_t count;
+  };
+  // Messages of the interval with each flag, those without one left out.
+  [[nodiscard]] std::vector<Count> flags() const;
+  // Whatever was lost, refused or passed over on the way from the device to here; empty: nothing.
+  [[nodiscard]] std::vector<Count> losses() const;
+
+ private:
+  struct Sums {
+    std::int64_t count = 0, raw_count = 0;
+    double mean = 0.0, square = 0.0, raw_mean = 0.0, raw_square = 0.0, angle = 0.0;
+  };
+  [[nodiscard]] std::vector<Count> all_losses() const;
+
+  std::int64_t messages_ = 0, in_interval_ = 0;
+  bool shown_ = false;
+  double rate_hz_ = 0.0;
+  LcmLoss way_;
+  std::string model_;
+  std::vector<Sums> sums_;
+  std::vector<AxisView> axes_;
+  std::vector<std::deque<double>> history_;
+  std::array<std::int64_t, kFlagNames.size()> flagged_{}, flagged_before_{};
+  std::optional<status_t> status_;
+  std::vector<std::int64_t> forgotten_;
+};
+
+}  // namespace ifog::tools
