@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
@@ -38,6 +39,13 @@ std::int64_t number(std::span<const std::uint8_t> from, std::size_t bytes) {
   std::uint64_t value = (from[0] & 0x80U) != 0 ? ~std::uint64_t{0} : 0;
   for (std::size_t i = 0; i < bytes; ++i) value = value << 8U | from[i];
   return static_cast<std::int64_t>(value);
+}
+
+// Of an array whose length is part of the type; 0: another member says it.
+std::size_t fixed_count(std::string_view text) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return error == std::errc() && end == text.data() + text.size() ? count : 0;
 }
 
 bool take_string(std::span<const std::uint8_t>& from) {
@@ -81,6 +89,11 @@ void MessageLayout::add(std::string_view type, std::string_view name) {
   while (bracket != std::string_view::npos) {
     const std::size_t close = name.find(']', bracket);
     const std::string_view count = name.substr(bracket + 1, close - bracket - 1);
+    if (const std::size_t fixed = fixed_count(count); fixed > 0) {
+      member.fixed *= fixed;
+      bracket = name.find('[', close);
+      continue;
+    }
     const auto said = std::find_if(members_.begin(), members_.end(),
                                    [&](const Member& other) { return other.name == count; });
     if (said == members_.end() || said->size == 0 || !said->counts.empty())
@@ -97,7 +110,7 @@ bool MessageLayout::fits(std::span<const std::uint8_t> bytes) const {
   std::vector<std::int64_t> value(members_.size(), 0);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];
-    std::size_t elements = 1;
+    std::size_t elements = member.fixed;
     for (const std::size_t count : member.counts) {
       // More than the message has bytes there cannot be, so that no product overflows. That holds also where
       // an inner count is 0 and nothing follows: the decoder makes room for the outer one.
@@ -112,7 +125,7 @@ bool MessageLayout::fits(std::span<const std::uint8_t> bytes) const {
       continue;
     }
     if (elements * member.size > bytes.size()) return false;
-    if (member.counts.empty()) value[m] = number(bytes, member.size);
+    if (member.counts.empty() && member.fixed == 1) value[m] = number(bytes, member.size);
     bytes = bytes.subspan(elements * member.size);
   }
   return bytes.empty();

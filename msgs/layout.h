@@ -28,7 +28,8 @@ class MessageLayout {
 
  private:
   struct Member {
-    std::size_t size = 0;  // bytes of an element; 0: a string
+    std::size_t size = 0;   // bytes of an element; 0: a string
+    std::size_t fixed = 1;  // elements that the type itself says
     std::string name;
     std::vector<std::size_t> counts;  // the members that say how many, the outermost first
   };

@@ -13,6 +13,7 @@
 #include "filters/chain/plausibility.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
+#include "msgs/channel_name.h"
 
 namespace ifog {
 namespace {
@@ -232,6 +233,7 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
   take(in.number("range_radps", {1e-9, kMostRate_radps}), out.range_radps);
   out.limits = read_limits(in, kMostRate_radps);
+  take(in.boolean("imu"), out.imu);
   if (const toml::table* const transport = in.table("transport"))
     out.transport = read_transport(*transport, "sensor.transport", context);
   else if (!in.has("transport"))
@@ -309,6 +311,7 @@ std::string SensorConfig::restart_for(const SensorConfig& other) const {
                     {"nominal_rate_hz", nominal_rate_hz == other.nominal_rate_hz},
                     {"range_radps", range_radps == other.range_radps},
                     {"minimum, maximum or max_step", limits == other.limits},
+                    {"imu", imu == other.imu},
                     {"realtime", realtime == other.realtime},
                     {"record", record == other.record},
                     {"channel", channels == other.channels}});
@@ -357,13 +360,16 @@ Config parse_config(const std::string& text, const std::string& path) {
   for (const toml::table* const sensor : in.tables("sensor")) {
     out.sensors.push_back(read_sensor(*sensor, context));
     const SensorConfig& read = out.sensors.back();
-    // By LCM channel, which has capitals only; a sensor takes two, and `a_status` has the second of `a`.
-    const bool free =
-        channels.insert(read.lcm_channel()).second && channels.insert(read.lcm_channel() + "_STATUS").second;
-    if (!read.name.empty() && !free)
+    // By LCM channel, which has capitals only; a sensor takes three, and `a_status` has the second of `a`.
+    std::string taken;
+    for (const std::string_view ending : {std::string_view(), kStatusEnding, kImuEnding})
+      if (const std::string channel = read.lcm_channel() + std::string(ending);
+          !channels.insert(channel).second && taken.empty())
+        taken = channel;
+    if (!read.name.empty() && !taken.empty())
       TableReader(*sensor, "sensor", path, context.errors)
-          .complain("name", " = " + in_quotes(read.name) + ": another sensor publishes on " +
-                                read.lcm_channel() + " or " + read.lcm_channel() + "_STATUS already");
+          .complain("name",
+                    " = " + in_quotes(read.name) + ": another sensor publishes on " + taken + " already");
   }
   if (!in.has("sensor")) context.errors.push_back(path + ": no [[sensor]]: expected at least one");
   in.refuse_the_rest();

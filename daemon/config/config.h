@@ -83,6 +83,7 @@ struct SensorConfig {
   double nominal_rate_hz = 0.0;  // 0: what the driver says
   double range_radps = 0.0;      // full scale of every axis; 0: what the driver says
   Limits limits;                 // of every axis's rate, rad/s
+  bool imu = false;              // ifog.imu_t at sample rate, too
   double start_up_s = 4.0;
   TransportConfig transport;
   std::map<std::string, std::string> options;  // of the driver

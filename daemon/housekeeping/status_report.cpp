@@ -36,6 +36,7 @@ constexpr std::array kFaults{
     Named{"can_error_frames", &status_t::can_error_frames},
     Named{"reopened", &status_t::reopened},
     Named{"lcm_failures", &status_t::lcm_failures},
+    Named{"imu_failures", &status_t::imu_failures},
     Named{"invalid_samples", &status_t::invalid_samples},
     Named{"saturated_samples", &status_t::saturated_samples},
     Named{"implausible_samples", &status_t::implausible_samples},
@@ -147,6 +148,7 @@ void StatusReport::take_counters(const ReaderCounters& reader, const FilterCount
   now_.channel_stale = as_signed(filter.channel_stale.value());
   now_.out_of_range = as_signed(filter.out_of_range.value());
   now_.corrections_refused = as_signed(filter.corrections_refused.value());
+  now_.imu_failures = as_signed(filter.imu_failures.value());
   now_.filter_resets = as_signed(filter.filter_resets.value());
   now_.clock_offset_ppm = reader.clock_offset_ppm.load(std::memory_order_relaxed);
 }

@@ -4,6 +4,7 @@
 
 #include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "msgs/channel_name.h"
 
 namespace ifog {
 
@@ -41,6 +42,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   PipelinePlan plan;
   if (out.recorder != nullptr) plan.tape = &out.recorder->tape();
   plan.lcm_channel = sensor.lcm_channel();
+  if (sensor.imu) plan.imu_channel = sensor.lcm_channel() + std::string(kImuEnding);
   plan.facts = settings.facts;
   plan.ring_slots = static_cast<std::size_t>(sensor.realtime.ring_slots);
   plan.reader = {sensor.name + ":read", sensor.realtime.reader_priority, sensor.realtime.reader_cpus};

@@ -21,12 +21,13 @@ void relax() noexcept {
 }  // namespace
 
 FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-                         std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
+                         std::string imu_channel, std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
                          const SharedBooks& reader_books, EventQueue& events, bool measure_latency)
     : facts_(facts),
       chain_(std::move(parts)),
       encoder_(facts.axes),
       channel_(std::move(channel)),
+      imu_channel_(std::move(imu_channel)),
       publisher_(std::move(publisher)),
       queue_(queue),
       reader_books_(reader_books),
@@ -34,6 +35,7 @@ FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& f
       measure_latency_(measure_latency),
       noise_known_(chain_.parts().noise_known()) {
   encoder_.use(chain_.parts());
+  if (!imu_channel_.empty()) imu_encoder_.emplace(facts.temperature_channel);
 }
 
 FilterStage::~FilterStage() {
@@ -90,6 +92,8 @@ void FilterStage::process(const Increment& in) noexcept {
   const ChainParts& parts = chain_.parts();
   const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
   if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
+  if (imu_encoder_ && !publisher_->publish(imu_channel_.c_str(), imu_encoder_->encode(in, out_)))
+    counters_.imu_failures.add(1);
   counters_.device_samples.add(in.samples);
   counters_.merged.add(in.samples - 1);
   if (sent) {

@@ -16,6 +16,7 @@
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/processor_share.h"
+#include "daemon/publish/imu_encoder.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
 #include "drivers/transport/counter.h"
@@ -49,16 +50,17 @@ struct FilterSnapshot {
 
 struct FilterCounters {
   Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
-  Counter corrections_refused, merged;
+  Counter corrections_refused, merged, imu_failures;
   Counter stood_back;  // times it had used its share of a processor, see ProcessorShare
 };
 
 class FilterStage {
  public:
   // measure_latency: false where arrival times are not of today (a log read at its own pace).
+  // imu_channel: of imu_t, empty: none is sent.
   FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-              std::unique_ptr<Publisher> publisher, IncrementQueue& queue, const SharedBooks& reader_books,
-              EventQueue& events, bool measure_latency);
+              std::string imu_channel, std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
+              const SharedBooks& reader_books, EventQueue& events, bool measure_latency);
   ~FilterStage();
 
   // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
@@ -89,7 +91,8 @@ class FilterStage {
   SensorFacts facts_;
   SignalChain chain_;
   RateEncoder encoder_;
-  std::string channel_;
+  std::optional<ImuEncoder> imu_encoder_;
+  std::string channel_, imu_channel_;
   std::unique_ptr<Publisher> publisher_;
   IncrementQueue& queue_;
   const SharedBooks& reader_books_;

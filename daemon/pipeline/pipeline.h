@@ -14,6 +14,7 @@ namespace ifog {
 
 struct PipelinePlan {
   std::string lcm_channel;  // of rate_t
+  std::string imu_channel;  // of imu_t; empty: none is sent
   SensorFacts facts;
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;

@@ -3,33 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "daemon/publish/message_flags.h"
+
 namespace ifog {
 namespace {
 
 constexpr std::size_t kLongestIdentity = 64;
-
-std::int32_t flags(const Increment& in, const ChainOutput& out) noexcept {
-  std::int32_t flags = 0;
-  const auto pass = [&flags](std::uint32_t set, std::uint32_t bit, std::int32_t flag) {
-    if ((set & bit) != 0) flags |= flag;
-  };
-  pass(in.flags, kGapBefore, rate_t::FLAG_GAP);
-  pass(in.flags, kMerged, rate_t::FLAG_MERGED);
-  pass(in.flags, kInvalid, rate_t::FLAG_INVALID);
-  pass(in.flags, kClockStep, rate_t::FLAG_CLOCK_STEP);
-  pass(in.flags, kAtFullScale, rate_t::FLAG_SATURATED);
-  pass(out.compensator_flags, kStaleChannel | kNoChannelYet, rate_t::FLAG_STALE_CHANNEL);
-  pass(out.compensator_flags, kOutOfRange, rate_t::FLAG_OUT_OF_RANGE);
-  pass(out.flags, kNoiseUnknown, rate_t::FLAG_NOISE_UNKNOWN);
-  pass(out.flags, kFilterReset, rate_t::FLAG_FILTER_RESET);
-  pass(out.flags, kNotCompensated, rate_t::FLAG_NOT_COMPENSATED);
-  pass(out.estimate.flags, kGated, rate_t::FLAG_GATED);
-  pass(out.estimate.flags, kManoeuvre, rate_t::FLAG_MANOEUVRE);
-  pass(out.estimate.flags, kRestarted, rate_t::FLAG_FILTER_RESET);
-  pass(out.estimate.flags, kStuck, rate_t::FLAG_STUCK);
-  pass(out.estimate.flags, kAtRest, rate_t::FLAG_AT_REST);
-  return flags;
-}
 
 }  // namespace
 
@@ -56,7 +35,7 @@ std::span<const std::uint8_t> RateEncoder::encode(const Increment& in, const Cha
   message_.arrival_ns = in.arrival_ns != 0 ? in.arrival_ns + in.wall_shift_ns : 0;
   message_.dt = in.dt_s;
   message_.merged = static_cast<std::int32_t>(in.samples);
-  message_.flags = flags(in, out);
+  message_.flags = message_flags(in, out);
   message_.status = static_cast<std::int32_t>(in.status);
   const auto copy = [n = message_.raw.size()](const Axes& from, std::vector<double>& to) {
     std::copy_n(from.begin(), n, to.begin());

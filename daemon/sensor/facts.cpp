@@ -1,8 +1,10 @@
 #include "daemon/sensor/facts.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "filters/chain/plausibility.h"
 
@@ -27,6 +29,13 @@ SensorFacts sensor_facts(const ifog_description& description, double nominal_rat
   std::copy_n(description.full_scale, kMaxAxes, facts.full_scale_radps.begin());
   facts.frame_channels = static_cast<int>(description.environments);
   facts.channels = facts.frame_channels + outside_channels;
+  constexpr std::array<std::string_view, kMaxAxes> kAccelerations{"accel_x_mps2", "accel_y_mps2",
+                                                                  "accel_z_mps2"};
+  for (int c = 0; c < facts.frame_channels; ++c)
+    for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
+      if (kAccelerations[axis] == description.environment[c]) facts.acceleration_channel[axis] = c;
+  for (int c = facts.frame_channels - 1; c >= 0; --c)
+    if (std::string_view(description.environment[c]).ends_with("_degC")) facts.temperature_channel = c;
   if (facts.channels > kMaxChannels)
     throw std::runtime_error(std::to_string(facts.channels) + " channels, expected at most " +
                              std::to_string(kMaxChannels));

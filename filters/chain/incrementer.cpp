@@ -41,6 +41,8 @@ void merge(Increment& into, const Increment& later) noexcept {
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
     sum.delta_theta_rad[i] = into.delta_theta_rad[i] + later.delta_theta_rad[i];
     sum.covered_s[i] = into.covered_s[i] + later.covered_s[i];
+    sum.delta_v_mps[i] = into.delta_v_mps[i] + later.delta_v_mps[i];
+    sum.moved_s[i] = into.moved_s[i] + later.moved_s[i];
     sum.rate_radps[i] = sum.covered_s[i] > 0.0 ? sum.delta_theta_rad[i] / sum.covered_s[i] : kNaN;
   }
   into = sum;
@@ -208,7 +210,7 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
   counts_.implausible += implausible ? 1 : 0;
 }
 
-void Incrementer::hold_channels(const Reading& reading, Increment& out) noexcept {
+void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept {
   for (int i = 0; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
     if (i >= facts_.frame_channels) {
@@ -224,6 +226,14 @@ void Incrementer::hold_channels(const Reading& reading, Increment& out) noexcept
       if (fresh) ++counts_.channel_implausible;
       channel_age_s_[c] += static_cast<float>(out.dt_s);
     }
+  }
+  // As with a rate: a gap's time is not this sample's, and a value that is held is none that was measured.
+  const double own_s = out.dt_s / static_cast<double>(samples);
+  for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+    const int c = facts_.acceleration_channel[axis];
+    const bool measured = c >= 0 && channel_age_s_[static_cast<std::size_t>(c)] == 0.0F;
+    out.delta_v_mps[axis] = measured ? channel_[static_cast<std::size_t>(c)] * own_s : 0.0;
+    out.moved_s[axis] = measured ? own_s : 0.0;
   }
   out.channel = channel_;
   out.channel_age_s = channel_age_s_;
@@ -275,7 +285,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     counted_s_ += now.dt_s;
   }
   measure(reading, now, out);
-  hold_channels(reading, out);
+  hold_channels(reading, now.samples, out);
   ++counts_.samples;
   last_ = reading;
   started_ = true;

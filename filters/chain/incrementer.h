@@ -58,7 +58,7 @@ class Incrementer {
   [[nodiscard]] Step step_by_clock(const Reading& reading, double elapsed_s) const noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading, double elapsed_s) const noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
-  void hold_channels(const Reading& reading, Increment& out) noexcept;
+  void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
   [[nodiscard]] Verdict turn(std::size_t axis, double value, double own_s, Turn& out) noexcept;
 
   SensorFacts facts_;

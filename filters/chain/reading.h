@@ -38,7 +38,10 @@ struct SensorFacts {
   int channels = 0;                    // all of them, ≤ kMaxChannels
   std::array<double, kMaxAxes> full_scale_radps{};  // rates at or beyond it are not measured; 0: not known
   Limits rate;                                      // of every axis, rad/s
-  std::array<Limits, kMaxChannels> channel;         // of the channels of the sensor's own frames
+  // Frame channels that are the specific force along x, y, z in m/s²; -1: there is none.
+  std::array<int, kMaxAxes> acceleration_channel{-1, -1, -1};
+  int temperature_channel = -1;              // likewise, the first in °C
+  std::array<Limits, kMaxChannels> channel;  // of the channels of the sensor's own frames
 };
 
 // One sample as decoded.
@@ -77,6 +80,8 @@ struct Increment {
   Axes delta_theta_rad{};      // only what the device sent: a gap adds nothing
   Axes covered_s{};            // time delta_theta covers: dt less gap and invalid samples
   Axes rate_radps{};           // delta_theta / covered; NaN where the axis is not valid
+  Axes delta_v_mps{};          // specific force times time, of x, y, z where the frames have it
+  Axes moved_s{};              // time delta_v covers
   std::uint32_t valid_axes = 0;
   std::uint32_t status = 0;
   std::uint32_t flags = 0;

@@ -38,6 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const bool hashed = (data[0] & 1U) != 0;
   attempt<ifog::channel_t>(data + 1, size - 1, hashed);
+  attempt<ifog::imu_t>(data + 1, size - 1, hashed);
   attempt<ifog::rate_t>(data + 1, size - 1, hashed);
   attempt<ifog::status_t>(data + 1, size - 1, hashed);
   return 0;

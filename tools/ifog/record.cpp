@@ -15,6 +15,7 @@
 
 #include "drivers/flight/archive.h"
 #include "drivers/transport/clock.h"
+#include "msgs/channel_name.h"
 #include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/captures/lcm_loss.h"
 #include "tools/ifog/commands.h"
@@ -96,7 +97,7 @@ void LcmRecorder::take(const lcm_recv_buf_t& buffer, const std::string& channel)
   }
   if (lost_here_ > 0) add_lost(std::exchange(lost_here_, 0), std::exchange(lost_here_bytes_, 0));
   rate_t rate{};
-  if (channel.starts_with("IFOG_") && !channel.ends_with("_STATUS") &&
+  if (channel_name(channel).content == ChannelContent::rate &&
       decode_message(buffer.data, buffer.data_size, rate))
     if (const std::int64_t missing = ways_[channel].take(rate); missing > 0)
       add_lost(static_cast<std::uint64_t>(missing), 0);

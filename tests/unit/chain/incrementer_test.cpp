@@ -231,6 +231,36 @@ TEST(Incrementer, FrameChannelsAreHeldAndAge) {
   EXPECT_NEAR(increment.channel_age_s[0], 0.01, 1e-7);
 }
 
+// Specific force times the time it was measured over: nothing for what is missing, and nothing that is held.
+TEST(Incrementer, VelocityIsWhatWasMeasured) {
+  SensorFacts facts = counting_rate_sensor();
+  facts.frame_channels = facts.channels = 2;
+  facts.acceleration_channel = {-1, 1, -1};
+  Incrementer incrementer(facts);
+  Increment increment, sum;
+  const auto next = [&](std::uint64_t n, double acceleration, bool fresh) {
+    Reading reading = sample(n, 1.0);
+    reading.channel[1] = acceleration;
+    reading.fresh_channels = fresh ? 2 : 0;
+    ASSERT_TRUE(incrementer.next(reading, increment));
+    n == 0 ? sum = increment : (merge(sum, increment), sum);
+  };
+  next(0, 2.0, true);
+  EXPECT_NEAR(increment.delta_v_mps[1], 2e-3, 1e-18);
+  EXPECT_EQ(increment.delta_v_mps[0], 0.0);
+  EXPECT_EQ(increment.moved_s[0], 0.0);
+  next(1, 99.0, false);
+  EXPECT_EQ(increment.delta_v_mps[1], 0.0);
+  EXPECT_EQ(increment.moved_s[1], 0.0);
+  next(5, 4.0, true);  // three are missing
+  EXPECT_NEAR(increment.delta_v_mps[1], 4e-3, 1e-15);
+  EXPECT_NEAR(increment.moved_s[1], 1e-3, 1e-15);
+  next(6, std::numeric_limits<double>::infinity(), true);
+  EXPECT_EQ(increment.delta_v_mps[1], 0.0);
+  EXPECT_NEAR(sum.delta_v_mps[1], 6e-3, 1e-15);
+  EXPECT_NEAR(sum.moved_s[1], 2e-3, 1e-15);
+}
+
 TEST(Merge, AddsAnglesTimesAndCounts) {
   Incrementer incrementer(counting_rate_sensor());
   Increment sum, next;

@@ -53,6 +53,7 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   PipelinePlan plan;
   plan.tape = &tape;
   plan.lcm_channel = "IFOG_TEST";
+  plan.imu_channel = "IFOG_TEST_IMU";
   plan.facts = sensor_facts(driver.description(), 1000.0, 0);
   plan.reader.name = "read";
   plan.filter.name = "filter";
@@ -96,6 +97,7 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   EXPECT_TRUE(answered);
   EXPECT_GT(tape.counters().deliveries.value(), to - from);
   EXPECT_EQ(pipeline.filter().counters().lcm_failures.value(), 0U);
+  EXPECT_EQ(pipeline.filter().counters().imu_failures.value(), 0U);
 }
 
 }  // namespace

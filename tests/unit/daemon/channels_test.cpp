@@ -121,6 +121,7 @@ void attack(const Message& message, const std::vector<std::string>& fields) {
 TEST(DecodeMessage, NoLieInAMessageEndsTheProgram) {
   attack(channel("hull_degC", 21.5), {"hull_degC"});
   attack(rate(), {"raw[0]", "denoised[1]"});
+  attack(imu_t{}, {"raw[0]"});
   attack(status(), {"channel_value[supply_V]", "nis_mean[0]", "latency_p99_us", "hull_degC"});
   status_t with_allan = status();
   with_allan.octaves = 3;

@@ -158,11 +158,13 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
        "f.toml:8: sensor.channel.source: missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\""},
       {"[[sensor]]\nname = \"NOSE\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
-       "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE or IFOG_NOSE_STATUS already"},
+       "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE already"},
       {"[[sensor]]\nname = \"nose_status\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
-       "f.toml:9: sensor.name = 'nose_status': another sensor publishes on IFOG_NOSE_STATUS or "
-       "IFOG_NOSE_STATUS_STATUS already"},
+       "f.toml:9: sensor.name = 'nose_status': another sensor publishes on IFOG_NOSE_STATUS already"},
+      {"[[sensor]]\nname = \"nose_imu\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
+       "\"can0\"\n",
+       "f.toml:9: sensor.name = 'nose_imu': another sensor publishes on IFOG_NOSE_IMU already"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nminimum = 5.0\nmaximum = 5.0\n",
        "f.toml:12: sensor.channel.maximum: not above minimum; expected minimum < maximum"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nmax_step = -1.0\n",
@@ -221,13 +223,14 @@ TEST(Config, SaysWhatIsWrongWithANetworkSensor) {
 
 TEST(Config, GathersAllErrors) {
   const std::string all = complaint("[[sensor]]\nname = \"a b\"\nmodle = \"x\"\n");
-  EXPECT_EQ(all,
-            "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
-            "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
-            "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
-            "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, "
-            "max_step, maximum, "
-            "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, record, transport");
+  EXPECT_EQ(
+      all,
+      "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
+      "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
+      "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
+      "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, imu, "
+      "max_step, maximum, "
+      "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, record, transport");
 }
 
 TEST(Config, NothingToDoIsAnError) {

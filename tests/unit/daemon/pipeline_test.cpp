@@ -67,6 +67,35 @@ TEST(Pipeline, AFilterThatCannotKeepUpLosesNoAngle) {
   EXPECT_NEAR(messages.back().angle[0], sent_angle(kCount), 1e-13);
 }
 
+// Increments for an inertial navigation: the sums of both are exact over merged samples. Accelerations travel
+// as float32 in units of the standard gravity (the maker's format).
+TEST(Pipeline, IncrementsOfAngleAndVelocityAddUpOverOverflow) {
+  constexpr int kCount = 20'000;
+  constexpr double kGravity = 9.80665;
+  Rig rig(frames(kCount), kFrame, false, 16, 50us, false);
+  rig.run_to_the_end();
+  const std::vector<imu_t> increments = rig.publisher->increments();
+  const std::vector<rate_t> rates = rig.publisher->messages();
+  ASSERT_EQ(increments.size(), rates.size());
+  double velocity = 0.0, angle = 0.0, moved_s = 0.0, sent = 0.0;
+  for (std::size_t i = 0; i < increments.size(); ++i) {
+    const imu_t& each = increments[i];
+    ASSERT_EQ(each.seq, rates[i].seq);
+    ASSERT_EQ(each.flags, rates[i].flags);
+    ASSERT_EQ(each.utime, rates[i].utime);
+    velocity += each.delta_v[2];
+    angle += each.delta_theta[0];
+    moved_s += each.moved_s[2];
+  }
+  for (int n = 0; n < kCount; ++n)
+    sent += static_cast<double>(static_cast<float>(temperature_of(n) / kGravity)) * kGravity * 1e-3;
+  EXPECT_GT(rig.pipeline->queue().merged(), 0U);
+  EXPECT_NEAR(velocity, sent, 1e-9);
+  EXPECT_NEAR(angle, sent_angle(kCount), 1e-13);
+  EXPECT_NEAR(moved_s, kCount * 1e-3, 1e-9);
+  EXPECT_NEAR(increments.back().temperature_degC, temperature_of(kCount - 1), 1e-9);
+}
+
 // Each step takes longer than a sample: whenever the reader has done two itself it leaves the work to the
 // filter thread for 16 deliveries, 32, 64 …, so that in 3000 it is held up a dozen times and no more.
 TEST(Pipeline, AFilterThatIsSlowIsLeftToItsThread) {

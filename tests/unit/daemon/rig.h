@@ -2,6 +2,7 @@
 // all.
 #pragma once
 
+#include <ifog/decode.h>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -61,6 +62,13 @@ class KeepingPublisher final : public Publisher {
  public:
   explicit KeepingPublisher(std::chrono::microseconds pause = std::chrono::microseconds(0)) : pause_(pause) {}
   bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
+    if (std::string_view(channel) == "IFOG_TEST_IMU") {
+      imu_t increment{};
+      const bool whole = decode_message(message, increment);
+      const std::lock_guard lock(mutex_);
+      if (whole) increments_.push_back(increment);
+      return whole;
+    }
     rate_t decoded{};
     const bool good = decoded.decode(message.data(), 0, static_cast<int>(message.size())) > 0;
     const std::lock_guard lock(mutex_);
@@ -72,11 +80,16 @@ class KeepingPublisher final : public Publisher {
     const std::lock_guard lock(mutex_);
     return messages_;
   }
+  std::vector<imu_t> increments() {
+    const std::lock_guard lock(mutex_);
+    return increments_;
+  }
 
  private:
   std::chrono::microseconds pause_;
   std::mutex mutex_;
   std::vector<rate_t> messages_;
+  std::vector<imu_t> increments_;
 };
 
 inline double rate_of(int n) { return 0.01 + 1e-4 * std::sin(0.01 * n); }
@@ -106,6 +119,7 @@ struct Rig {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
     plan.lcm_channel = "IFOG_TEST";
+    plan.imu_channel = "IFOG_TEST_IMU";
     plan.facts = sensor_facts(driver.description(), 1000.0, 0);
     plan.ring_slots = slots;
     plan.direct = direct;

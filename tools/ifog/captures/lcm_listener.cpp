@@ -28,7 +28,7 @@ void LcmListener::listen_to_sensor(const std::string& name) {
   std::string upper = name;
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  listen_to(upper.empty() ? "IFOG_.*" : "IFOG_" + upper + "(_STATUS)?");
+  listen_to(upper.empty() ? "IFOG_.*" : "IFOG_" + upper + "(_STATUS|_IMU)?");
 }
 
 int LcmListener::descriptor() const { return lcm_get_fileno(lcm_); }

@@ -17,6 +17,7 @@
 
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "msgs/channel_name.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
 #include "tools/ifog/console/say.h"
@@ -25,7 +26,7 @@ namespace ifog::tools {
 namespace {
 
 bool carries_rates(const std::string& channel) {
-  return channel.starts_with("IFOG_") && !channel.ends_with("_STATUS");
+  return channel_name(channel).content == ChannelContent::rate;
 }
 
 // LCM reads a log by its name and from any place in it. One that comes packed, through a pipe or as a flight

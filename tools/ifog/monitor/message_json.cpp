@@ -86,6 +86,7 @@ std::string message_json(std::string_view sensor, const status_t& message) {
   out["can_error_frames"] = message.can_error_frames;
   out["reopened"] = message.reopened;
   out["lcm_failures"] = message.lcm_failures;
+  out["imu_failures"] = message.imu_failures;
   out["invalid_samples"] = message.invalid_samples;
   out["saturated_samples"] = message.saturated_samples;
   out["implausible_samples"] = message.implausible_samples;
@@ -119,6 +120,24 @@ std::string message_json(std::string_view sensor, const status_t& message) {
   out["channel_age_s"] = message.channel_age_s;
   out["allan_tau0_s"] = message.allan_tau0_s;
   out["allan_rate_radps"] = message.allan_rate_radps;
+  return line(out);
+}
+
+std::string message_json(std::string_view sensor, const imu_t& message) {
+  ordered_json out{{"type", "imu"}, {"sensor", sensor}};
+  out["utime"] = message.utime;
+  out["seq"] = message.seq;
+  out["sensor_time_ns"] = message.sensor_time_ns;
+  out["dt"] = message.dt;
+  out["merged"] = message.merged;
+  out["flags"] = message.flags;
+  out["flag_words"] = flag_words(message.flags);
+  out["status"] = message.status;
+  out["delta_theta"] = message.delta_theta;
+  out["turned_s"] = message.turned_s;
+  out["delta_v"] = message.delta_v;
+  out["moved_s"] = message.moved_s;
+  out["temperature_degC"] = message.temperature_degC;
   return line(out);
 }
 

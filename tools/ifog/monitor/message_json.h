@@ -2,6 +2,7 @@
 // number is null.
 #pragma once
 
+#include <ifog/imu_t.hpp>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
 #include <string>
@@ -9,8 +10,9 @@
 
 namespace ifog::tools {
 
-// "sensor" is the channel's name without IFOG_, "type" "rate" or "status". No line end.
+// "sensor" is the channel's name without IFOG_, "type" "rate", "status" or "imu". No line end.
 std::string message_json(std::string_view sensor, const rate_t& message);
 std::string message_json(std::string_view sensor, const status_t& message);
+std::string message_json(std::string_view sensor, const imu_t& message);
 
 }  // namespace ifog::tools

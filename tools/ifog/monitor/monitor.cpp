@@ -16,11 +16,13 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
+#include "msgs/channel_name.h"
 #include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
@@ -98,15 +100,16 @@ void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name
   }
   last_heard_ = Clock::now();
   if (json_) json_->write(message_json(name, message) + "\n");
-  sensors_[name].take(std::move(message));
+  // Increments are for programs: people see the same turn in the rates.
+  if constexpr (!std::is_same_v<Message, imu_t>) sensors_[name].take(std::move(message));
 }
 
 void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
-  constexpr std::string_view kPrefix = "IFOG_", kStatus = "_STATUS";
-  std::string name = channel.substr(kPrefix.size());
-  if (!name.ends_with(kStatus)) return take_message<rate_t>(buffer, name);
-  name.resize(name.size() - kStatus.size());
-  take_message<status_t>(buffer, name);
+  const auto [content, sensor] = channel_name(channel);
+  const std::string name(sensor);
+  if (content == ChannelContent::rate) take_message<rate_t>(buffer, name);
+  if (content == ChannelContent::status) take_message<status_t>(buffer, name);
+  if (content == ChannelContent::imu) take_message<imu_t>(buffer, name);
 }
 
 std::string Monitor::waiting() const {

@@ -77,6 +77,7 @@ std::vector<SensorView::Count> SensorView::all_losses() const {
           {"samples incomplete", s.samples_incomplete},
           {"merged", s.samples_merged},
           {"not sent", s.lcm_failures},
+          {"increments not sent", s.imu_failures},
           {"kernel drops", s.kernel_drops},
           {"channel messages dropped", s.channel_drops},
           {"line errors", s.can_error_frames},

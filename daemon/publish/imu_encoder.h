@@ -1,0 +1,27 @@
+// From the chain's output to the bytes of an ifog.imu_t, in a buffer of its own, without allocation.
+#pragma once
+
+#include <cstdint>
+#include <ifog/imu_t.hpp>
+#include <span>
+#include <vector>
+
+#include "filters/chain/signal_chain.h"
+
+namespace ifog {
+
+class ImuEncoder {
+ public:
+  // `temperature_channel`: of the sensor's frames, in °C; -1: none.
+  explicit ImuEncoder(int temperature_channel);
+
+  // Valid until the next call.
+  std::span<const std::uint8_t> encode(const Increment& in, const ChainOutput& out) noexcept;
+
+ private:
+  ifog::imu_t message_;
+  int temperature_channel_;
+  std::vector<std::uint8_t> buffer_;
+};
+
+}  // namespace ifog

@@ -1,0 +1,32 @@
+// The LCM channels of a sensor: rates on IFOG_<NAME>, health and increments on that with an ending. The one
+// home of this rule.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace ifog {
+
+enum class ChannelContent { rate, status, imu, foreign };
+
+struct ChannelName {
+  ChannelContent content = ChannelContent::foreign;
+  std::string_view sensor;  // in capitals
+};
+
+inline constexpr std::string_view kChannelPrefix = "IFOG_", kStatusEnding = "_STATUS", kImuEnding = "_IMU";
+
+// What a channel of this name carries when it is the daemon's.
+inline ChannelName channel_name(std::string_view channel) {
+  if (!channel.starts_with(kChannelPrefix)) return {};
+  channel.remove_prefix(kChannelPrefix.size());
+  constexpr std::array kEndings{std::pair{kStatusEnding, ChannelContent::status},
+                                std::pair{kImuEnding, ChannelContent::imu}};
+  for (const auto& [ending, content] : kEndings)
+    if (channel.size() > ending.size() && channel.ends_with(ending))
+      return {content, channel.substr(0, channel.size() - ending.size())};
+  return {ChannelContent::rate, channel};
+}
+
+}  // namespace ifog
