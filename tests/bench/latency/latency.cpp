@@ -245,6 +245,35 @@ void print(const char* name, const std::vector<double>& l, double cpu_us, std::s
               percentile(l, 0.999), l.empty() ? 0.0 : l.back(), cpu_us, lost);
 }
 
+void report(const Plan& plan, std::size_t size, const Result& bare, const Result& daemon,
+            const Result& recording) {
+  std::printf(
+      "%d sensor(s) at %g Hz, %d interleaved rounds of %g s, processors %s, filter %s%s, messages of %zu "
+      "bytes\n",
+      plan.sensors, plan.rate_hz, plan.rounds, plan.seconds, plan.place.c_str(), plan.rule.c_str(),
+      plan.spin          ? ", spinning"
+      : plan.two_threads ? ", two threads"
+                         : "",
+      size);
+  std::printf("%-10s %8s %8s %8s %9s %12s %6s\n", "us", "p50", "p99", "p99.9", "max", "CPU/sample", "lost");
+  print("bare loop", bare.latency_us, bare.cpu_us, bare.lost);
+  print("daemon", daemon.latency_us, daemon.cpu_us, daemon.lost);
+  std::printf("%-10s %8.2f %8.2f %8.2f %9s %12.2f\n", "ratio",
+              percentile(daemon.latency_us, 0.5) / percentile(bare.latency_us, 0.5),
+              percentile(daemon.latency_us, 0.99) / percentile(bare.latency_us, 0.99),
+              percentile(daemon.latency_us, 0.999) / percentile(bare.latency_us, 0.999), "",
+              daemon.cpu_us / bare.cpu_us);
+  if (plan.record) {
+    print("recording", recording.latency_us, recording.cpu_us, recording.lost);
+    std::printf(
+        "%-10s %8.2f %8.2f %8.2f %9s %12.2f   of the daemon without it; %llu deliveries not recorded\n",
+        "ratio", percentile(recording.latency_us, 0.5) / percentile(daemon.latency_us, 0.5),
+        percentile(recording.latency_us, 0.99) / percentile(daemon.latency_us, 0.99),
+        percentile(recording.latency_us, 0.999) / percentile(daemon.latency_us, 0.999), "",
+        recording.cpu_us / daemon.cpu_us, static_cast<unsigned long long>(recording.unrecorded));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -285,31 +314,7 @@ int main(int argc, char** argv) {
   }
   for (Result* const result : {&bare, &daemon, &recording})
     std::sort(result->latency_us.begin(), result->latency_us.end());
-  std::printf(
-      "%d sensor(s) at %g Hz, %d interleaved rounds of %g s, processors %s, filter %s%s, messages of %zu "
-      "bytes\n",
-      plan.sensors, plan.rate_hz, plan.rounds, plan.seconds, plan.place.c_str(), plan.rule.c_str(),
-      plan.spin          ? ", spinning"
-      : plan.two_threads ? ", two threads"
-                         : "",
-      size);
-  std::printf("%-10s %8s %8s %8s %9s %12s %6s\n", "us", "p50", "p99", "p99.9", "max", "CPU/sample", "lost");
-  print("bare loop", bare.latency_us, bare.cpu_us, bare.lost);
-  print("daemon", daemon.latency_us, daemon.cpu_us, daemon.lost);
-  std::printf("%-10s %8.2f %8.2f %8.2f %9s %12.2f\n", "ratio",
-              percentile(daemon.latency_us, 0.5) / percentile(bare.latency_us, 0.5),
-              percentile(daemon.latency_us, 0.99) / percentile(bare.latency_us, 0.99),
-              percentile(daemon.latency_us, 0.999) / percentile(bare.latency_us, 0.999), "",
-              daemon.cpu_us / bare.cpu_us);
-  if (plan.record) {
-    print("recording", recording.latency_us, recording.cpu_us, recording.lost);
-    std::printf(
-        "%-10s %8.2f %8.2f %8.2f %9s %12.2f   of the daemon without it; %llu deliveries not recorded\n",
-        "ratio", percentile(recording.latency_us, 0.5) / percentile(daemon.latency_us, 0.5),
-        percentile(recording.latency_us, 0.99) / percentile(daemon.latency_us, 0.99),
-        percentile(recording.latency_us, 0.999) / percentile(daemon.latency_us, 0.999), "",
-        recording.cpu_us / daemon.cpu_us, static_cast<unsigned long long>(recording.unrecorded));
-  }
+  report(plan, size, bare, daemon, recording);
   std::filesystem::remove_all(folder);
   return 0;
 }

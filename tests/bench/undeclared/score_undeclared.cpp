@@ -57,11 +57,7 @@ Sensor sensor_at(const Options& o, int place, bool with_effect) {
   return draw_sensor(seed, kind, sigma, o.captures);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Options o;
-  CLI::App app{"score the diagnosis on undeclared effects"};
+void add_options(CLI::App& app, Options& o) {
   app.add_option("--with", o.with, "sensors with effects");
   app.add_option("--without", o.without, "sensors without");
   app.add_option("--captures", o.captures, "captures of each sensor, diagnosed together")
@@ -82,20 +78,35 @@ int main(int argc, char** argv) {
   app.add_option("--minutes", o.minutes,
                  "no new sensor after so long; the tables are of those scored by then");
   app.add_option("--only", o.only, "only the sensors of these seeds, as the list of failures gives them");
-  CLI11_PARSE(app, argc, argv);
+}
 
-  // With and without in turn, so that a run cut short has seen both.
-  struct Place {
-    int number;
-    bool with_effect;
-  };
+struct Place {
+  int number;
+  bool with_effect;
+};
+
+// With and without in turn, so that a run cut short has seen both.
+std::vector<Place> places_of(const Options& o) {
   std::vector<Place> places;
   for (int i = 0; i < std::max(o.with, o.without); ++i)
     for (const bool with_effect : {true, false})
       if (i < (with_effect ? o.with : o.without) && wanted(o, seed_at(o, i, with_effect)))
         places.push_back({i, with_effect});
+  return places;
+}
 
-  // Sensors are independent of each other; each score stands at its place, whichever thread makes it.
+Score score_at(const Options& o, const Place& place) {
+  const Sensor sensor = sensor_at(o, place.number, place.with_effect);
+  Diagnose method = o.method == "ifog"     ? project_diagnosis()
+                    : o.method == "oracle" ? oracle_diagnosis(sensor)
+                                           : blind_diagnosis();
+  if (!o.fault.empty()) method = logged_with(o.fault, method);
+  if (!o.structure.empty()) method = moved_by(o.structure, sensor, method);
+  return score(sensor, method);
+}
+
+// Sensors are independent of each other; each score stands at its place, whichever thread makes it.
+std::vector<std::optional<Score>> scored(const Options& o, const std::vector<Place>& places) {
   std::vector<std::optional<Score>> made(places.size());
   const auto start = std::chrono::steady_clock::now();
   const auto late = [&] {
@@ -107,13 +118,7 @@ int main(int argc, char** argv) {
     for (int job = 0; job < o.jobs; ++job)
       threads.emplace_back([&] {
         for (std::size_t i = next++; i < places.size() && !late(); i = next++) {
-          const Sensor sensor = sensor_at(o, places[i].number, places[i].with_effect);
-          Diagnose method = o.method == "ifog"     ? project_diagnosis()
-                            : o.method == "oracle" ? oracle_diagnosis(sensor)
-                                                   : blind_diagnosis();
-          if (!o.fault.empty()) method = logged_with(o.fault, method);
-          if (!o.structure.empty()) method = moved_by(o.structure, sensor, method);
-          made[i] = score(sensor, method);
+          made[i] = score_at(o, places[i]);
           if (++done % 50 == 0) std::fprintf(stderr, "%zu of %zu\n", done.load(), places.size());
           std::ostringstream wrong;
           print_failures(wrong, {*made[i]});
@@ -121,6 +126,18 @@ int main(int argc, char** argv) {
         }
       });
   }
+  return made;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CLI::App app{"score the diagnosis on undeclared effects"};
+  add_options(app, o);
+  CLI11_PARSE(app, argc, argv);
+  const std::vector<Place> places = places_of(o);
+  const std::vector<std::optional<Score>> made = scored(o, places);
   std::vector<Score> scores;
   for (const bool with_effect : {true, false})
     for (std::size_t i = 0; i < places.size(); ++i)

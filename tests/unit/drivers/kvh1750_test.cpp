@@ -290,29 +290,33 @@ class DamagedStream {
   std::mt19937 random_;
 };
 
+// What is there, by trying every position; damage can by chance leave a frame whole, so this may hold more
+// than what was put in undamaged.
+std::vector<Placed> present_in(const std::vector<std::uint8_t>& stream) {
+  std::vector<Placed> present;
+  for (std::size_t at = 0; at + 36 <= stream.size();) {
+    const std::uint8_t* p = stream.data() + at;
+    const std::size_t length = p[3] == 0x55 ? 36 : p[3] == 0x56 ? 40 : p[3] == 0x57 ? 38 : 0;
+    if (p[0] == 0xFE && p[1] == 0x81 && p[2] == 0xFF && length != 0 && at + length <= stream.size()) {
+      std::vector<std::uint8_t> body(p, p + length - 4);
+      append_crc(body);
+      if (std::equal(body.begin(), body.end(), p)) {
+        present.push_back({at + length, body});
+        at += length;
+        continue;
+      }
+    }
+    ++at;
+  }
+  return present;
+}
+
 TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStreamWithItsLastByte) {
   for (std::uint32_t seed = 1; seed <= 300; ++seed) {
     DamagedStream stream(seed);
     stream.build(60);
 
-    // What is there, by trying every position; damage can by chance leave a frame whole, so this may hold
-    // more than what was put in undamaged.
-    std::vector<Placed> present;
-    for (std::size_t at = 0; at + 36 <= stream.bytes.size();) {
-      const std::uint8_t* p = stream.bytes.data() + at;
-      const std::size_t length = p[3] == 0x55 ? 36 : p[3] == 0x56 ? 40 : p[3] == 0x57 ? 38 : 0;
-      if (p[0] == 0xFE && p[1] == 0x81 && p[2] == 0xFF && length != 0 && at + length <= stream.bytes.size()) {
-        std::vector<std::uint8_t> body(p, p + length - 4);
-        append_crc(body);
-        if (std::equal(body.begin(), body.end(), p)) {
-          present.push_back({at + length, body});
-          at += length;
-          continue;
-        }
-      }
-      ++at;
-    }
-
+    const std::vector<Placed> present = present_in(stream.bytes);
     ifog::kvh::FrameFinder finder;
     std::vector<Placed> found;
     std::size_t good_bytes = 0;

@@ -1,6 +1,9 @@
 #include "tools/ifog/monitor/message_json.h"
 
+#include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "msgs/flag_names.h"
 #include "msgs/state_name.h"
@@ -21,6 +24,64 @@ ordered_json flag_words(std::int32_t flags) {
     if ((flags & each.flag) != 0) out.push_back(each.name);
   return out;
 }
+
+constexpr std::array<std::pair<const char*, std::int64_t status_t::*>, 47> kCounts{
+    {{"samples_decoded", &status_t::samples_decoded},
+     {"samples_in", &status_t::samples_in},
+     {"samples_published", &status_t::samples_published},
+     {"samples_waiting", &status_t::samples_waiting},
+     {"bytes_read", &status_t::bytes_read},
+     {"bytes_framed", &status_t::bytes_framed},
+     {"bytes_pending", &status_t::bytes_pending},
+     {"frames_read", &status_t::frames_read},
+     {"frames_other", &status_t::frames_other},
+     {"frames_good", &status_t::frames_good},
+     {"frames_crc", &status_t::frames_crc},
+     {"frames_format", &status_t::frames_format},
+     {"log_faults", &status_t::log_faults},
+     {"bytes_skipped", &status_t::bytes_skipped},
+     {"frames_repeated", &status_t::frames_repeated},
+     {"samples_repeated", &status_t::samples_repeated},
+     {"samples_incomplete", &status_t::samples_incomplete},
+     {"sequence_gaps", &status_t::sequence_gaps},
+     {"sequence_missing", &status_t::sequence_missing},
+     {"ring_overflows", &status_t::ring_overflows},
+     {"samples_merged", &status_t::samples_merged},
+     {"kernel_drops", &status_t::kernel_drops},
+     {"stood_back", &status_t::stood_back},
+     {"transport_warnings", &status_t::transport_warnings},
+     {"can_error_frames", &status_t::can_error_frames},
+     {"reopened", &status_t::reopened},
+     {"lcm_failures", &status_t::lcm_failures},
+     {"imu_failures", &status_t::imu_failures},
+     {"invalid_samples", &status_t::invalid_samples},
+     {"saturated_samples", &status_t::saturated_samples},
+     {"implausible_samples", &status_t::implausible_samples},
+     {"channel_drops", &status_t::channel_drops},
+     {"channel_implausible", &status_t::channel_implausible},
+     {"gated", &status_t::gated},
+     {"channel_stale", &status_t::channel_stale},
+     {"out_of_range", &status_t::out_of_range},
+     {"corrections_refused", &status_t::corrections_refused},
+     {"events_lost", &status_t::events_lost},
+     {"record_deliveries", &status_t::record_deliveries},
+     {"record_lost", &status_t::record_lost},
+     {"record_lost_bytes", &status_t::record_lost_bytes},
+     {"record_file_bytes", &status_t::record_file_bytes},
+     {"record_removed", &status_t::record_removed},
+     {"floor_hits", &status_t::floor_hits},
+     {"manoeuvres", &status_t::manoeuvres},
+     {"divergences", &status_t::divergences},
+     {"filter_resets", &status_t::filter_resets}}};
+
+constexpr std::array<std::pair<const char*, double status_t::*>, 7> kFigures{
+    {{"input_rate_hz", &status_t::input_rate_hz},
+     {"output_rate_hz", &status_t::output_rate_hz},
+     {"clock_offset_ppm", &status_t::clock_offset_ppm},
+     {"latency_p50_us", &status_t::latency_p50_us},
+     {"latency_p99_us", &status_t::latency_p99_us},
+     {"latency_max_us", &status_t::latency_max_us},
+     {"allan_tau0_s", &status_t::allan_tau0_s}}};
 
 }  // namespace
 
@@ -59,66 +120,14 @@ std::string message_json(std::string_view sensor, const status_t& message) {
   out["state"] = message.state;
   out["state_name"] = state_name(message.state);
   out["fault"] = message.fault;
-  out["samples_decoded"] = message.samples_decoded;
-  out["samples_in"] = message.samples_in;
-  out["samples_published"] = message.samples_published;
-  out["samples_waiting"] = message.samples_waiting;
-  out["bytes_read"] = message.bytes_read;
-  out["bytes_framed"] = message.bytes_framed;
-  out["bytes_pending"] = message.bytes_pending;
-  out["frames_read"] = message.frames_read;
-  out["frames_other"] = message.frames_other;
-  out["frames_good"] = message.frames_good;
-  out["frames_crc"] = message.frames_crc;
-  out["frames_format"] = message.frames_format;
-  out["log_faults"] = message.log_faults;
-  out["bytes_skipped"] = message.bytes_skipped;
-  out["frames_repeated"] = message.frames_repeated;
-  out["samples_repeated"] = message.samples_repeated;
-  out["samples_incomplete"] = message.samples_incomplete;
-  out["sequence_gaps"] = message.sequence_gaps;
-  out["sequence_missing"] = message.sequence_missing;
-  out["ring_overflows"] = message.ring_overflows;
-  out["samples_merged"] = message.samples_merged;
-  out["kernel_drops"] = message.kernel_drops;
-  out["stood_back"] = message.stood_back;
-  out["transport_warnings"] = message.transport_warnings;
-  out["can_error_frames"] = message.can_error_frames;
-  out["reopened"] = message.reopened;
-  out["lcm_failures"] = message.lcm_failures;
-  out["imu_failures"] = message.imu_failures;
-  out["invalid_samples"] = message.invalid_samples;
-  out["saturated_samples"] = message.saturated_samples;
-  out["implausible_samples"] = message.implausible_samples;
-  out["channel_drops"] = message.channel_drops;
-  out["channel_implausible"] = message.channel_implausible;
-  out["gated"] = message.gated;
-  out["channel_stale"] = message.channel_stale;
-  out["out_of_range"] = message.out_of_range;
-  out["corrections_refused"] = message.corrections_refused;
-  out["events_lost"] = message.events_lost;
-  out["record_deliveries"] = message.record_deliveries;
-  out["record_lost"] = message.record_lost;
-  out["record_lost_bytes"] = message.record_lost_bytes;
-  out["record_file_bytes"] = message.record_file_bytes;
-  out["record_removed"] = message.record_removed;
-  out["input_rate_hz"] = message.input_rate_hz;
-  out["output_rate_hz"] = message.output_rate_hz;
-  out["clock_offset_ppm"] = message.clock_offset_ppm;
-  out["latency_p50_us"] = message.latency_p50_us;
-  out["latency_p99_us"] = message.latency_p99_us;
-  out["latency_max_us"] = message.latency_max_us;
+  for (const auto& [name, member] : kCounts) out[name] = message.*member;
+  for (const auto& [name, member] : kFigures) out[name] = message.*member;
   out["nis_mean"] = message.nis_mean;
   out["whiteness"] = message.whiteness;
   out["measurement_noise"] = message.measurement_noise;
-  out["floor_hits"] = message.floor_hits;
-  out["manoeuvres"] = message.manoeuvres;
-  out["divergences"] = message.divergences;
-  out["filter_resets"] = message.filter_resets;
   out["channel_name"] = message.channel_name;
   out["channel_value"] = message.channel_value;
   out["channel_age_s"] = message.channel_age_s;
-  out["allan_tau0_s"] = message.allan_tau0_s;
   out["allan_rate_radps"] = message.allan_rate_radps;
   return line(out);
 }
