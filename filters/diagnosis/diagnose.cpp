@@ -201,6 +201,7 @@ class Run {
     result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_);
     write_before_and_after(errors_, data_.grid.sample_s, result_);
     write_noise(records_, errors_, data_.grid, found_.noise, result_);
+    add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, result_.series);
     result_.heading = predict_like_longest(result_, records_);
   }
 

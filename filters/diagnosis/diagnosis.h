@@ -86,6 +86,8 @@ struct DiagnosisSeries {
       channel;  // by effect, at time_s; channel empty without one
   std::vector<double> frequency_hz, before_radps_rthz, after_radps_rthz;  // amplitude spectral density
   std::vector<double> tau_s, before_adev_radps, after_adev_radps;
+  // 68.3 % interval of the deviation after, under the noise found; NaN where none can be said.
+  std::vector<double> after_adev_low_radps, after_adev_high_radps;
 };
 
 struct Diagnosis {

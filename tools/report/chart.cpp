@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/report/plot_data.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {
@@ -179,6 +181,7 @@ std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double
     return "M" + fixed(px) + " " + fixed(f.top) + "V" + fixed(f.bottom);
   };
   const auto level = [&](double py) { return "M" + fixed(f.left) + " " + fixed(py) + "H" + fixed(f.right); };
+  out += "<g class=\"scale\">\n";
   std::string minor;
   for (const double v : sx.minor_ticks()) minor += upright(sx(v));
   for (const double v : sy.minor_ticks()) minor += level(sy(v));
@@ -193,6 +196,13 @@ std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double
     rule("grid", level(sy(v)));
     if (y_.numbered) out += words("tick", f.left - 7.0, sy(v) + 4.0, "end", sy.tick_text(v));
   }
+  for (const auto& [value, label] : marks_) {
+    if (!sx.drawable(value) || sx(value) < f.left || sx(value) > f.right) continue;
+    const bool flip = sx(value) > 0.8 * f.right;
+    rule("mark", upright(sx(value)));
+    out += words("tick", sx(value) + (flip ? -4.0 : 4.0), f.top + 12.0, flip ? "end" : "start", label);
+  }
+  out += "</g>\n";
   rule("frame", upright(f.left) + "H" + fixed(f.right));
   if (!x_.label.empty()) out += words("label", 0.5 * (f.left + f.right), height - 8.0, "middle", x_.label);
   const std::string middle = fixed(0.5 * (f.top + f.bottom));
@@ -200,12 +210,6 @@ std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double
     out += "<text class=\"label\" x=\"14\" y=\"" + middle +
            "\" text-anchor=\"middle\" transform=\"rotate(-90 14 " + middle + ")\">" + escaped(y_.label) +
            "</text>\n";
-  for (const auto& [value, label] : marks_) {
-    if (!sx.drawable(value) || sx(value) < f.left || sx(value) > f.right) continue;
-    const bool flip = sx(value) > 0.8 * f.right;
-    rule("mark", upright(sx(value)));
-    out += words("tick", sx(value) + (flip ? -4.0 : 4.0), f.top + 12.0, flip ? "end" : "start", label);
-  }
   return out;
 }
 
@@ -213,7 +217,7 @@ std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) cons
   const std::string box =
       fixed(f.left) + " " + fixed(f.top) + " " + fixed(f.right - f.left) + " " + fixed(f.bottom - f.top);
   // Axis limits that were asked for may cut a curve.
-  std::string out = "<svg x=\"" + fixed(f.left) + "\" y=\"" + fixed(f.top) + "\" width=\"" +
+  std::string out = "<svg class=\"curves\" x=\"" + fixed(f.left) + "\" y=\"" + fixed(f.top) + "\" width=\"" +
                     fixed(f.right - f.left) + "\" height=\"" + fixed(f.bottom - f.top) + "\" viewBox=\"" +
                     box + "\">";
   std::string named;  // over every curve
@@ -243,16 +247,57 @@ double Chart::left_margin(double height) const {
   return (y_.label.empty() ? 8.0 : 26.0) + (y_.numbered ? widest + 7.0 : 0.0);
 }
 
-std::string Chart::drawing(double width, double height, double left, bool headed) const {
-  const double right = width - kRight, heading = headed && !title_.empty() ? 20.0 : 4.0;
-  const Legend key = legend(left, right, heading);
+Chart::Frame Chart::frame(double width, double height, double left, bool headed, const Legend& key) const {
+  const double heading = headed && !title_.empty() ? 20.0 : 4.0;
   const double top = heading + (headed ? 6.0 : 13.0) + std::max(key.rows, headed ? 0.0 : 1.0) * kLegendRow;
   const double below = !x_.numbered ? 8.0 : x_.label.empty() ? 24.0 : 46.0;
-  const Frame frame{left, right, top, height - below};
-  const Scale sx(x_, bounds(true), frame.left, frame.right), sy(y_, bounds(false), frame.bottom, frame.top);
-  std::string out = axes(frame, sx, sy, height) + curves(frame, sx, sy) + key.svg;
+  return {left, width - kRight, top, height - below};
+}
+
+std::string Chart::drawing(double width, double height, double left, bool headed) const {
+  const Legend key = legend(left, width - kRight, headed && !title_.empty() ? 20.0 : 4.0);
+  const Frame f = frame(width, height, left, headed, key);
+  const Scale sx(x_, bounds(true), f.left, f.right), sy(y_, bounds(false), f.bottom, f.top);
+  std::string out = axes(f, sx, sy, height) + curves(f, sx, sy) + key.svg;
   if (headed && !title_.empty()) out += words("heading", left, 15.0, "start", title_);
   return out;
+}
+
+std::string Chart::plot_data(const Frame& f) const {
+  const Scale sx(x_, bounds(true), f.left, f.right), sy(y_, bounds(false), f.bottom, f.top);
+  nlohmann::json series = nlohmann::json::array();
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const Series& s = series_[i];
+    constexpr const char* kKinds[] = {"line", "points", "band", "guide"};
+    const char* const kind = kKinds[static_cast<std::size_t>(s.kind)];
+    nlohmann::json each{
+        {"kind", kind},
+        {"style", std::string(s.kind == Kind::points ? "dots" : kind) + " " + css_class(s.role)},
+        {"name", s.label}};
+    if (const Thinned fewer = thinned(s.x, s.y); s.kind != Kind::band && fewer.x.size() < s.x.size()) {
+      each["x"] = packed(fewer.x);
+      each["y"] = packed(fewer.y);
+      series.push_back(std::move(each));
+      continue;
+    }
+    each["y"] = packed(s.y);
+    const auto same = std::find_if(series_.begin(), series_.begin() + static_cast<std::ptrdiff_t>(i),
+                                   [&](const Series& other) { return other.x == s.x; });
+    if (same < series_.begin() + static_cast<std::ptrdiff_t>(i))
+      each["x"] = same - series_.begin();
+    else
+      each["x"] = packed(s.x);
+    if (s.kind == Kind::band) each["high"] = packed(s.high);
+    series.push_back(std::move(each));
+  }
+  const auto axis = [](const ChartAxis& a, const Scale& scale) {
+    return nlohmann::json{{"log", a.log}, {"low", scale.low()}, {"high", scale.high()}, {"label", a.label}};
+  };
+  return nlohmann::json{{"frame", {f.left, f.right, f.top, f.bottom}},
+                        {"x", axis(x_, sx)},
+                        {"y", axis(y_, sy)},
+                        {"series", series}}
+      .dump();
 }
 
 std::string Chart::panel(double width, double height, double left) const {
@@ -261,10 +306,13 @@ std::string Chart::panel(double width, double height, double left) const {
 
 std::string Chart::svg(double width, double height) const {
   if (empty()) return "";
-  return "<svg class=\"chart\" role=\"img\" viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
-         "\" preserveAspectRatio=\"xMidYMid meet\"><title>" + escaped(title_) + "</title><desc>" +
-         escaped(description_) + "</desc>\n" +
-         drawing(width, height, std::max(kLeft, left_margin(height)), false) + "</svg>\n";
+  const double left = std::max(kLeft, left_margin(height));
+  const Frame f = frame(width, height, left, false, legend(left, width - kRight, 4.0));
+  return "<div class=\"scroll\"><svg class=\"chart" + std::string(width < 600.0 ? " small" : "") +
+         "\" role=\"img\" viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
+         "\" preserveAspectRatio=\"xMidYMid meet\" data-plot=\"" + escaped(plot_data(f)) + "\"><title>" +
+         escaped(title_) + "</title><desc>" + escaped(description_) + "</desc>\n" +
+         drawing(width, height, left, false) + "</svg></div>\n";
 }
 
 }  // namespace ifog::report

@@ -1,5 +1,5 @@
 // One chart as SVG: crisp at any size, coloured by the style of the page or picture it stands in, readable by
-// a screen reader (title and description). Nothing is fetched and no script runs.
+// a screen reader (title and description). Nothing is fetched.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +36,7 @@ class Chart {
   void mark_x(double x, const std::string& label);  // a vertical rule
 
   [[nodiscard]] bool empty() const;  // nothing finite to draw
+  // For a page, with its numbers for that page's script.
   [[nodiscard]] std::string svg(double width = 720, double height = 320) const;
 
   // For a picture of several: the width that the numbers and the label of the y axis want, and the drawing
@@ -64,7 +65,9 @@ class Chart {
   [[nodiscard]] Legend legend(double left, double right, double top) const;
   [[nodiscard]] std::string axes(const Frame& f, const Scale& sx, const Scale& sy, double height) const;
   [[nodiscard]] std::string curves(const Frame& f, const Scale& sx, const Scale& sy) const;
+  [[nodiscard]] Frame frame(double width, double height, double left, bool headed, const Legend& key) const;
   [[nodiscard]] std::string drawing(double width, double height, double left, bool headed) const;
+  [[nodiscard]] std::string plot_data(const Frame& f) const;
 
   std::string title_, description_;
   ChartAxis x_, y_;

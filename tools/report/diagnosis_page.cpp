@@ -7,6 +7,7 @@
 #include "filters/units/field_units.h"
 #include "tools/report/account.h"
 #include "tools/report/chart.h"
+#include "tools/report/interaction.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"
 #include "tools/report/traced.h"
@@ -85,10 +86,13 @@ std::string allan_picture(const Diagnosis& d) {
   chart.line(Role::kBefore, "before", s.tau_s, scaled(s.before_adev_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty())
     chart.line(Role::kAfter, "after", s.tau_s, scaled(s.after_adev_radps, 1.0 / kDegreePerHour));
-  return figure_html(
-      chart.svg(),
-      "Allan deviation: what is left when the rate is averaged over τ. White noise falls by half a decade "
-      "a decade; a slope that ends or a hump is an error the averaging does not remove.");
+  if (s.after_adev_low_radps.size() == s.tau_s.size() && s.after_adev_high_radps.size() == s.tau_s.size())
+    chart.band(Role::kAfter, s.tau_s, scaled(s.after_adev_low_radps, 1.0 / kDegreePerHour),
+               scaled(s.after_adev_high_radps, 1.0 / kDegreePerHour));
+  return figure_html(chart.svg(),
+                     "Allan deviation, with the interval that holds the true one in 68 % of cases: what is "
+                     "left when the rate is averaged over τ. White noise falls by half a decade "
+                     "a decade; a slope that ends or a hump is an error the averaging does not remove.");
 }
 
 std::string traced_picture(const PageAxis& axis, std::size_t index) {
@@ -296,6 +300,27 @@ std::string applying(const Page& page) {
   return out;
 }
 
+// What would be asked for first if somebody doubted the page.
+std::string origin(const Page& page) {
+  std::string out;
+  if (!page.command.empty()) out += "<p>Made by</p>\n<pre>" + escaped(page.command) + "</pre>\n";
+  std::string rows;
+  for (const Page::Input& input : page.inputs) {
+    std::string said;
+    constexpr std::size_t kMostComments = 4;
+    for (std::size_t i = 0; i < std::min(kMostComments, input.comments.size()); ++i)
+      said += (said.empty() ? "" : "<br>") + escaped(input.comments[i]);
+    rows += "<tr><th scope=\"row\">" + escaped(input.name) + "</th><td>" + said + "</td><td><code>" +
+            escaped(input.sha256) + "</code></td></tr>\n";
+  }
+  if (rows.empty()) return out;
+  return out +
+         "<div class=\"scroll\"><table class=\"origin\"><caption>Captures</caption><thead><tr><th "
+         "scope=\"col\">file</th><th scope=\"col\">what it says of itself (sensor, serial number)</th><th "
+         "scope=\"col\">SHA-256, unpacked</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
 std::string axis_sections(const Page& page, const PageAxis& axis) {
   const Diagnosis& d = *axis.diagnosis;
   const std::string id = axis.axis.empty() ? "" : "-" + axis.axis;
@@ -331,7 +356,11 @@ std::string contents(const Page& page) {
                                       {"remaining", "What remains"}})
       out += std::string("<li><a href=\"#") + name + id + "\">" + words + of + "</a></li>\n";
   }
-  return out + "<li><a href=\"#apply\">Applying it</a></li>\n</ul></nav>\n";
+  return out + std::string("<li><a href=\"#apply\">Applying it</a></li>\n") +
+         (page.inputs.empty() && page.command.empty()
+              ? ""
+              : "<li><a href=\"#origin\">Where it comes from</a></li>\n") +
+         "</ul></nav>\n";
 }
 
 }  // namespace
@@ -355,9 +384,13 @@ std::string diagnosis_page(const Page& page) {
       "</h1>\n<p class=\"sub\">" + names + " · " + size + "</p>\n" + contents(page);
   for (const PageAxis& axis : page.axes) out += axis_sections(page, axis);
   out += section("apply", "Applying it", applying(page));
-  out += "<footer>Made " + escaped(page.made) +
-         ". Rates in °/h; the model file is in SI units. Standard errors are one "
-         "sigma.</footer>\n</main>\n</body>\n</html>\n";
+  out += section("origin", "Where it comes from", origin(page));
+  out +=
+      "<footer>Made " + escaped(page.made) +
+      ". Rates in °/h; the model file is in SI units. Standard errors are one "
+      "sigma. Under the pointer a picture shows its values; draw over a stretch to look closer, twice on it "
+      "for the whole; arrow keys, + and − do the same.</footer>\n</main>\n<script>" +
+      page_script() + "</script>\n</body>\n</html>\n";
   return out;
 }
 

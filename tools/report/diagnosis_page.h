@@ -1,5 +1,6 @@
-// The report of a diagnosis as one self-contained HTML page: inline SVG and CSS, nothing fetched, no script,
-// light and dark, fit for a screen reader and for paper.
+// The report of a diagnosis as one self-contained HTML page: inline SVG, CSS and a few lines of script
+// that show values and let one look closer; nothing fetched; light and dark, fit for a screen reader, a
+// telephone and paper.
 #pragma once
 
 #include <string>
@@ -21,6 +22,12 @@ struct Page {
   std::vector<PageAxis> axes;
   std::string model_path;  // that was written; "" when none
   std::string made;        // date and program version
+  std::string command;     // as it was typed; "" when not known
+  struct Input {
+    std::string name, sha256;           // of the file as unpacked; "" when not known
+    std::vector<std::string> comments;  // the file's own
+  };
+  std::vector<Input> inputs;
 };
 
 std::string diagnosis_page(const Page& page);

@@ -41,6 +41,10 @@ double Scale::operator()(double value) const {
   return from_ + ((log_ ? std::log10(value) : value) - low_) / (high_ - low_) * (to_ - from_);
 }
 
+double Scale::low() const { return log_ ? std::pow(10.0, low_) : low_; }
+
+double Scale::high() const { return log_ ? std::pow(10.0, high_) : high_; }
+
 bool Scale::drawable(double value) const { return std::isfinite(value) && (!log_ || value > 0.0); }
 
 bool Scale::inside(double exponent) const { return exponent >= low_ - 1e-9 && exponent <= high_ + 1e-9; }

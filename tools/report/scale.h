@@ -30,6 +30,9 @@ class Scale {
 
   [[nodiscard]] double operator()(double value) const;
   [[nodiscard]] bool drawable(double value) const;
+  // The ends of the axis, in data.
+  [[nodiscard]] double low() const;
+  [[nodiscard]] double high() const;
   // About so many: decades (with 2 and 5 when those are few), or steps of 1, 2, 5.
   [[nodiscard]] std::vector<double> ticks(int wanted) const;
   // Between the decades of a logarithmic axis: 2, 3, … 9; none on a linear one.

@@ -75,13 +75,20 @@ li{max-width:44rem}
 .tile span{color:var(--muted);font-size:.88rem}
 figure{margin:1.1rem 0;break-inside:avoid}
 figcaption{color:var(--muted);font-size:.9rem;margin-top:.3rem;max-width:46rem}
-svg.chart{display:block;width:100%;height:auto}
+svg.chart{display:block;width:100%;max-width:760px;min-width:34rem;height:auto;cursor:crosshair;touch-action:pan-x pan-y}
+.chart .cursor{stroke:var(--ink);stroke-width:1;fill:none;pointer-events:none}
+.chart .say{pointer-events:none}
+.chart .card{fill:var(--card);stroke:var(--rule)}
+.chart .shade{fill:var(--after);fill-opacity:.15;pointer-events:none}
+svg.chart.small{max-width:480px;min-width:26rem}
+svg.chart:focus{outline:2px solid var(--rule);outline-offset:2px}
 .pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}
 .scroll{overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:.94rem;font-variant-numeric:tabular-nums}
 caption{text-align:left;color:var(--muted);font-size:.9rem;padding-bottom:.3rem}
 th,td{padding:.35rem .7rem .35rem 0;text-align:left;border-bottom:1px solid var(--rule);vertical-align:top}
 td.n,th.n{text-align:right;white-space:nowrap}
+table.origin code{overflow-wrap:anywhere;font-size:.78rem}
 td.better{color:var(--good)}
 code,pre{font-family:ui-monospace,"DejaVu Sans Mono",Consolas,monospace;font-size:.88rem}
 pre{background:var(--card);padding:.8rem 1rem;border-radius:6px;overflow-x:auto;white-space:pre-wrap;overflow-wrap:anywhere}

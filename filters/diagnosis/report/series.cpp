@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "filters/allan/confidence.h"
 #include "filters/allan/gapped_deviation.h"
+#include "filters/allan/stretches.h"
 #include "filters/diagnosis/residual/lines.h"
 
 namespace ifog {
@@ -74,6 +76,25 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   series.before_adev_radps = gapped_deviation(first.before, counts);
   series.after_adev_radps = gapped_deviation(first.written, counts);
   return series;
+}
+
+void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise,
+                    DiagnosisSeries& series) {
+  constexpr double kOneSigma = 0.6826894921370859;
+  const auto squared = [](const std::optional<double>& value) { return value ? *value * *value : 0.0; };
+  const TermVariances terms{squared(noise.Q) / (sample_s * sample_s), squared(noise.N) / sample_s,
+                            squared(noise.B), squared(noise.K) * sample_s};
+  const std::vector<Stretch> whole = stretches({}, error.written, {});
+  if (whole.empty()) return;
+  const AngleSum sum(std::span<const double>(error.written), whole);
+  std::vector<std::size_t> counts;
+  for (const double tau : series.tau_s)
+    counts.push_back(static_cast<std::size_t>(std::lround(tau / sample_s)));
+  const std::vector<DeviationPoint> points = deviation(sum, counts);
+  for (const AllanInterval& each : allan_intervals(sum, Deviation::kAllan, points, terms, kOneSigma)) {
+    series.after_adev_low_radps.push_back(each.lower_radps);
+    series.after_adev_high_radps.push_back(each.upper_radps);
+  }
 }
 
 }  // namespace ifog

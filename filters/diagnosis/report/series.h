@@ -14,4 +14,8 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
                           const std::vector<Eigen::VectorXd>& parts);
 
+// How well the deviation after is known, under the noise that was found after it.
+void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise,
+                    DiagnosisSeries& series);
+
 }  // namespace ifog

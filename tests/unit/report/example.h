@@ -131,6 +131,8 @@ inline void make_series(DiagnosisSeries& s, const Example& e, const Parts& parts
   for (double tau = 0.05; tau < 400.0; tau *= 1.4) {
     s.tau_s.push_back(tau);
     s.after_adev_radps.push_back(1.34e-7 / std::sqrt(tau));
+    s.after_adev_low_radps.push_back(1.30e-7 / std::sqrt(tau));
+    s.after_adev_high_radps.push_back(1.38e-7 / std::sqrt(tau));
     s.before_adev_radps.push_back(std::hypot(1.34e-7 / std::sqrt(tau), 8e-10 * tau));
   }
 }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "drivers/ifog/driver.h"
 #include "tools/ifog/commands.h"
@@ -11,9 +12,27 @@
 #include "tools/ifog/console/usage_error.h"
 
 namespace ifog::tools {
+namespace {
+
+std::string typed;
+
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+std::string typed_command() { return typed; }
 
 int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
   prepare_standard_streams();
+  typed = "ifog";
+  for (int i = 1; i < argc; ++i) typed += " " + shell_word(argv[i]);
   CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
                "ifog"};
   app.require_subcommand(1);

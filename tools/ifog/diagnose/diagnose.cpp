@@ -19,6 +19,7 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -171,12 +172,15 @@ Model model_of(const std::vector<AxisDiagnosis>& found, const Arguments& argumen
 }
 
 void write_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
-                  const Arguments& arguments) {
+                  const Arguments& arguments, const std::vector<std::string>& hashes) {
   report::Page page;
   page.captures = arguments.captures;
   page.sensor = std::filesystem::path(arguments.captures.front()).filename().string();
   page.model_path = arguments.write_model;
   page.made = utc_now() + " by ifog " IFOG_VERSION;
+  page.command = typed_command();
+  for (std::size_t c = 0; c < captures.size(); ++c)
+    page.inputs.push_back({arguments.captures[c], hashes[c], captures[c].comments});
   const std::vector<std::string>& axes = captures.front().axes;
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
@@ -197,7 +201,8 @@ void run(const Arguments& arguments) {
   std::vector<std::string> hashes;  // for the model file, which says what it was found on
   for (const std::string& path : arguments.captures) {
     hashes.emplace_back();
-    captures.push_back(arguments.input.read(path, arguments.write_model.empty() ? nullptr : &hashes.back()));
+    const bool wanted = !arguments.write_model.empty() || !arguments.report.empty();
+    captures.push_back(arguments.input.read(path, wanted ? &hashes.back() : nullptr));
   }
   Model model;
   if (!arguments.model.empty()) {
@@ -213,7 +218,7 @@ void run(const Arguments& arguments) {
   if (!arguments.json.empty()) write_json(arguments.json, diagnosis_json(found));
   if (!arguments.write_model.empty())
     write_file(arguments.write_model, model_text(model_of(found, arguments, hashes, model)));
-  if (!arguments.report.empty()) write_report(captures, found, arguments);
+  if (!arguments.report.empty()) write_report(captures, found, arguments, hashes);
 }
 
 }  // namespace

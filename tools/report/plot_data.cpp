@@ -1,0 +1,48 @@
+#include "tools/report/plot_data.h"
+
+#include <glib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace ifog::report {
+
+static_assert(std::endian::native == std::endian::little, "a page's script reads them as they lie in memory");
+
+Thinned thinned(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr std::size_t kMost = 5000,
+                        kStretches = 1500;  // twice as many as a screen has pixels, less than a page minds
+  const std::size_t size = std::min(x.size(), y.size());
+  if (size <= kMost) return {x, y};
+  Thinned out;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const std::size_t from = size * k / kStretches, to = size * (k + 1) / kStretches;
+    const auto begin = y.begin() + static_cast<std::ptrdiff_t>(from),
+               end = y.begin() + static_cast<std::ptrdiff_t>(to);
+    // A value that is no number compares as less than none: the stretch keeps it only when it has no other.
+    const auto less = [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; };
+    const auto more = [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a > b; };
+    auto first = std::min_element(begin, end, less), second = std::min_element(begin, end, more);
+    if (second < first) std::swap(first, second);
+    for (const auto at : {first, second}) {
+      const auto i = static_cast<std::size_t>(at - y.begin());
+      if (!out.x.empty() && out.x.back() == x[i]) continue;
+      out.x.push_back(x[i]);
+      out.y.push_back(y[i]);
+    }
+  }
+  return out;
+}
+
+std::string packed(std::span<const double> values) {
+  const std::vector<float> narrow(values.begin(), values.end());
+  const std::unique_ptr<char, decltype(&g_free)> text(
+      g_base64_encode(reinterpret_cast<const guchar*>(narrow.data()), narrow.size() * sizeof(float)),
+      &g_free);
+  return text.get();
+}
+
+}  // namespace ifog::report

@@ -1,0 +1,19 @@
+// Numbers of a chart for the script of a page, see interaction.cpp.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ifog::report {
+
+// The same curve in fewer points, its extremes kept; one that is short enough as it is.
+struct Thinned {
+  std::vector<double> x, y;
+};
+Thinned thinned(const std::vector<double>& x, const std::vector<double>& y);
+
+// As float32, little-endian, in base64: seven digits are more than a screen shows.
+std::string packed(std::span<const double> values);
+
+}  // namespace ifog::report
