@@ -13,8 +13,8 @@ namespace ifog::tools {
 // Adds a command to the command line.
 using AddCommand = void (*)(CLI::App& app);
 
-// What was typed, as a shell takes it again: words that are no plain names in quotes. The program stands under
-// its own name, wherever it lies. Empty before run_command_line().
+// What was typed, as a shell takes it again: words that are no plain names in quotes. The program stands
+// under its own name, wherever it lies. Empty before run_command_line().
 std::string typed_command();
 
 // main() of a program with these commands. Exit 0 good, 1 failed, 2 usage.
