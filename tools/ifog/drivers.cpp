@@ -9,6 +9,7 @@
 
 #include "drivers/host/plugin.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -44,16 +45,56 @@ void print(const FoundPlugin& found) {
   say("\n");
 }
 
-void run(const std::string& name) {
+nlohmann::ordered_json as_json(const FoundPlugin& found) {
+  const ifog_driver& table = found.plugin->table();
+  auto options = nlohmann::ordered_json::array();
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
+    nlohmann::ordered_json standard;  // null: must be given
+    if (option->default_value != nullptr) standard = option->default_value;
+    options.push_back(
+        {{"key", option->key}, {"help", option->help}, {"values", option->values}, {"default", standard}});
+  }
+  return {{"name", table.name},
+          {"version", table.version},
+          {"summary", table.summary},
+          {"interface", table.abi},
+          {"takes_bytes", (table.transports & IFOG_TRANSPORT_BYTES) != 0},
+          {"takes_can", (table.transports & IFOG_TRANSPORT_CAN) != 0},
+          {"encodes", table.encode_bytes != nullptr || table.encode_can != nullptr},
+          {"path", found.path},
+          {"used", !found.hidden},
+          {"options", options}};
+}
+
+void write(const std::string& path, const std::vector<FoundPlugin>& all,
+           const std::vector<std::string>& folders) {
+  auto drivers = nlohmann::ordered_json::array(), refused = nlohmann::ordered_json::array();
+  for (const FoundPlugin& found : all)
+    if (found.plugin)
+      drivers.push_back(as_json(found));
+    else
+      refused.push_back({{"path", found.path}, {"reason", found.refusal}});
+  write_json(
+      path,
+      nlohmann::ordered_json{
+          {"schema", "ifog.drivers/1"}, {"drivers", drivers}, {"refused", refused}, {"folders", folders}});
+}
+
+void run(const std::string& name, const std::string& json) {
+  will_write("--json", json);
   const std::vector<std::string> folders = plugin_folders();
+  std::vector<FoundPlugin> all;
   if (!name.empty()) {
-    FoundPlugin one;
-    one.plugin = find_plugin(name, folders);
-    one.path = one.plugin->path();
-    print(one);
+    all.emplace_back().plugin = find_plugin(name, folders);
+    all.back().path = all.back().plugin->path();
+  } else {
+    all = list_plugins(folders);
+  }
+  if (!json.empty()) write(json, all, folders);
+  if (!name.empty()) {
+    print(all.front());
     return;
   }
-  const std::vector<FoundPlugin> all = list_plugins(folders);
   std::size_t usable = 0;
   for (const FoundPlugin& found : all) {
     if (!found.plugin) continue;
@@ -70,11 +111,12 @@ void run(const std::string& name) {
 }  // namespace
 
 void add_drivers(CLI::App& app) {
-  auto name = std::make_shared<std::string>();
+  auto name = std::make_shared<std::string>(), json = std::make_shared<std::string>();
   CLI::App* command =
       app.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
   command->add_option("NAME", *name, "Only this driver");
-  command->callback([name] { run(*name); });
+  command->add_option("--json", *json, "Write the list here")->type_name("FILE");
+  command->callback([name, json] { run(*name, *json); });
 }
 
 }  // namespace ifog::tools

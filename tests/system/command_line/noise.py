@@ -8,6 +8,7 @@ import math
 import re
 import sys
 
+import schema
 from run import RATE_HZ, SECONDS, columns, has, ifog, main_of, near, refused
 
 N, K = 2.5e-7, 4e-8
@@ -33,7 +34,9 @@ class Noise:
         path = self.folder / f"{command}.json"
         said = ifog(command, *arguments, "--json", path)
         assert "nan" not in said.split(), said
-        return json.loads(path.read_text())
+        document = json.loads(path.read_text())
+        schema.check(document)
+        return document
 
     def turned(self, name, first_s, last_s):
         """The same with a turn of half a radian a second, eight seconds on and four off."""

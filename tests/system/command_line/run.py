@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+import schema
+
 IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 RATE_HZ, SECONDS, N, BIAS, PER_DEGREE = 50, 400, 2.5e-7, 5e-5, 4e-6
 SCENARIO = f"""
@@ -88,7 +90,9 @@ class Checks:
     def json(self, command, *arguments):
         path = self.folder / f"{command}.json"
         ifog(command, *arguments, "--json", path)
-        return json.loads(path.read_text())
+        document = json.loads(path.read_text())
+        schema.check(document)
+        return document
 
     def check_simulate_hides_the_truth(self):
         truth = json.loads((self.folder / "truth.json").read_text())

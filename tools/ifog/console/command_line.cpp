@@ -8,6 +8,7 @@
 
 #include "drivers/ifog/driver.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/describe.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/console/usage_error.h"
 
@@ -38,6 +39,13 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
   app.require_subcommand(1);
   app.set_version_flag("--version",
                        "ifog " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");
+  app.add_flag_callback(
+      "--describe",
+      [&app] {
+        say("%s", describe(app).c_str());
+        throw CLI::Success();
+      },
+      "Print every command with its options as JSON and exit");
   for (const AddCommand add : commands) add(app);
 
   int status = 0;

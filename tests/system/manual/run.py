@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""The manual against the programs, and read by the programs that read manuals; and the shell's completion, typed at.
+
+usage: run.py PATH_OF_IFOG PATH_OF_IFOGD SOURCE_DIR MANUAL_DIR
+
+What must be in a page is asked of `--help`, of `ifog drivers` and of the sources, not of what the pages are made from. Exit 77 where
+mandoc, man or bash-completion is missing.
+"""
+import gzip
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+IFOG, IFOGD = map(os.path.abspath, sys.argv[1:3])
+SOURCE, MANUAL = (pathlib.Path(argument).resolve() for argument in sys.argv[3:])
+COMPLETION = "/usr/share/bash-completion/bash_completion"
+
+
+def said(*command):
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert result.returncode == 0, f"{command}: exit {result.returncode}: {result.stderr}"
+    return result.stdout
+
+
+def page(name):
+    """As a person reads it, in one line: words that were broken at a line's end are whole again."""
+    text = subprocess.run(["man", "-l", str(MANUAL / f"man{name[-1]}" / (name + ".gz"))], capture_output=True, text=True, timeout=60,
+                          check=True, env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "1000", "MANPAGER": "cat", "MANROFFOPT": "-rHY=0"}).stdout
+    return " ".join(text.split())
+
+
+def options_of_help(*program):
+    return {name for names in re.findall(r"^  (-\S+)", said(*program, "--help"), re.M) for name in names.split(",")}
+
+
+def commands():
+    return re.findall(r"^  (\w+) ", said(IFOG, "--help").split("Subcommands:")[1], re.M)
+
+
+def holds(text, words, what):
+    missing = sorted(word for word in words if not re.search(r"(?<![\w-])" + re.escape(word) + r"(?![\w-])", text))
+    assert not missing, f"{what} lacks {missing}"
+
+
+class Checks:
+    def check_every_page_is_clean(self):
+        pages = sorted(MANUAL.glob("man?/*.gz"))
+        assert len(pages) >= 5 + len(commands()), f"{len(pages)} pages"
+        for path in pages:
+            lint = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", str(path)], capture_output=True, text=True, check=False)
+            assert not lint.stdout + lint.stderr, lint.stdout + lint.stderr
+            groff = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", str(path)], capture_output=True, text=True, check=False,
+                                   env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"})
+            assert groff.returncode == 0 and not groff.stderr, f"{path.name}: {groff.stderr}"
+            assert gzip.decompress(path.read_bytes()).count(b"\n") > 20, path
+            # What apropos(1) and whatis(1) will know it by.
+            known = subprocess.run(["lexgrog", "-m", str(path)], capture_output=True, text=True, check=False)
+            assert known.returncode == 0 and path.name.split(".")[0] in known.stdout, f"{path.name}: {known.stdout}{known.stderr}"
+
+    def check_each_command_has_its_page_with_its_options(self):
+        for command in commands():
+            options = options_of_help(IFOG, command)
+            assert "--help" in options, options
+            holds(page(f"ifog-{command}.1"), options, f"ifog-{command}(1)")
+            holds(page("ifog.1"), [f"ifog {command}", f"ifog-{command}(1)"], "ifog(1)")
+        listed = {path.name for path in (MANUAL / "man1").iterdir()}
+        assert listed == {"ifog.1.gz"} | {f"ifog-{command}.1.gz" for command in commands()}, listed
+
+    def check_what_help_says_is_in_the_page(self):
+        """Not only the names: each option's own words."""
+        for command in ("allan", "denoise", "replay"):
+            text = page(f"ifog-{command}.1").lower()
+            told = re.findall(r"^  -\S+.*?(?: {2,}|\n {20,})(\S.*)$", said(IFOG, command, "--help"), re.M)
+            assert len(told) > 8, told
+            for words in told:
+                assert " ".join(words.lower().split()) in text, f"ifog-{command}(1) lacks '{words}'"
+
+    def check_the_daemon(self):
+        holds(page("ifogd.8"), options_of_help(IFOGD), "ifogd(8)")
+        # States and faults stand in daemon/README.md; a sample of what only that says.
+        holds(page("ifogd.8"), ["device gone", "SIGHUP", "buffer_bytes", "noise.toml"], "ifogd(8)")
+
+    def check_the_configuration_has_every_key_that_is_read(self):
+        read = set(re.findall(r'\bin\.\w+\(\s*"([a-z_0-9]+)"', (SOURCE / "daemon/config/config.cpp").read_text()))
+        read |= set(re.findall(r'FilterSetting\{\s*"(\w+)"', (SOURCE / "filters/settings/filter_table.cpp").read_text()))
+        assert len(read) > 60, len(read)
+        text = page("ifogd.toml.5")
+        holds(text, [key + " =" for key in read if f"{key} = " not in text and f".{key}]" not in text and f"[{key}]" not in text], "ifogd.toml(5)")
+
+    def check_the_drivers_options(self):
+        text = page("ifogd.toml.5")
+        for driver in ("kvh1750", "dsp3000", "dbc"):
+            told = said(IFOG, "drivers", driver)
+            options = re.findall(r"^    ([a-z_0-9]+)  ", told, re.M)
+            assert options and driver in text, told
+            holds(text.split(driver + ":")[1], options, f"{driver} in ifogd.toml(5)")
+
+    def check_formats(self):
+        capture, model = page("ifog-capture.5"), page("ifog-model.5")
+        holds(capture, ["time_s", "rate_x_radps", "RFC 1950", "opened_ns"], "ifog-capture(5)")
+        read = set(re.findall(r'\.(?:words|number|required|numbers|yes|not_negative|number_or_unknown|tables)\("(\w+)"',
+                              (SOURCE / "filters/model_file/model_read.cpp").read_text()))
+        assert len(read) > 25, read
+        holds(model, read | {"second_rate", "band_power"}, "ifog-model(5)")
+
+    def typed(self, *words):
+        """What is offered for the last of the words."""
+        script = f"""source {COMPLETION}; source {MANUAL}/completion/ifog; source {MANUAL}/completion/ifogd
+          COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMP_LINE="$*"; COMP_POINT=${{#COMP_LINE}}; COMP_TYPE=9
+          compopt() {{ :; }}
+          _$(basename "$1"); printf '%s\\n' "${{COMPREPLY[@]}}" """
+        # The test's own name for the program, so that drivers are asked of the one that was built.
+        link = MANUAL / "completion" / "path"
+        link.mkdir(exist_ok=True)
+        for name, program in (("ifog", IFOG), ("ifogd", IFOGD)):
+            (link / name).unlink(missing_ok=True)
+            (link / name).symlink_to(program)
+        result = subprocess.run(["bash", "-c", script, "bash", *words], capture_output=True, text=True, timeout=60, check=False, cwd=SOURCE / "daemon/examples",
+                                env={**os.environ, "PATH": f"{link}:{os.environ['PATH']}"})
+        assert not result.stderr, f"{words}: {result.stderr}"
+        return {word.strip() for word in result.stdout.split("\n") if word.strip()}
+
+    def check_completion(self):
+        for words, offered in (
+                (["ifog", "al"], {"allan"}), (["ifog", "allan", "--estimator", ""], {"overlapping", "modified", "hadamard"}),
+                (["ifog", "allan", "--driver", "kv"], {"kvh1750"}), (["ifog", "drivers", "kv"], {"kvh1750"}),
+                (["ifog", "convert", "--driver", "kvh1750", "--option", "ra"], {"rate_hz="}),
+                (["ifog", "convert", "--dbc", "x.dbc", "--option", "si"], {"signal="}),
+                (["ifog", "denoise", "--config", "reference.toml", "--sensor", ""], {"nose"}),
+                (["ifog", "denoise", "--config", "kvh1"], {"kvh1750-serial.toml"}), (["ifog", "allan", "net"], {"network.toml"}),
+                (["ifogd", "--c"], {"--config", "--check"}), (["ifogd", "--config", "ne"], {"network.toml"})):
+            found = self.typed(*words)
+            assert found == offered, f"{' '.join(words)}: {found}, expected {offered}"
+        assert self.typed("ifog", "") >= set(commands())
+        for command in commands():
+            assert self.typed("ifog", command, "-") == options_of_help(IFOG, command), command
+
+
+def main():
+    missing = [name for name in ("mandoc", "man", "lexgrog") if not shutil.which(name)]
+    if missing or not os.path.exists(COMPLETION):
+        print(f"no {', '.join(missing) or 'bash-completion'} here; tools/install-packages test installs them")
+        return 77
+    checks, failed = Checks(), 0
+    for name in sorted(each for each in dir(Checks) if each.startswith("check_")):
+        try:
+            getattr(checks, name)()
+            print(f"ok       {name[6:].replace('_', ' ')}")
+        except AssertionError as error:
+            failed += 1
+            print(f"FAILED   {name[6:].replace('_', ' ')}: {error}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,77 @@
+// The reference model and the table of forms, which the manual is made of: all that the program writes, reads
+// and knows.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "filters/effects/form.h"
+#include "filters/model_file/model.h"
+#include "filters/settings/filter_table.h"
+
+namespace ifog {
+namespace {
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(std::string(IFOG_SOURCE_DIR) + "/filters/" + file);
+  EXPECT_TRUE(in) << file;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// "[filter] window" for every key of the text, figures by name left out.
+std::set<std::string> keys_of(const std::string& text) {
+  std::set<std::string> keys;
+  std::string table, line;
+  std::istringstream lines(text);
+  const std::regex header(R"(^\[\[?([\w.]+)\]\]?.*)"), key(R"(^(\w+) = .*)");
+  for (std::smatch found; std::getline(lines, line);)
+    if (std::regex_match(line, found, header))
+      table = found[1];
+    else if (std::regex_match(line, found, key) && table != "source.before" && table != "source.after")
+      keys.insert("[" + table + "] " + found[1].str());
+  return keys;
+}
+
+// A model with everything in it that a file can hold.
+Model everything() {
+  Model model = parse_model(text_of("model_file/reference.toml"), "reference.toml");
+  model.filter->state_parameters = {0.5};
+  return model;
+}
+
+TEST(ModelReference, IsAModelAndHasEveryKeyThatIsWritten) {
+  const std::set<std::string> shown = keys_of(text_of("model_file/reference.toml"));
+  const std::set<std::string> written = keys_of(model_text(everything()));
+  EXPECT_EQ(written, shown);
+  EXPECT_GT(shown.size(), 40U);
+}
+
+TEST(ModelReference, ShowsTheDefaultsOfTheFilter) {
+  const FilterSettings defaults;
+  Model model = everything();
+  model.filter->state_parameters.clear();
+  for (const FilterSetting& setting : filter_table()) {
+    const std::string key = setting.key;
+    if (key == "process_noise" || key == "measurement_noise") continue;  // have none
+    EXPECT_EQ(value_of(setting, *model.filter), value_of(setting, defaults)) << key;
+  }
+}
+
+TEST(Forms, TheTableHasEachByItsName) {
+  std::set<std::string> listed, known;
+  const std::string text = text_of("effects/forms.md");
+  const std::regex row(R"(\n\| `(\w+)` \|)");
+  for (std::sregex_iterator found(text.begin(), text.end(), row), end; found != end; ++found)
+    listed.insert((*found)[1]);
+  for (int i = 0; !name_of(static_cast<Form>(i)).empty(); ++i) known.emplace(name_of(static_cast<Form>(i)));
+  EXPECT_EQ(listed, known);
+  EXPECT_TRUE(known.contains("quantisation"));
+}
+
+}  // namespace
+}  // namespace ifog
