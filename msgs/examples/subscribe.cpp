@@ -1,6 +1,8 @@
-// Prints of one sensor, as ifogd publishes it: number; of each axis angle increment (rad), denoised rate
-// (rad/s)
-//   subscribe_cpp CHANNEL COUNT [LCM_URL]       IFOG_NOSE 100 'udpm://239.255.76.67:7667?ttl=0'
+// Prints what ifogd publishes of one sensor: the number of each sample, and of each axis the angle increment
+// in rad and the denoised rate in rad/s.
+//
+//   subscribe_cpp CHANNEL COUNT [LCM_URL]     subscribe_cpp IFOG_NOSE 100 'udpm://239.255.76.67:7667?ttl=0'
+//
 // Ends after COUNT messages. Build:  c++ subscribe.cpp $(pkg-config --cflags --libs ifogd-msgs)
 #include <cstdio>
 #include <cstdlib>
