@@ -19,6 +19,9 @@ import tempfile
 import termios
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../command_line"))
+import schema  # pylint: disable=wrong-import-position
+
 
 def skip(why):
     print(f"SKIPPED: {why}")
@@ -160,6 +163,8 @@ measurement_noise = 1e-12
                     raise SystemExit(f"FAILED: a line of {widest} at {columns} columns")
             told = subprocess.run([ifog, "monitor", "--seconds", "2.5", "--json", "-"], capture_output=True, text=True, check=True).stdout
             messages = [json.loads(line) for line in told.splitlines()]
+            for message in messages:
+                schema.check(message)
             rates = [m for m in messages if m["type"] == "rate"]
             if len(rates) < 50 or any(len(m["raw"]) != 3 or m["sensor"] != "NOSE" for m in rates) or \
                     not any(m["type"] == "status" and m["state_name"] == "running" for m in messages):

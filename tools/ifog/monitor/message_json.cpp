@@ -18,6 +18,10 @@ std::string line(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+ordered_json of(const char* type, std::string_view sensor) {
+  return {{"schema", "ifog.monitor/1"}, {"type", type}, {"sensor", sensor}};
+}
+
 ordered_json flag_words(std::int32_t flags) {
   ordered_json out = ordered_json::array();
   for (const FlagName& each : kFlagNames)
@@ -86,7 +90,7 @@ constexpr std::array<std::pair<const char*, double status_t::*>, 7> kFigures{
 }  // namespace
 
 std::string message_json(std::string_view sensor, const rate_t& message) {
-  ordered_json out{{"type", "rate"}, {"sensor", sensor}};
+  ordered_json out = of("rate", sensor);
   out["utime"] = message.utime;
   out["seq"] = message.seq;
   out["sensor_time_ns"] = message.sensor_time_ns;
@@ -113,7 +117,7 @@ std::string message_json(std::string_view sensor, const rate_t& message) {
 }
 
 std::string message_json(std::string_view sensor, const status_t& message) {
-  ordered_json out{{"type", "status"}, {"sensor", sensor}};
+  ordered_json out = of("status", sensor);
   out["utime"] = message.utime;
   out["version"] = message.version;
   out["model"] = message.model;
@@ -133,7 +137,7 @@ std::string message_json(std::string_view sensor, const status_t& message) {
 }
 
 std::string message_json(std::string_view sensor, const imu_t& message) {
-  ordered_json out{{"type", "imu"}, {"sensor", sensor}};
+  ordered_json out = of("imu", sensor);
   out["utime"] = message.utime;
   out["seq"] = message.seq;
   out["sensor_time_ns"] = message.sensor_time_ns;

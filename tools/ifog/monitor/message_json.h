@@ -1,5 +1,5 @@
-// A message of the daemon as JSON on one line, with the names that its type gives the fields. What is no
-// number is null.
+// A message of the daemon as JSON on one line, schema "ifog.monitor/1", with the names that its type gives
+// the fields. What is no number is null.
 #pragma once
 
 #include <ifog/imu_t.hpp>
