@@ -29,7 +29,7 @@ _ifog_sensors() {
 _ifog() {
   local cur prev words cword
   _init_completion -n =: || return
-  local command=${words[1]} i word driver= configuration=@CONFIGURATION@
+  local command=${words[1]} i driver='' configuration=@CONFIGURATION@
   COMPREPLY=()
   if [ "$cword" -eq 1 ]; then
     COMPREPLY=($(compgen -W "@COMMANDS@ @GLOBAL@" -- "$cur"))
