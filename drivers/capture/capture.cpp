@@ -38,6 +38,7 @@ Capture parse_capture(std::string_view text, const std::string& path, const CsvL
   Table table = parse_table(text, path, layout);
   Capture capture;
   capture.notices = std::move(table.notices);
+  capture.faults = std::move(table.faults);
   capture.comments = std::move(table.comments);
   capture.time_s = std::move(table.time_s);
   std::string axis;

@@ -25,6 +25,7 @@ struct Capture {
   std::vector<std::vector<double>> reference_rate_radps;  // by axis, an empty vector where there is none
   std::vector<CaptureColumn> channels;                    // every other column
   std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
+  std::vector<std::string> faults;                        // cells taken for missing, one line a column
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
@@ -38,6 +39,8 @@ struct Table {
   std::size_t header_line = 0;         // 0: not read from a text
   std::vector<std::size_t> skipped;    // for each comment or blank line behind the header, the rows before it
   std::vector<std::string> notices;    // of the reading: what may be meant otherwise
+  std::vector<std::string>
+      faults;  // cells that no sensor can have measured, taken for missing: one line a column
 };
 
 // Refuses what read_capture refuses, but needs no rate column.
@@ -48,7 +51,8 @@ std::size_t line_of_row(const Table& table, std::size_t row);
 
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
 // Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line
-// with another number of cells, a .gz that ends early.
+// with another number of cells, a .gz that ends early, a column of which more than one cell in a hundred says
+// what no sensor measures. Fewer such cells are missing, see measurable.h, and told in `faults`.
 Capture read_capture(const std::string& path);
 
 // The same of a text already at hand; `path` stands for the file in messages. `layout` says what a file means

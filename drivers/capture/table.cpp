@@ -12,14 +12,16 @@
 
 #include "drivers/capture/chosen_columns.h"
 #include "drivers/capture/column_names.h"
+#include "drivers/capture/measurable.h"
 #include "drivers/capture/text_file.h"
-#include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMostAngle_rad = 1e9;    // beyond, a float32 resolves 64 rad
+constexpr double kMostImpossible = 0.01;  // of a column's cells; more are no single fault of a logger
 
 std::string_view trimmed(std::string_view cell) {
   while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
@@ -64,17 +66,8 @@ std::vector<std::string> split_header(std::string_view line, char separator) {
   }
 }
 
-// Beyond this there is no measurement: one such cell would be all that a fit sees.
-double most_of(const std::string& column) {
-  constexpr double kMostTime_s = 1e10;  // 300 years, the time since 1970 included
-  std::string axis;
-  if (column == "time_s") return kMostTime_s;
-  const bool rate = axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
-  return rate ? IFOG_MAX_RATE : IFOG_MAX_ENVIRONMENT_VALUE;
-}
-
-double number(const std::string& path, std::size_t line, const std::string& column, double most,
-              std::string_view cell, bool decimal_comma) {
+double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell,
+              bool decimal_comma) {
   cell = unquoted(cell);
   if (cell.empty()) return kMissing;
   std::array<char, 64> with_point{};
@@ -95,10 +88,6 @@ double number(const std::string& path, std::size_t line, const std::string& colu
             printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing");
   if (std::isinf(value))
     fail_at(path, line, printable(column) + " is infinite, expected a finite number, 'nan' or nothing");
-  if (std::abs(value) > most)
-    fail_at(path, line,
-            printable(column) + " is " + in_quotes(cell) + ", which no sensor measures, expected at most " +
-                shortest(most));
   return value;
 }
 
@@ -133,13 +122,23 @@ std::vector<std::string> header(Lines& lines, std::string_view& line, const std:
   return names;
 }
 
-// A column while it is read: the most that a cell of it may say, and where the cells go; nowhere for one that
-// nobody chose.
+// A column while it is read: what a cell of it can mean, in the file's unit, and where the cells go; nowhere
+// for one that nobody chose.
 struct Cells {
   std::string name;
-  double most = 0.0;
+  Measurable range;
   std::vector<double>* values = nullptr;
+  std::size_t impossible = 0;  // cells that said more, and are taken for missing
+  std::size_t first_line = 0;  // of those
+  std::string first;           // as it stands there
 };
+
+// Of the capture's column, before its conversion.
+Measurable in_file_unit(const Measurable& range, const UnitConversion& conversion) {
+  const double a = (range.least - conversion.offset) / conversion.scale;
+  const double b = (range.most - conversion.offset) / conversion.scale;
+  return {std::min(a, b), std::max(a, b)};
+}
 
 std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
   for (; place > 0; --place) line.remove_prefix(line.find(separator) + 1);
@@ -166,13 +165,13 @@ std::vector<Cells> cells_of(const std::vector<std::string>& names, const CsvLayo
   for (std::size_t i = 0; i < names.size(); ++i) cells[i].name = names[i];
   const CsvTime time = layout.time.value_or(CsvTime{});
   Cells& time_cells = cells[place_of(time.header, names, path, table.header_line)];
-  time_cells.most = most_of("time_s") / time.unit_s;
+  time_cells.range = in_file_unit(measurable("time_s"), {time.unit_s, 0.0});
   time_cells.values = &table.time_s;
   // Nothing is added to table.columns once the addresses are taken.
   if (!layout.chooses()) {
     for (std::size_t i = 1; i < names.size(); ++i) table.columns.push_back({names[i], {}});
     for (std::size_t i = 1; i < names.size(); ++i) {
-      cells[i].most = most_of(names[i]);
+      cells[i].range = measurable(names[i]);
       cells[i].values = &table.columns[i - 1].values;
     }
     return cells;
@@ -187,8 +186,9 @@ std::vector<Cells> cells_of(const std::vector<std::string>& names, const CsvLayo
     Cells& chosen = cells[place_of(column.header, names, path, table.header_line)];
     if (chosen.values != nullptr)
       fail_at(path, table.header_line, "column " + in_quotes(column.header) + " is chosen twice");
-    const double most = column.is_angle() ? IFOG_MAX_ENVIRONMENT_VALUE : most_of(column.name);
-    chosen.most = most / conversion_of(column).scale;
+    const Measurable range =
+        column.is_angle() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
+    chosen.range = in_file_unit(range, conversion_of(column));
     chosen.values = &table.columns[i].values;
   }
   return cells;
@@ -206,6 +206,56 @@ void reserve_rows(std::vector<Cells>& columns, std::string_view text) {
     if (column.values != nullptr) column.values->reserve(rows + rows / 16);
 }
 
+std::string what_no_sensor_measures(const Cells& column) {
+  return printable(column.name) + " is " + in_quotes(column.first) + ", which no sensor measures, expected " +
+         shortest(column.range.least) + " to " + shortest(column.range.most);
+}
+
+void take(Cells& column, std::string_view cell, bool decimal_comma, const std::string& path,
+          std::size_t line) {
+  const double value = number(path, line, column.name, cell, decimal_comma);
+  const bool possible = std::isnan(value) || column.range.holds(value);
+  column.values->push_back(possible ? value : kMissing);
+  if (possible) return;
+  if (column.impossible++ > 0) return;
+  column.first_line = line;
+  column.first = unquoted(cell);
+}
+
+// A cell here and there is a fault of the logger, and is missing; where many are, the column is not what its
+// name says.
+void tell_impossible(const std::vector<Cells>& columns, const std::string& path, Table& table) {
+  for (const Cells& column : columns) {
+    if (column.impossible == 0) continue;
+    const auto rows = static_cast<double>(table.time_s.size());
+    const bool few =
+        column.impossible == 1 || static_cast<double>(column.impossible) <= kMostImpossible * rows;
+    if (column.values == &table.time_s || rows == 1.0 || !few)
+      fail_at(
+          path, column.first_line,
+          what_no_sensor_measures(column) +
+              (column.impossible > 1 ? "; nor " + std::to_string(column.impossible - 1) + " more of its cells"
+                                     : ""));
+    table.faults.push_back(path + ":" + std::to_string(column.first_line) + ": " +
+                           what_no_sensor_measures(column) + "; " + std::to_string(column.impossible) +
+                           (column.impossible == 1 ? " such cell" : " such cells") + " taken for missing");
+  }
+}
+
+void tell_leaps(const std::string& path, Table& table) {
+  std::string axis;
+  for (CaptureColumn& column : table.columns) {
+    if (!axis_of(column.name, "rate", axis) && !axis_of(column.name, "reference_rate", axis)) continue;
+    const std::vector<std::size_t> rows = take_out_leaps(table.time_s, column.values);
+    if (rows.empty()) continue;
+    table.faults.push_back(path + ":" + std::to_string(line_of_row(table, rows.front())) + ": " +
+                           printable(column.name) +
+                           " says more than half a turn within one sample, from standstill to standstill; " +
+                           std::to_string(rows.size()) + (rows.size() == 1 ? " such cell" : " such cells") +
+                           " taken for missing");
+  }
+}
+
 void add_row(std::vector<Cells>& columns, std::string_view line, char separator, const std::string& path,
              std::size_t line_number) {
   std::size_t place = 0;
@@ -214,10 +264,8 @@ void add_row(std::vector<Cells>& columns, std::string_view line, char separator,
     if (place == columns.size())
       fail_at(path, line_number,
               "more cells than the " + std::to_string(columns.size()) + " columns of the header");
-    const Cells& column = columns[place];
-    if (column.values != nullptr)
-      column.values->push_back(
-          number(path, line_number, column.name, column.most, rest.substr(0, end), separator != ','));
+    Cells& column = columns[place];
+    if (column.values != nullptr) take(column, rest.substr(0, end), separator != ',', path, line_number);
     ++place;
     if (end == std::string_view::npos) break;
     rest.remove_prefix(end + 1);
@@ -251,6 +299,7 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
     }
     add_row(columns, line, layout.separator, path, lines.number());
     const double now = table.time_s.back();
+    if (columns[time].impossible > 0) tell_impossible(columns, path, table);
     if (table.time_s.size() == 1)
       decimals = cell_at(line, time, layout.separator).find('.') != std::string_view::npos;
     if (std::isnan(now))
@@ -261,7 +310,9 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
                   ", expected more than in the row before");
   }
   if (table.time_s.empty()) throw std::runtime_error(path + ": no rows after the header");
+  tell_impossible(columns, path, table);
   as_chosen(table, layout, path);
+  tell_leaps(path, table);
   if (!layout.time && !decimals) notice_milliseconds(table, path);
   return table;
 }

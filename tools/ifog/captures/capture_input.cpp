@@ -56,12 +56,14 @@ CsvLayout CaptureInput::layout() const {
 Capture CaptureInput::parse(std::string_view text, const std::string& path) const {
   Capture capture = parse_capture(text, path, layout());
   for (const std::string& notice : capture.notices) warn("%s\n", notice.c_str());
+  for (const std::string& fault : capture.faults) warn("%s\n", fault.c_str());
   return capture;
 }
 
 Table CaptureInput::parse_columns(std::string_view text, const std::string& path) const {
   Table table = parse_table(text, path, layout());
   for (const std::string& notice : table.notices) warn("%s\n", notice.c_str());
+  for (const std::string& fault : table.faults) warn("%s\n", fault.c_str());
   return table;
 }
 

@@ -1,0 +1,78 @@
+#include "drivers/capture/measurable.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "drivers/capture/column_names.h"
+#include "drivers/ifog/driver.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMostTime_s = 1e10;  // 300 years, the time since 1970 included
+
+struct OfUnit {
+  std::string_view unit;
+  Measurable range;
+};
+
+constexpr std::array<OfUnit, 6> kUnits = {{
+    {"degC", {-273.15, 3000.0}},  // absolute zero; a pyrometer
+    {"mps2", {-5e5, 5e5}},        // what a shell is launched with
+    {"V", {-1e6, 1e6}},           // high-voltage lines
+    {"A", {-1e6, 1e6}},           // lightning
+    {"uT", {-1e8, 1e8}},          // the strongest pulsed magnets
+    {"Pa", {-1e7, 1e9}},          // a difference of two; the deepest sea ten times
+}};
+
+constexpr double kSlowest_s = 0.1;    // between samples
+constexpr double kStandstill = 0.01;  // of the leap, the most beside it
+
+double median_step(const std::vector<double>& time_s) {
+  constexpr std::size_t kEnough = 2001;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < std::min(time_s.size(), kEnough); ++i)
+    steps.push_back(time_s[i] - time_s[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+}  // namespace
+
+Measurable measurable(const std::string& column) {
+  if (column == "time_s") return {-kMostTime_s, kMostTime_s};
+  std::string axis;
+  if (axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis))
+    return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
+  const std::string_view unit = std::string_view(column).substr(column.rfind('_') + 1);
+  for (const OfUnit& known : kUnits) {
+    const auto conversion = convert_unit(known.unit, unit);
+    if (!conversion) continue;
+    const auto converted = [&](double value) { return value * conversion->scale + conversion->offset; };
+    return {converted(known.range.least), converted(known.range.most)};
+  }
+  return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
+}
+
+std::vector<std::size_t> take_out_leaps(const std::vector<double>& time_s, std::vector<double>& rate_radps) {
+  std::vector<std::size_t> rows;
+  if (time_s.size() < 3) return rows;
+  const double step_s = median_step(time_s);
+  if (step_s > kSlowest_s) return rows;
+  const double half_a_turn = std::numbers::pi / step_s;
+  for (std::size_t i = 1; i + 1 < rate_radps.size(); ++i) {
+    const double here = std::abs(rate_radps[i]);
+    if (!(here > half_a_turn)) continue;
+    const double beside = std::max(std::abs(rate_radps[i - 1]), std::abs(rate_radps[i + 1]));
+    if (beside < kStandstill * here) rows.push_back(i);
+  }
+  for (const std::size_t row : rows) rate_radps[row] = std::numeric_limits<double>::quiet_NaN();
+  return rows;
+}
+
+}  // namespace ifog

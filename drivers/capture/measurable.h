@@ -1,0 +1,27 @@
+// What a cell of a capture can mean. Beyond it there is no measurement, whatever wrote the number: one such
+// cell would be all that a fit sees. The one home of it for every command that reads a capture.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace ifog {
+
+struct Measurable {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
+};
+
+// In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
+// can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.
+Measurable measurable(const std::string& column);
+
+// Rates at an even clock that say more than half a turn within one sample, from standstill to standstill:
+// missing (NaN) from here on. Slower than ten samples a second nothing is, for a table of dwells may well do
+// so. Returns the rows.
+std::vector<std::size_t> take_out_leaps(const std::vector<double>& time_s, std::vector<double>& rate_radps);
+
+}  // namespace ifog

@@ -1,0 +1,117 @@
+// One cell that no sensor can have measured is missing; it neither refuses the capture nor stays in it.
+#include "drivers/capture/measurable.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "drivers/capture/capture.h"
+
+namespace ifog {
+namespace {
+
+// 200 rows at 10 Hz; `cell` stands in the row and column given.
+std::string capture(const char* columns, int width, int row, int column, const std::string& cell) {
+  std::string text = std::string("time_s,") + columns + "\n";
+  for (int i = 0; i < 200; ++i) {
+    text += std::to_string(0.1 * i);
+    for (int c = 0; c < width; ++c)
+      text += "," + (i == row && c == column ? cell : std::to_string(1e-3 * (i % 7)));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string refusal(const std::string& text, const CsvLayout& layout = {}) {
+  try {
+    parse_capture(text, "a.csv", layout);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Measurable, OneImpossibleCellIsMissingAndTold) {
+  struct Case {
+    const char* columns;
+    const char* cell;
+  };
+  for (const Case& each :
+       {Case{"rate_radps,accel_x_mps2", "1e30"}, Case{"rate_radps,accel_x_mps2", "-1e6"},
+        Case{"rate_radps,temperature_degC", "-999"}, Case{"rate_radps,temperature_degC", "9999"},
+        Case{"rate_radps,case_degF", "-500"}, Case{"rate_radps,temperature_K", "-1"},
+        Case{"rate_radps,ramp_counts", "1e21"}, Case{"rate_radps,rate_y_radps", "-1e30"},
+        Case{"rate_radps,reference_rate_radps", "20000"}}) {
+    const Table table = parse_table(capture(each.columns, 2, 100, 1, each.cell), "a.csv");
+    EXPECT_TRUE(std::isnan(table.columns[1].values[100])) << each.columns << each.cell;
+    EXPECT_FALSE(std::isnan(table.columns[1].values[99]));
+    ASSERT_EQ(table.faults.size(), 1U) << each.columns << each.cell;
+    EXPECT_EQ(table.faults[0].substr(0, 11), "a.csv:102: ") << table.faults[0];
+    EXPECT_NE(table.faults[0].find("1 such cell taken for missing"), std::string::npos);
+  }
+  const Capture read = parse_capture(capture("rate_radps,accel_x_mps2", 2, 3, 0, "1e30"), "a.csv");
+  EXPECT_TRUE(std::isnan(read.rate_radps[0][3]));
+  EXPECT_EQ(read.faults.size(), 1U);
+}
+
+// What a sensor may well say stays, however odd.
+TEST(Measurable, WhatMayBeMeasuredStays) {
+  for (const char* const cell : {"85", "-127", "-273.15", "1200"}) {
+    const Capture read = parse_capture(capture("rate_radps,temperature_degC", 2, 50, 1, cell), "a.csv");
+    EXPECT_EQ(read.channels[0].values[50], std::stod(cell));
+    EXPECT_TRUE(read.faults.empty());
+  }
+}
+
+// The limit is that of the unit in the file: 5000 °F are 2760 °C.
+TEST(Measurable, LimitsAreConvertedWithTheColumn) {
+  CsvLayout layout;
+  layout.columns = {CsvColumn::parse("rate_radps=w:rad/s"), CsvColumn::parse("temperature_degC=T:degF")};
+  layout.time = CsvTime::parse("time_s:s");
+  EXPECT_NEAR(parse_capture(capture("w,T", 2, 9, 1, "5000"), "a.csv", layout).channels[0].values[9], 2760.0,
+              1e-9);
+  EXPECT_TRUE(
+      std::isnan(parse_capture(capture("w,T", 2, 9, 1, "9000"), "a.csv", layout).channels[0].values[9]));
+}
+
+TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
+  std::string text = "time_s,rate_radps\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 20 == 7 ? ",1e30\n" : ",0\n");
+  EXPECT_EQ(
+      refusal(text),
+      "a.csv:9: rate_radps is '1e30', which no sensor measures, expected -10000 to 10000; nor 4 more of "
+      "its cells");
+  EXPECT_EQ(refusal(capture("rate_radps,t_degC", 2, 5, 1, "warm")),
+            "a.csv:7: t_degC is 'warm', expected a number, 'nan' or nothing");
+  EXPECT_EQ(refusal(capture("rate_radps,t_degC", 2, 5, 1, "inf")),
+            "a.csv:7: t_degC is infinite, expected a finite number, 'nan' or nothing");
+  // A time is not to be guessed.
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1e30,1\n").substr(0, 49),
+            "a.csv:3: time_s is '1e30', which no sensor measur");
+}
+
+// 999 rad/s for a tenth of a second are 16 turns, from standstill to standstill.
+TEST(Measurable, ARateThatLeapsOverHalfATurnIsMissing) {
+  const Capture read = parse_capture(capture("rate_radps,reference_rate_radps", 2, 70, 0, "-999"), "a.csv");
+  EXPECT_TRUE(std::isnan(read.rate_radps[0][70]));
+  ASSERT_EQ(read.faults.size(), 1U);
+  EXPECT_NE(read.faults[0].find("a.csv:72: rate_radps says more than half a turn"), std::string::npos);
+  // A fifth of a turn may be; and a table that spins up stays, however fast.
+  EXPECT_TRUE(parse_capture(capture("rate_radps,t_degC", 2, 70, 0, "12"), "a.csv").faults.empty());
+  std::vector<double> time, spin;
+  for (int i = 0; i < 100; ++i) {
+    time.push_back(0.01 * i);
+    spin.push_back(i < 40 || i > 60 ? 0.0 : 900.0);
+  }
+  EXPECT_TRUE(take_out_leaps(time, spin).empty());
+  // Dwells of a rate table, a row each.
+  for (int i = 0; i < 100; ++i) {
+    time[static_cast<std::size_t>(i)] = 5.0 * i;
+    spin[static_cast<std::size_t>(i)] = i % 2 == 0 ? 0.0 : 3.0;
+  }
+  EXPECT_TRUE(take_out_leaps(time, spin).empty());
+}
+
+}  // namespace
+}  // namespace ifog
