@@ -234,6 +234,7 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   take(in.number("range_radps", {1e-9, kMostRate_radps}), out.range_radps);
   out.limits = read_limits(in, kMostRate_radps);
   take(in.boolean("imu"), out.imu);
+  take(in.boolean("powered_with_computer"), out.powered_with_computer);
   if (const toml::table* const transport = in.table("transport"))
     out.transport = read_transport(*transport, "sensor.transport", context);
   else if (!in.has("transport"))
@@ -312,6 +313,7 @@ std::string SensorConfig::restart_for(const SensorConfig& other) const {
                     {"range_radps", range_radps == other.range_radps},
                     {"minimum, maximum or max_step", limits == other.limits},
                     {"imu", imu == other.imu},
+                    {"powered_with_computer", powered_with_computer == other.powered_with_computer},
                     {"realtime", realtime == other.realtime},
                     {"record", record == other.record},
                     {"channel", channels == other.channels}});

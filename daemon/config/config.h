@@ -85,6 +85,7 @@ struct SensorConfig {
   Limits limits;                 // of every axis's rate, rad/s
   bool imu = false;              // ifog.imu_t at sample rate, too
   double start_up_s = 4.0;
+  bool powered_with_computer = false;  // switched on with it: time since power-up is time since boot
   TransportConfig transport;
   std::map<std::string, std::string> options;  // of the driver
   std::string folder;                          // of the file, where relative paths in the options begin

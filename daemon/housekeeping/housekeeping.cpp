@@ -257,6 +257,7 @@ void Housekeeping::reload() {
       ChainSettings settings = sensor_chain_settings(
           config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
       settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
+      settings.since_power_up_s = since_power_up_s(config);
       auto parts = std::make_unique<ChainParts>(settings);
       renewed.push_back(
           {sensor.get(), std::move(config), std::move(parts), sensor->parts.noise.text(settings.learned)});

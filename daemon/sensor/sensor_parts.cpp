@@ -1,6 +1,7 @@
 #include "daemon/sensor/sensor_parts.h"
 
 #include <algorithm>
+#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -146,6 +147,12 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
   out.start_up_s = sensor.start_up_s;
   out.model = std::move(model);
   return out;
+}
+
+std::optional<double> since_power_up_s(const SensorConfig& sensor) {
+  timespec now{};
+  if (!sensor.powered_with_computer || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return std::nullopt;
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor) {

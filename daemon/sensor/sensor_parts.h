@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,10 @@ std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, con
 // model: none.
 ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_description& description,
                                     std::shared_ptr<const Model> model);
+
+// Of a sensor that is switched on with the computer: the time since boot, suspended time included. Nothing is
+// known of others.
+std::optional<double> since_power_up_s(const SensorConfig& sensor);
 
 // Null when the sensor has none.
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor);

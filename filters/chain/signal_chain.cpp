@@ -80,7 +80,7 @@ std::optional<LearnedNoise> ChainParts::learned() const noexcept {
 
 void ChainParts::use_effects(const ChainSettings& settings) {
   // Each channel has a limit of its own: the compensator is given ages in units of it.
-  compensator_.emplace(*settings.model, settings.axes, 1.0);
+  compensator_.emplace(*settings.model, settings.axes, 1.0, settings.since_power_up_s);
   for (const std::string& name : compensator_->channels()) {
     const auto found = std::find(settings.channels.begin(), settings.channels.end(), name);
     if (found == settings.channels.end()) {

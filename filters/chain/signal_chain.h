@@ -33,7 +33,8 @@ struct ChainSettings {
   double start_up_s = 4.0;  // of data for that
   // By an earlier run of the same sensor: in place of start-up data where neither settings nor model say.
   std::optional<LearnedNoise> learned;
-  std::shared_ptr<const Model> model;  // null: nothing is compensated
+  std::shared_ptr<const Model> model;      // null: nothing is compensated
+  std::optional<double> since_power_up_s;  // of the sensor at the first sample; none: no warm_up is corrected
 };
 
 enum ChainFlags : std::uint32_t {

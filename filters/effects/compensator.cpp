@@ -20,8 +20,12 @@ std::string label_of(const Effect& effect) {
 
 }  // namespace
 
-Compensator::Compensator(const Model& model, const std::vector<std::string>& axes, double stale_after_s)
-    : rate_range_{"", -kEverywhere, kEverywhere}, axes_(axes.size()), stale_after_s_(stale_after_s) {
+Compensator::Compensator(const Model& model, const std::vector<std::string>& axes, double stale_after_s,
+                         std::optional<double> since_power_up_s)
+    : rate_range_{"", -kEverywhere, kEverywhere},
+      axes_(axes.size()),
+      stale_after_s_(stale_after_s),
+      since_power_up_s_(since_power_up_s) {
   if (axes.empty() || axes.size() > kMaxAxes) {
     throw std::invalid_argument("a compensator has 1 to 3 axes, not " + std::to_string(axes.size()));
   }
@@ -55,6 +59,10 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     left_out_.push_back(label_of(effect));
     return;
   }
+  if (*form == Form::kWarmUp && !since_power_up_s_) {
+    left_out_.push_back(label_of(effect) + " (the time since power-up is not known)");
+    return;
+  }
   if (has_channel(*form) && effect.channel.empty()) {
     throw std::invalid_argument("effect " + in_quotes(effect.form) + " names no channel");
   }
@@ -82,6 +90,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
     throw std::invalid_argument("a form with memory cannot be a function of the rate");
   }
   const bool timed = settings.form == Form::kWarmUp;
+  settings.elapsed_s = since_power_up_s_.value_or(0.0);
   term.factors.push_back({Shape(std::move(settings)), rate || timed ? kNone : channel_index(channel), rate});
 }
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,13 +44,17 @@ struct CompensatorOutput {
 class Compensator {
  public:
   // `axes` as in the capture: "x", "y", "z", or one "". An effect without an axis applies to every axis.
-  // Throws std::invalid_argument naming the effect and what is wrong with it.
+  // since_power_up_s: of the sensor at the first sample. A sensor that has long been warm has no warm-up
+  // left, and nothing in its samples tells in time, so without it a warm_up is left out. Throws
+  // std::invalid_argument naming the effect and what is wrong with it.
   Compensator(const Model& model, const std::vector<std::string>& axes,
-              double stale_after_s = std::numeric_limits<double>::infinity());
+              double stale_after_s = std::numeric_limits<double>::infinity(),
+              std::optional<double> since_power_up_s = {});
 
   // The environment channels step() wants, in this order. Reference rates are not among them.
   [[nodiscard]] const std::vector<std::string>& channels() const noexcept { return channels_; }
-  // Effects of the model that are not corrected online, see carries_over().
+  // Effects of the model that are not corrected online, see carries_over(), and warm_up where the time since
+  // power-up is not known; in words.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
 
   void step(const CompensatorInput& in, CompensatorOutput& out) noexcept;
@@ -106,6 +111,7 @@ class Compensator {
   std::size_t parameters_ = 0;
   std::size_t axes_;
   double stale_after_s_;
+  std::optional<double> since_power_up_s_;
 };
 
 }  // namespace ifog

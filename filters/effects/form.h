@@ -52,7 +52,8 @@ std::string_view name_of(Form form);
 [[nodiscard]] bool describes_noise(Form form);  // nothing to subtract
 
 // False for what happened once in a record, or has a phase or an origin that the next record does not share:
-// it is reported and removed from that record, and left out online.
+// it is reported and removed from that record, and left out online. A warm-up's origin is power-up, so it is
+// corrected where that is known.
 [[nodiscard]] bool carries_over(Form form);
 
 // The power of a polynomial form, 0 for others.

@@ -109,7 +109,7 @@ double Shape::step(double value, double dt_s) noexcept {
   started_ = true;
   switch (settings_.form) {
     case Form::kWarmUp:
-      elapsed_ = fresh ? 0.0 : elapsed_ + dt_s;
+      elapsed_ = fresh ? settings_.elapsed_s : elapsed_ + dt_s;
       return std::exp(-elapsed_ / settings_.time_constant_s);
     case Form::kLookup: {
       const double angle = table(value);

@@ -18,6 +18,7 @@ struct ShapeSettings {
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;
   bool angle = false;
+  double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };
 
 ShapeSettings shape_settings(

@@ -1,11 +1,13 @@
 #include "filters/diagnosis/record/compensated_error.h"
 
+#include <limits>
+
 #include "filters/effects/compensate_series.h"
 
 namespace ifog {
 
 std::vector<double> compensated_error(const Record& record, const Model& model) {
-  Compensator compensator(model, {""});
+  Compensator compensator(model, {""}, std::numeric_limits<double>::infinity(), 0.0);
   SeriesToCompensate series{record.time_s, {record.rate_radps}, {}};
   series.channels.reserve(compensator.channels().size());
   for (const std::string& name : compensator.channels()) series.channels.push_back(values_of(record, name));

@@ -9,7 +9,8 @@
 namespace ifog {
 
 // Rate less the model's effects, causally and with their lags settled as they would be online, less the
-// reference if there is one; by sample. The model's effects name no axis. Throws as Compensator does.
+// reference if there is one; by sample. The model's effects name no axis; a warm_up
+// counts from the first sample, as it was fitted. Throws as Compensator does.
 std::vector<double> compensated_error(const Record& record, const Model& model);
 
 }  // namespace ifog

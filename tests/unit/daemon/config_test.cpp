@@ -230,7 +230,22 @@ TEST(Config, GathersAllErrors) {
       "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
       "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, imu, "
       "max_step, maximum, "
-      "minimum, model, name, nominal_rate_hz, options, range_radps, realtime, record, transport");
+      "minimum, model, name, nominal_rate_hz, options, powered_with_computer, range_radps, realtime, record, "
+      "transport");
+}
+
+// The kernel's own file is the oracle of the time since boot.
+TEST(Config, ASensorPoweredWithTheComputerHasBeenOnSinceBoot) {
+  const std::string head = "[[sensor]]\nname = \"n\"\ndriver = \"kvh1750\"\n";
+  const std::string tail = "[sensor.transport]\ntype = \"file\"\npath = \"x\"\n";
+  EXPECT_FALSE(since_power_up_s(parse_config(head + tail, "f.toml").sensors.at(0)));
+  const Config config = parse_config(head + "powered_with_computer = true\n" + tail, "f.toml");
+  const std::optional<double> since_s = since_power_up_s(config.sensors.at(0));
+  double boot_s = 0.0;
+  ASSERT_TRUE(std::ifstream("/proc/uptime") >> boot_s);
+  ASSERT_TRUE(since_s);
+  EXPECT_LE(*since_s, boot_s + 0.02);  // hundredths
+  EXPECT_GE(*since_s, boot_s - 60.0);  // however long this test was held up in between
 }
 
 TEST(Config, NothingToDoIsAnError) {

@@ -232,5 +232,25 @@ TEST(Compensator, RefusesAModelItCannotRun) {
   EXPECT_THROW(Compensator(model, {""}), std::invalid_argument);
 }
 
+// A sensor that has long been on has nothing left to settle, and its samples do not say so in time.
+TEST(Compensator, AWarmUpIsCorrectedOnlyWhereTheTimeSincePowerUpIsKnown) {
+  Model model;
+  Effect warm_up;
+  warm_up.form = "warm_up";
+  warm_up.parameters = {{"coefficient", 2e-6, 0.0, "rad/s"}, {"time_constant_s", 40.0, 0.0, "s"}};
+  model.effects = {warm_up};
+  Compensator unknown(model, {""});
+  EXPECT_EQ(unknown.left_out(), std::vector<std::string>{"warm_up (the time since power-up is not known)"});
+  EXPECT_EQ(step(unknown, 1e-3, {}).compensated_radps[0], 1e-3);
+  for (const double since_s : {0.0, 25.0, 1e5}) {
+    Compensator known(model, {""}, std::numeric_limits<double>::infinity(), since_s);
+    EXPECT_TRUE(known.left_out().empty());
+    for (int i = 0; i < 500; ++i) {
+      const double settled = 2e-6 * std::exp(-(since_s + 0.01 * i) / 40.0);
+      EXPECT_NEAR(step(known, 1e-3, {}).compensated_radps[0], 1e-3 - settled, 1e-17) << since_s << ' ' << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ifog

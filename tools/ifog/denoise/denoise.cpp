@@ -39,6 +39,7 @@ struct Options {
   std::string capture, output, model, config, sensor, json, picture, noise;
   double nominal_rate_hz = 0.0, start_up_s = 0.0;
   std::optional<std::uint64_t> first_sequence;
+  std::optional<double> since_power_up_s;
   TimePart part;
   CaptureInput input;
   FilterChoice filter;
@@ -205,6 +206,7 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
                   ? flight->model(out.sensor)
                   : read_sensor_model(out.sensor);
   out.first_sequence = options.first_sequence;
+  out.since_power_up_s = options.since_power_up_s;
   if (!options.noise.empty())
     out.learned = read_kept_noise(options.noise).noise;
   else if (flight != nullptr && options.config.empty())
@@ -350,6 +352,11 @@ void add_denoise(CLI::App& app) {
           "--sequence", options->first_sequence,
           "Number of the first sample in the recording that this one is a part of: its random weights")
       ->type_name("N");
+  command
+      ->add_option("--since-power-up", options->since_power_up_s,
+                   "Seconds from power-up to the first sample; without it a model's warm_up is not corrected")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
   command->add_option("--from", options->part.from_s,
                       "Write nothing before this time, s; filter from the beginning");
   command->add_option("--to", options->part.to_s, "Write nothing from this time on, s");

@@ -103,6 +103,7 @@ OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& set
   chain_settings.start_up_s = settings.sensor.start_up_s;
   chain_settings.model = settings.model;
   chain_settings.learned = settings.learned;
+  chain_settings.since_power_up_s = settings.since_power_up_s;
   Chain chain(chain_settings, settings.first_sequence);
   Reading reading;
   ChainOutput out;
@@ -129,6 +130,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
                                 const OfflineSettings& settings, const OfflineSink& sink) {
   ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
   chain_settings.learned = settings.learned;
+  chain_settings.since_power_up_s = settings.since_power_up_s;
   const SensorFacts& facts = chain_settings.facts;
   Chain chain(chain_settings, settings.first_sequence);
   Reading reading;
@@ -153,6 +155,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
                              const OfflineSink& sink) {
   ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
   chain_settings.learned = settings.learned;
+  chain_settings.since_power_up_s = settings.since_power_up_s;
   const SensorFacts& facts = chain_settings.facts;
   const std::vector<ChannelConfig> outside = outside_channels(settings.sensor);
   // By name: the settings may be others than those it was recorded with.

@@ -24,6 +24,7 @@ struct OfflineSettings {
   std::optional<LearnedNoise> learned;  // ChainSettings::learned
   // Number of the first sample in the recording that this one is a part of; its own otherwise.
   std::optional<std::uint64_t> first_sequence;
+  std::optional<double> since_power_up_s;  // ChainSettings::since_power_up_s
 };
 
 // One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step times.
