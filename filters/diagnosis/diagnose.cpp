@@ -1,17 +1,22 @@
 #include "filters/diagnosis/diagnose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
+#include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/channel_faults.h"
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/record/reference_delay.h"
 #include "filters/diagnosis/record/turned.h"
 #include "filters/diagnosis/record/unused_channels.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
+#include "filters/diagnosis/report/grown_figures.h"
 #include "filters/diagnosis/report/held_out_part.h"
 #include "filters/diagnosis/report/hidden_causes.h"
 #include "filters/diagnosis/report/loop_rivals.h"
@@ -30,6 +35,9 @@ namespace ifog {
 namespace {
 
 constexpr double kOfLines = 1.0 / 200.0;  // of the significance: every frequency is tried
+constexpr double kLate =
+    24.0;  // twice the log-likelihood that a channel's delay has to gain, its tries included
+constexpr std::size_t kMostDelays = 2;    // channels
 constexpr std::size_t kMoreOnDwells = 4;  // effects: a scale factor comes with its powers and products
 
 std::string in_words(const Effect& effect) {
@@ -56,6 +64,16 @@ std::string judged_beside(std::size_t harmonics) {
          ", which the model of the noise knows; nothing of that is subtracted";
 }
 
+std::string delay_in_words(const ChannelDelay& delay) {
+  std::array<char, 240> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "%s logged %.3g s late (+-%.2g): its effects were sought as if it were not. The daemon has it no "
+      "sooner, so the correction that is written and judged is late by as much",
+      delay.channel.c_str(), delay.delay_s, delay.std_error_s);
+  return text.data();
+}
+
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
  public:
@@ -70,6 +88,7 @@ class Run {
     refuse_constant(records_);
     look_at_channels();
     search({});
+    align_channels();
     subtract_found(data_, found_, errors_);
     separate_lines();
     separate_hysteresis();
@@ -104,6 +123,30 @@ class Run {
     search.progress = options_.progress;
     search.given = given;
     found_ = search_effects(data_, reconstructed_, search);
+  }
+
+  // A delay is a parameter of the channel, and has to pay for itself: all effects sought anew with the
+  // channel as it was must be that much likelier.
+  void align_channels() {
+    if (data_.grid.dwells) return;
+    for (std::size_t round = 0; round < kMostDelays; ++round) {
+      const auto delay = most_delayed_channel(reconstructed_, found_.fitted, found_.noise.shape);
+      if (!delay || delay->gain < kLate) return;
+      const BlockData before = reconstructed_;
+      SearchResult found = found_;
+      undo_delay(data_.grid, delay->delay_s, reconstructed_.channels[delay->channel]);
+      search({});
+      const bool used = std::any_of(found_.fitted.begin(), found_.fitted.end(), [&](const Candidate& each) {
+        return each.channel == delay->channel || each.with_channel == delay->channel;
+      });
+      if (!used || score_of(found_) < score_of(found) + kLate) {
+        reconstructed_ = before;
+        found_ = std::move(found);
+        return;
+      }
+      result_.channel_delays.push_back(
+          {data_.channels[delay->channel].name, delay->delay_s, delay->std_error_s});
+    }
   }
 
   // Lines are looked for in what the effects leave; a slow one then competes with them in a second search. A
@@ -173,8 +216,10 @@ class Run {
   // left out of the fit: index of the one to leave out, none when they make neither error larger.
   std::optional<std::size_t> what_makes_it_worse() {
     if (holds(reconstructed_, found_, errors_, &EvenError::written) &&
-        holds(reconstructed_, found_, errors_, &EvenError::held_out))
-      return std::nullopt;
+        holds(reconstructed_, found_, errors_, &EvenError::held_out)) {
+      write_before_and_after(errors_, data_.grid.sample_s, result_);
+      if (!grows_over_many(result_, errors_)) return std::nullopt;
+    }
     if (const auto harmful =
             most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
       return harmful;
@@ -206,9 +251,11 @@ class Run {
   }
 
   void report_rest() {
+    for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
     result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
     report_changes_of_size();
     say(unexplained_beside_claims(result_, records_.size()));
+    say(grown_in_words(result_, errors_));
     if (moving_) describe_moving(*moving_, result_.unexplained);
     if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     if (!moving_ && !data_.grid.dwells)
@@ -245,12 +292,14 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
   check_columns(records);
-  const RepairedRecords repaired = repair_channels(records);
-  const WithoutTurns resting = without_turns(repaired.records);
+  const RepairedRecords repaired = repair_records(records);
+  const AlignedRecords aligned = align_references(repaired.records);
+  const WithoutTurns resting = without_turns(aligned.records);
   const std::vector<Record> fitted = share.whole() ? resting.records : fitted_parts(resting.records, share);
   const WithoutRamps without = take_out_ramps(fitted, options.significance);
   Diagnosis diagnosis = Run(fitted, without, options).run();
-  for (const auto* remarks : {&resting.remarks, &repaired.remarks})
+  diagnosis.reference_delays = aligned.delays;
+  for (const auto* remarks : {&resting.remarks, &aligned.remarks, &repaired.remarks})
     diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks->begin(), remarks->end());
   if (!share.whole()) judge(resting.records, share, diagnosis);
   return diagnosis;

@@ -78,6 +78,21 @@ struct HeadingPrediction {
   std::vector<double> sigma_rad;  // root of the expected square of the heading error then
 };
 
+// Of a record whose reference was logged late: the true rate at a time stands delay_s behind it. Before and
+// after are those of the shifted reference.
+struct ReferenceDelay {
+  std::string record;
+  double delay_s = 0.0;  // below zero: early, or the rate late
+  double std_error_s = 0.0;
+};
+
+// Of a channel that was logged late: what it says at a time was so delay_s before.
+struct ChannelDelay {
+  std::string channel;
+  double delay_s = 0.0;
+  double std_error_s = 0.0;
+};
+
 // What a report draws. Decimated to a few thousand points.
 struct DiagnosisSeries {
   std::vector<double> time_s, before_radps, after_radps;  // block means of the error
@@ -105,6 +120,8 @@ struct Diagnosis {
   HeadingPrediction heading;  // if the channels run as they did in the longest record
   NoisePosterior noise_posterior;
   std::vector<OtherExplanation> others;
+  std::vector<ReferenceDelay> reference_delays;  // of the records that have one
+  std::vector<ChannelDelay> channel_delays;
   std::vector<std::string> remarks;  // anything else a person should know, one sentence each
   DiagnosisSeries series;
 };

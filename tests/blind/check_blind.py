@@ -122,6 +122,8 @@ class JudgeTest(unittest.TestCase):
         self.assertEqual(len(judge.contradictions(self.report, 2.0, 1.5)), 1)
         self.report["after"]["rms_10s_radps"] = 3.0
         self.assertEqual(len(judge.contradictions(self.report, 2.0, 1.0)), 1)
+        self.report["remarks"] = ["10 s means grow 1.5 times, but there are 12 of them"]
+        self.assertEqual(judge.contradictions(self.report, 2.0, 1.0), [])
 
     def test_means_leave_out_what_is_missing(self):
         x = np.array([1.0, 1.0, np.nan, 3.0, np.nan, np.nan])

@@ -71,10 +71,12 @@ def checked(command):
     return seconds
 
 
-def corrected(ifog, folder, name, model, axis):
-    """What the model takes from the rate, row by row, and what it leaves."""
+def corrected(ifog, folder, name, model, axis, cold):
+    """What the model takes from the rate, row by row, and what it leaves. `cold`: it begins at power-up, which
+    whoever records it knows and tells."""
     out = folder / f"{name}_out.csv"
-    checked([ifog, "denoise", folder / f"{name}.csv", "--model", model, "--output", out])
+    checked([ifog, "denoise", folder / f"{name}.csv", "--model", model, "--output", out]
+            + (["--since-power-up", "0"] if cold else []))
     columns = read_csv(out)
     raw, left = columns[f"raw_{axis}radps"], columns[f"compensated_{axis}radps"]
     return columns["time_s"], raw - left, left
@@ -105,9 +107,9 @@ def judged(ifog, seed, only, folder):
             raise Failed("diagnose: exit 0 without the model it was told to write")
         dt = 1 / truth["sample_rate_hz"]
         seconds = dt if "ramp" in truth["kind"] else 10.0
-        times, took, _ = corrected(ifog, folder, "next", folder / "m.toml", axis)
+        times, took, _ = corrected(ifog, folder, "next", folder / "m.toml", axis, not truth["outside"])
         error = judge.errors(second, on_rows(second.t, times, took), dt, seconds)
-        times, took, left = corrected(ifog, folder, "capture1", folder / "m.toml", axis)
+        times, took, left = corrected(ifog, folder, "capture1", folder / "m.toml", axis, True)
         reference = fit.columns.get(f"reference_rate_{axis}radps", 0.0)
         before = signals.rms(fit.columns[f"rate_{axis}radps"] - reference, dt)
         after = signals.rms(on_rows(fit.t, times, left) - reference, dt)

@@ -91,7 +91,9 @@ class Version:
     def check_model(self):
         """It takes from the rate what it took. (What the filter then makes of it may get better.)"""
         out = self.work / "denoised.csv"
-        ran(IFOG, "denoise", self.folder / "capture.csv", "--model", self.folder / "model.toml", "--output", out)
+        # The model has a warm_up; that the capture begins at power-up has to be told since.
+        ran(IFOG, "denoise", self.folder / "capture.csv", "--model", self.folder / "model.toml", "--output", out,
+            "--since-power-up", "0")
         same(columns(out), columns(self.folder / "compensated.csv"), 1e-12)
 
     def check_configuration(self):

@@ -5,6 +5,10 @@
 #include <cstdio>
 #include <optional>
 #include <set>
+#include <utility>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/units/field_units.h"
 
 namespace ifog {
 namespace {
@@ -18,6 +22,8 @@ constexpr double kLongestExcursion_s = 60.0;
 constexpr double kMostOfRecord = 0.02;  // in excursions together; the least of a stretch that stands still
 constexpr double kJump = 8.0;           // usual changes
 constexpr std::size_t kFewValues = 5;
+constexpr std::size_t kShortest = 2;   // samples of the rate that a knock shakes, and comes back
+constexpr double kMostKnocks = 0.001;  // of the record: more are how this sensor is
 
 double quantile(std::vector<double> values, double p) {
   const auto at = static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size() - 1));
@@ -37,11 +43,10 @@ Usual usual_of(std::span<const double> values) {
   Usual usual;
   std::vector<double> some, moves, changes;
   const std::size_t stride = std::max<std::size_t>(1, values.size() / kLookedAt);
-  for (std::size_t i = 0; i < values.size(); i += stride)
-    if (std::isfinite(values[i])) some.push_back(values[i]);
+  for (std::size_t i = 0; i < values.size(); i += stride) some.push_back(values[i]);
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double move = std::abs(values[i] - values[i - 1]);
-    if (i % stride == 0 && std::isfinite(move)) moves.push_back(move);
+    if (i % stride == 0) moves.push_back(move);
     if (move > 0.0 && changes.size() < 4 * kLookedAt) changes.push_back(move);
   }
   if (some.size() < 100 || changes.empty()) return usual;
@@ -54,35 +59,69 @@ Usual usual_of(std::span<const double> values) {
   return usual;
 }
 
-struct Run {
-  std::size_t from, to;  // samples [from, to)
+// A column without its missing values. What is there already is not copied.
+struct Readings {
+  explicit Readings(const Record& record, std::span<const double> column)
+      : time_s(record.time_s), values(column) {
+    if (std::all_of(column.begin(), column.end(), [](double value) { return std::isfinite(value); })) return;
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      if (!std::isfinite(column[i])) continue;
+      rows.push_back(i);
+      times_.push_back(record.time_s[i]);
+      values_.push_back(column[i]);
+    }
+    time_s = times_;
+    values = values_;
+  }
+  Readings(const Readings&) = delete;
+  Readings& operator=(const Readings&) = delete;
+
+  [[nodiscard]] std::size_t row(std::size_t reading) const { return rows.empty() ? reading : rows[reading]; }
+
+  std::span<const double> time_s, values;
+  std::vector<std::size_t> rows;  // of the readings; empty: all
+
+ private:
+  std::vector<double> times_, values_;
 };
 
-// First sample from `from` on, within a minute, whose value is beside `value` again; none: it stays away.
-std::optional<std::size_t> return_to(const Record& record, std::span<const double> values, std::size_t from,
-                                     double value, double beside) {
+struct Run {
+  std::size_t from, to;  // readings [from, to)
+};
+
+// First reading from `from` on, within a minute, whose value is beside `value` again; none: it stays away.
+std::optional<std::size_t> return_to(const Readings& of, std::size_t from, double value, double beside) {
   for (std::size_t i = from + 1;
-       i < values.size() && record.time_s[i] - record.time_s[from] <= kLongestExcursion_s; ++i)
-    if (std::abs(values[i] - value) <= beside) return i;
+       i < of.values.size() && of.time_s[i] - of.time_s[from] <= kLongestExcursion_s; ++i)
+    if (std::abs(of.values[i] - value) <= beside) return i;
   return std::nullopt;
 }
 
-// Jumps as the channel never makes, and back again.
-std::vector<Run> excursions(const Record& record, std::span<const double> values, const Usual& usual) {
+// Jumps as the channel never makes, and back again. A record may begin or end away: there one way is seen.
+std::vector<Run> excursions(const Readings& of, const Usual& usual) {
   const double span = usual.high - usual.low;
   const double jump = usual.slow ? std::max(kJump * usual.change, kAway * span) : kFar * span;
+  const auto elsewhere = [&](double value) { return value > usual.high + jump || value < usual.low - jump; };
+  const std::size_t n = of.values.size();
   std::vector<Run> found;
   std::size_t samples = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double away = std::abs(values[i] - values[i - 1]);
+  std::size_t i = 0;
+  while (i < n && elsewhere(of.values[i])) ++i;
+  if (i == n || of.time_s[i] - of.time_s[0] > kLongestExcursion_s) return {};
+  if (i > 0) found.push_back({0, i});
+  samples += i;
+  for (++i; i < n; ++i) {
+    const double away = std::abs(of.values[i] - of.values[i - 1]);
     if (!(away > jump)) continue;
-    const auto back = return_to(record, values, i, values[i - 1], kBeside * away);
+    auto back = return_to(of, i, of.values[i - 1], kBeside * away);
+    const bool ends = of.time_s[n - 1] - of.time_s[i] <= kLongestExcursion_s;
+    if (!back && ends && elsewhere(of.values[i])) back = n;
     if (!back) continue;
     found.push_back({i, *back});
     samples += *back - i;
     i = *back;
   }
-  if (static_cast<double>(samples) > kMostOfRecord * static_cast<double>(values.size())) return {};
+  if (static_cast<double>(samples) > kMostOfRecord * static_cast<double>(n)) return {};
   return found;
 }
 
@@ -101,17 +140,17 @@ std::vector<Run> stuck_stretches(std::span<const double> values, const Usual& us
   return found;
 }
 
-// Linear in time between the sample before the run and the one behind it; held where one of them is missing.
-void interpolate(const Record& record, const Run& run, std::vector<double>& values) {
-  const bool before = run.from > 0 && std::isfinite(values[run.from - 1]);
-  const bool behind = run.to < values.size() && std::isfinite(values[run.to]);
+// Linear in time between the reading before the run and the one behind it; held where one of them is missing.
+void interpolate(const Readings& of, const Run& run, std::vector<double>& values) {
+  const bool before = run.from > 0;
+  const bool behind = run.to < values.size();
   if (!before && !behind) return;
   const double first = before ? values[run.from - 1] : values[run.to];
   const double last = behind ? values[run.to] : first;
-  const double from_s = record.time_s[before ? run.from - 1 : run.from];
-  const double to_s = record.time_s[behind ? run.to : run.to - 1];
+  const double from_s = of.time_s[before ? run.from - 1 : run.from];
+  const double to_s = of.time_s[behind ? run.to : run.to - 1];
   for (std::size_t i = run.from; i < run.to; ++i) {
-    const double share = to_s > from_s ? (record.time_s[i] - from_s) / (to_s - from_s) : 0.0;
+    const double share = to_s > from_s ? (of.time_s[i] - from_s) / (to_s - from_s) : 0.0;
     values[i] = first + share * (last - first);
   }
 }
@@ -132,34 +171,86 @@ std::string excursions_in_words(std::span<const double> values, const std::vecto
       found.size(), samples, values[found.front().from]);
 }
 
+// The channel with its faults repaired, each told in `remarks`; nothing where it has none.
+std::optional<std::vector<double>> repaired_channel(const Record& record, const RecordChannel& channel,
+                                                    const std::string& where,
+                                                    std::vector<std::string>& remarks) {
+  const Readings of(record, channel.values);
+  const Usual usual = usual_of(of.values);
+  if (!usual.varied) return std::nullopt;
+  const std::vector<Run> away = excursions(of, usual);
+  std::vector<double> values(of.values.begin(), of.values.end());
+  for (const Run& run : away) interpolate(of, run, values);
+  const std::vector<Run> stuck = usual.slow ? stuck_stretches(values, usual) : std::vector<Run>{};
+  if (away.empty() && stuck.empty()) return std::nullopt;
+  if (!away.empty()) remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
+  for (const Run& run : stuck) {
+    remarks.push_back(
+        channel.name + where +
+        text(" stands at %.6g from %.6g s to %.6g s and then jumps: taken for stuck, interpolated",
+             values[run.from], of.time_s[run.from] - record.time_s.front(),
+             of.time_s[run.to] - record.time_s.front()));
+    interpolate(of, {run.from + 1, run.to}, values);
+  }
+  if (of.rows.empty()) return values;
+  std::vector<double> all(channel.values.begin(), channel.values.end());
+  for (std::size_t i = 0; i < values.size(); ++i) all[of.rows[i]] = values[i];
+  return all;
+}
+
+// A sample or two of the rate, less the reference, that leap away from both their neighbours by twenty spans
+// of all the others: a knock, or a fault of the logger. Nothing that an effect could be fitted to.
+std::optional<std::vector<double>> rate_without_knocks(const Record& record, const std::string& where,
+                                                       std::vector<std::string>& remarks) {
+  const std::vector<double> error = error_of(record);
+  const Readings of(record, error);
+  const Usual usual = usual_of(of.values);
+  const double far = kFar * (usual.high - usual.low);
+  if (!(far > 0.0)) return std::nullopt;
+  std::vector<double> rate;
+  std::size_t samples = 0;
+  double farthest = 0.0;
+  const auto is_away = [&](std::size_t i) {
+    return of.values[i] > usual.high + far || of.values[i] < usual.low - far;
+  };
+  for (std::size_t i = 0; i < of.values.size(); ++i) {
+    if (!is_away(i)) continue;
+    std::size_t to = i + 1;
+    while (to < of.values.size() && is_away(to)) ++to;
+    if (to - i <= kShortest) {
+      if (rate.empty()) rate.assign(record.rate_radps.begin(), record.rate_radps.end());
+      for (std::size_t k = i; k < to; ++k) {
+        rate[of.row(k)] = std::nan("");
+        farthest = std::max(farthest, std::abs(of.values[k]));
+      }
+      samples += to - i;
+    }
+    i = to;
+  }
+  if (samples == 0 ||
+      static_cast<double>(samples) > kMostKnocks * static_cast<double>(of.values.size()) + 1.0)
+    return std::nullopt;
+  remarks.push_back("the rate" + where +
+                    text(" leaps away and back in %zu sample(s), up to %.4g °/h: left out", samples,
+                         farthest / kDegreePerHour));
+  return rate;
+}
+
 }  // namespace
 
-RepairedRecords repair_channels(const std::vector<Record>& records) {
+RepairedRecords repair_records(const std::vector<Record>& records) {
   RepairedRecords repaired;
   repaired.records = records;
+  const auto keep = [&](std::vector<double> values) {
+    return std::span<const double>(repaired.values.emplace_back(std::move(values)));
+  };
   for (Record& record : repaired.records) {
     const std::string where = records.size() > 1 ? " (" + record.name + ")" : "";
-    for (RecordChannel& channel : record.channels) {
-      const Usual usual = usual_of(channel.values);
-      if (!usual.varied) continue;
-      const std::vector<Run> away = excursions(record, channel.values, usual);
-      std::vector<double> values(channel.values.begin(), channel.values.end());
-      for (const Run& run : away) interpolate(record, run, values);
-      const std::vector<Run> stuck = usual.slow ? stuck_stretches(values, usual) : std::vector<Run>{};
-      if (away.empty() && stuck.empty()) continue;
-      if (!away.empty())
-        repaired.remarks.push_back(channel.name + where + excursions_in_words(channel.values, away));
-      for (const Run& run : stuck) {
-        repaired.remarks.push_back(
-            channel.name + where +
-            text(" stands at %.6g from %.6g s to %.6g s and then jumps: taken for stuck, interpolated",
-                 values[run.from], record.time_s[run.from] - record.time_s.front(),
-                 record.time_s[run.to] - record.time_s.front()));
-        interpolate(record, {run.from + 1, run.to}, values);
-      }
-      repaired.values.push_back(std::move(values));
-      channel.values = repaired.values.back();
-    }
+    if (auto rate = rate_without_knocks(record, where, repaired.remarks))
+      record.rate_radps = keep(std::move(*rate));
+    for (RecordChannel& channel : record.channels)
+      if (auto values = repaired_channel(record, channel, where, repaired.remarks))
+        channel.values = keep(std::move(*values));
   }
   return repaired;
 }

@@ -1,5 +1,5 @@
-// Faults of logging in slow channels: a thermometer that says 85 or -127 °C for some seconds (power-on and
-// bus error of the DS18B20), a glitch of the logger, a value that stands still while the sensor moves on.
+// Faults of logging: a thermometer that says 85 or -127 °C for some seconds (power-on and bus error of the
+// DS18B20), a glitch of the logger, a value that stands still while the sensor moves on.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 namespace ifog {
 
 struct RepairedRecords {
-  std::vector<Record> records;              // as given, but for the channels repaired
-  std::vector<std::vector<double>> values;  // which those channels' spans show; keep as long as `records`
+  std::vector<Record> records;              // as given, but for the columns repaired
+  std::vector<std::vector<double>> values;  // which those columns' spans show; keep as long as `records`
   std::vector<std::string> remarks;         // one a fault found, for people
 };
 
 // Values that cannot be the channel's, interpolated between those beside them:
 // - leaps as the channel never makes, and back within a minute; of channels that do not move slowly only
-// those of
-//   twenty spans, for a blow is no fault of an accelerometer;
+//   those of twenty spans, for a blow is no fault of an accelerometer;
 // - of slow channels, stretches of one value, a fiftieth of the record or more, that end in such a leap.
-// Channels of a few values are left alone: a switch may be off for an hour.
-RepairedRecords repair_channels(const std::vector<Record>& records);
+// Channels of a few values are left alone: a switch may be off for an hour. Missing values stay missing.
+// Of the rate, a sample or two that leap by twenty spans and back become missing.
+RepairedRecords repair_records(const std::vector<Record>& records);
 
 }  // namespace ifog

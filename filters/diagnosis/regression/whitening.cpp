@@ -50,15 +50,14 @@ std::vector<double> flicker_bank(const BlockGrid& grid) {
 }
 
 Whitening::Whitening(const BlockGrid& grid, const NoiseShape& shape) : grid_(grid) {
-  std::vector<double> drive;
   if (shape.walk > 0.0) {
     factor_.push_back(1.0);
-    drive.push_back(shape.walk);
+    drive_.push_back(shape.walk);
   }
   const auto add_markov = [&](double variance, double blocks) {
     const double f = std::exp(-1.0 / blocks);
     factor_.push_back(f);
-    drive.push_back(variance * (1.0 - f * f));
+    drive_.push_back(variance * (1.0 - f * f));
   };
   if (shape.flicker > 0.0) {
     for (const double tau : flicker_bank(grid)) add_markov(shape.flicker, tau);
@@ -69,29 +68,70 @@ Whitening::Whitening(const BlockGrid& grid, const NoiseShape& shape) : grid_(gri
     const double turn = 2.0 * std::numbers::pi * each.cycles;
     turns_.push_back({left * std::cos(turn), left * std::sin(turn)});
     const double driven = each.variance * (1.0 - left * left);
-    drive.insert(drive.end(), {driven, driven, 0.0});
+    drive_.insert(drive_.end(), {driven, driven, 0.0});
   }
-  if (!drive.empty())
-    design_gain(Eigen::Map<Eigen::VectorXd>(drive.data(), static_cast<Eigen::Index>(drive.size())));
+  if (!drive_.empty()) design_gain();
 }
 
-void Whitening::design_gain(const Eigen::VectorXd& drive) {
-  const Eigen::Index m = drive.size();
-  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(m, m);
-  Eigen::VectorXd seen = Eigen::VectorXd::Ones(m);
+Whitening::StateSpace Whitening::state_space() const {
+  const auto m = static_cast<Eigen::Index>(drive_.size());
+  StateSpace states{Eigen::MatrixXd::Zero(m, m), Eigen::Map<const Eigen::VectorXd>(drive_.data(), m),
+                    Eigen::VectorXd::Ones(m)};
   Eigen::Index i = 0;
   for (; i < static_cast<Eigen::Index>(factor_.size()); ++i)
-    step(i, i) = factor_[static_cast<std::size_t>(i)];
+    states.step(i, i) = factor_[static_cast<std::size_t>(i)];
   for (const Turn& turn : turns_) {
-    step.block<2, 2>(i, i) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
-    step(i + 2, i) = 1.0;
-    seen.segment<2>(i + 1) << 0.0, -1.0;
+    states.step.block<2, 2>(i, i) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
+    states.step(i + 2, i) = 1.0;
+    states.seen.segment<2>(i + 1) << 0.0, -1.0;
     i += 3;
   }
-  const Eigen::VectorXd ph = steady_covariance(step, drive, seen) * seen;
-  innovation_variance_ = seen.dot(ph) + 1.0;
-  const Eigen::VectorXd gain = step * ph / innovation_variance_;
+  return states;
+}
+
+void Whitening::design_gain() {
+  const StateSpace states = state_space();
+  const Eigen::VectorXd ph = steady_covariance(states.step, states.drive, states.seen) * states.seen;
+  innovation_variance_ = states.seen.dot(ph) + 1.0;
+  const Eigen::VectorXd gain = states.step * ph / innovation_variance_;
   gain_.assign(gain.begin(), gain.end());
+}
+
+Columns Whitening::doubt_at_start() const {
+  const auto n = static_cast<Eigen::Index>(grid_.size());
+  const bool walks = !factor_.empty() && factor_.front() == 1.0;
+  const Eigen::Index first = walks ? 1 : 0;
+  const auto m = static_cast<Eigen::Index>(drive_.size());
+  if (m <= first) return Columns(n, 0);
+  const StateSpace states = state_space();
+  // Of what has gone on for ever: P = F P F' + D, by doubling.
+  const Eigen::Index k = m - first;
+  Eigen::MatrixXd power = states.step.bottomRightCorner(k, k);
+  Eigen::MatrixXd stationary = states.drive.tail(k).asDiagonal();
+  for (int round = 0; round < 40; ++round) {
+    stationary += (power * stationary * power.transpose()).eval();
+    power = (power * power).eval();
+  }
+  const Eigen::MatrixXd steady = steady_covariance(states.step, states.drive, states.seen);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> unknown(stationary - steady.bottomRightCorner(k, k));
+  const Eigen::VectorXd size = unknown.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd starts = unknown.eigenvectors() * size.asDiagonal();
+  const Eigen::Map<const Eigen::VectorXd> gain(gain_.data(), m);
+  Columns doubt = Columns::Zero(n, k * grid_.constants());
+  Eigen::Index column = 0;
+  for (const BlockRange& record : grid_.records) {
+    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(m, k);
+    state.bottomRows(k) = starts;
+    for (std::size_t b = record.first; b < record.end; ++b) {
+      const Eigen::RowVectorXd seen = states.seen.transpose() * state;
+      state = (states.step * state).eval();
+      if (!grid_.valid[b]) continue;
+      state -= gain * seen;
+      doubt.row(static_cast<Eigen::Index>(b)).segment(column, k) = seen;
+    }
+    column += k;
+  }
+  return doubt;
 }
 
 // A fixed number of columns at once, so that their states stay in registers.

@@ -53,19 +53,31 @@ class Whitening {
   [[nodiscard]] double innovation_variance() const { return innovation_variance_; }
   [[nodiscard]] std::size_t states() const { return gain_.size(); }
 
+  // A steady filter begins a record as if it had known the one before it: flicker and harmonics have a state
+  // then that it does not know, and its first innovations are as large as that. Columns of that doubt, one a
+  // state of each record, each with unit prior variance in units of the white variance: what was whitened may
+  // be any sum of them. The walk's level is not among them; it is a constant's.
+  [[nodiscard]] Columns doubt_at_start() const;
+
  private:
   template <int Width>
   void apply_some(Columns& columns, Eigen::Index first) const;
 
-  void design_gain(const Eigen::VectorXd& drive);
+  // x+ = step x + noise of variance `drive`, seen through `seen`.
+  struct StateSpace {
+    Eigen::MatrixXd step;
+    Eigen::VectorXd drive, seen;
+  };
+  [[nodiscard]] StateSpace state_space() const;
+  void design_gain();
 
   const BlockGrid& grid_;
   std::vector<double> factor_;  // of the states that only decay: x+ = factor x + gain e
   struct Turn {
     double cosine, sine;  // times what a block leaves of the amplitude
   };
-  std::vector<Turn> turns_;   // of the harmonics: angle, its quadrature, and the angle a block ago
-  std::vector<double> gain_;  // of all states, in that order
+  std::vector<Turn> turns_;           // of the harmonics: angle, its quadrature, and the angle a block ago
+  std::vector<double> drive_, gain_;  // of all states, in that order
   double innovation_variance_ = 1.0;
 };
 

@@ -7,6 +7,7 @@
 #include "filters/diagnosis/checks/hausman_test.h"
 #include "filters/diagnosis/checks/outliers.h"
 #include "filters/diagnosis/checks/proof.h"
+#include "filters/diagnosis/checks/start_of_record.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
@@ -43,6 +44,12 @@ bool step_stands(const BlockData& reconstructed, const SearchResult& found, std:
               ordered.begin() + static_cast<std::ptrdiff_t>(at) + 1, ordered.end());
   const double ratio = ratio_without_outliers(reconstructed, found.fitted, at, found.noise.shape);
   return tail(ratio, 1) * found.tries < significance && step_persists(reconstructed, {ordered, found.noise});
+}
+
+bool warm_up_stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at,
+                    double significance) {
+  const double ratio = ratio_beside_the_start(reconstructed, found.fitted, at, found.noise.shape);
+  return tail(ratio, 1) * found.tries < significance;
 }
 
 }  // namespace
@@ -113,9 +120,10 @@ std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockDa
   };
   for (std::size_t i = 0; i < found.fitted.size();) {
     const Candidate& each = found.fitted[i];
-    const bool proven = each.form == Form::kStep ? step_stands(reconstructed, found, i, significance)
-                                                 : each.channel == Candidate::kNone ||
-                                                       stands(reconstructed, found, i, significance);
+    const bool proven = each.form == Form::kStep     ? step_stands(reconstructed, found, i, significance)
+                        : each.form == Form::kWarmUp ? warm_up_stands(reconstructed, found, i, significance)
+                                                     : each.channel == Candidate::kNone ||
+                                                           stands(reconstructed, found, i, significance);
     if (proven)
       ++i;
     else

@@ -13,11 +13,12 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
-constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
-constexpr double kSecondLag = 16.0;    // and a second time constant of a lag
-constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
-constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
+constexpr std::size_t kShortlist = 4;    // candidates of different shape that are refined at each step
+constexpr double kSwapGain = 3.0;        // twice the log-likelihood a swap or a pair has to gain
+constexpr double kSecondLag = 16.0;      // and a second time constant of a lag
+constexpr double kLikeness = 6.0;        // loss below which another effect cannot be told from the chosen one
+constexpr double kChannelsFirst = 10.0;  // twice the description that channels may be longer than a warm-up
+constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
 constexpr double kDependent = 0.2;        // correlation of two coefficients
 constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
@@ -28,8 +29,8 @@ bool is_event(const Candidate& candidate) {
 
 class EffectSearch {
  public:
-  EffectSearch(const BlockData& data, const SearchOptions& options)
-      : data_(data), options_(options), scan_(data, library(data)), model_(options.given) {}
+  EffectSearch(const BlockData& data, const SearchOptions& options, std::vector<Candidate> candidates)
+      : data_(data), options_(options), scan_(data, std::move(candidates)), model_(options.given) {}
 
   SearchResult run() {
     SearchResult result;
@@ -332,9 +333,54 @@ std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen) {
   return candidates;
 }
 
+double score_of(const SearchResult& result) {
+  double score = 2.0 * result.noise.log_likelihood;
+  for (const Chosen& each : result.chosen) score -= complexity(each.candidate);
+  return score;
+}
+
+namespace {
+
+// Twice the length in which the data are described: three channels that together happen to settle are dearer
+// than one that does.
+double description(const BlockGrid& grid, const SearchResult& result) {
+  double parameters = 0.0;
+  for (const Chosen& each : result.chosen)
+    parameters += static_cast<double>(each.candidate.width()) + (each.candidate.searched() ? 1.0 : 0.0) +
+                  (each.candidate.second_time_constant_s > 0.0 ? 1.0 : 0.0);
+  return parameters * std::log(static_cast<double>(grid.used())) - score_of(result);
+}
+
+bool has_warm_up(const SearchResult& result) {
+  return std::any_of(result.chosen.begin(), result.chosen.end(),
+                     [](const Chosen& each) { return each.candidate.form == Form::kWarmUp; });
+}
+
+// Whether a channel explains what another search had left to something else.
+bool explains_by_channel(const SearchResult& result, const SearchResult& other) {
+  return std::any_of(result.chosen.begin(), result.chosen.end(), [&](const Chosen& each) {
+    return each.candidate.channel != Candidate::kNone &&
+           std::none_of(other.chosen.begin(), other.chosen.end(),
+                        [&](const Chosen& also) { return also.candidate.same_shape(each.candidate); });
+  });
+}
+
+SearchResult searched(const BlockData& reconstructed, const SearchOptions& options) {
+  std::vector<Candidate> candidates = library(reconstructed);
+  SearchResult found = EffectSearch(reconstructed, options, candidates).run();
+  if (!has_warm_up(found)) return found;
+  std::erase_if(candidates, [](const Candidate& each) { return each.form == Form::kWarmUp; });
+  SearchResult by_channels = EffectSearch(reconstructed, options, std::move(candidates)).run();
+  const BlockGrid& grid = reconstructed.grid;
+  if (!explains_by_channel(by_channels, found)) return found;
+  return description(grid, by_channels) < description(grid, found) + kChannelsFirst ? by_channels : found;
+}
+
+}  // namespace
+
 SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
                             const SearchOptions& options) {
-  SearchResult result = EffectSearch(reconstructed, options).run();
+  SearchResult result = searched(reconstructed, options);
   result.fitted = candidates_of(result.chosen);
   result.fitted_coefficients = result.coefficients;
   fit_to_readings(data, reconstructed, result);

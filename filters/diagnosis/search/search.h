@@ -47,7 +47,12 @@ struct SearchOptions {
   std::vector<Candidate> given;  // lines, found elsewhere; in the fit from the start
 };
 
-// data: channels as read; reconstructed: as with_reconstructed_channels() makes them of it.
+// Twice the log-likelihood less what its effects' complexity costs: by which two searches compare.
+double score_of(const SearchResult& result);
+
+// data: channels as read; reconstructed: as with_reconstructed_channels() makes them of it. A warm-up has no
+// channel to blame and fits whatever a record began with; where channels explain as much without it, it is
+// theirs.
 SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
                             const SearchOptions& options);
 

@@ -1,11 +1,13 @@
 #include "tests/bench/undeclared/project_diagnosis.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/effects/form.h"
+#include "tests/bench/undeclared/contradictions.h"
 
 namespace ifog::undeclared {
 namespace {
@@ -13,7 +15,8 @@ namespace {
 using Series = std::vector<double>;
 
 Series correction(const Model& model, const Capture& capture) {
-  Compensator compensator(model, {""});
+  // Every capture of this generator begins at power-up.
+  Compensator compensator(model, {""}, std::numeric_limits<double>::infinity(), 0.0);
   SeriesToCompensate series{capture.time_s, {capture.rate_radps[0]}, {}};
   for (const std::string& name : compensator.channels())
     for (const CaptureColumn& c : capture.channels)
@@ -88,6 +91,7 @@ Diagnose project_diagnosis() {
     const Diagnosis diagnosis = diagnose(records, {});
     Finding finding;
     finding.unexplained = diagnosis.unexplained.kind != "nothing" && !diagnosis.unexplained.kind.empty();
+    finding.contradictions = contradictions(diagnosis, captures);
     finding.heading = [diagnosis](const Capture& next) { return predicted(diagnosis, next); };
     for (const FoundEffect& found : diagnosis.effects) {
       const std::optional<Form> form = form_named(found.effect.form);

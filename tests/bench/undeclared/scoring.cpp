@@ -219,6 +219,7 @@ Score score(const Sensor& sensor, const Diagnose& diagnose) {
   const Finding finding = diagnose(captures);
   s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   s.unexplained = finding.unexplained;
+  s.contradictions = finding.contradictions;
   for (const Claim& f : finding.effects) s.names += (s.names.empty() ? "" : " + ") + name_of(f.effect);
   if (sensor.kind == Kind::kUncovered)
     score_uncovered(s, sensor, finding);

@@ -27,7 +27,8 @@ struct Claim {
 
 struct Finding {
   std::vector<Claim> effects;
-  bool unexplained = false;  // "something is left that no form describes"
+  bool unexplained = false;                 // "something is left that no form describes"
+  std::vector<std::string> contradictions;  // of the report with itself
   // Of another capture of the sensor, from its times and channels alone; empty when none is made.
   std::function<HeadingPrediction(const Capture& next)> heading;
 };
@@ -55,7 +56,8 @@ struct Score {
   std::vector<Parameter> parameters;
   // (heading error found / predicted)^2 on another capture, at the longest time predicted that it holds.
   std::optional<double> heading_square;
-  std::string names;  // what was found, for the log
+  std::string names;                        // what was found, for the log
+  std::vector<std::string> contradictions;  // as Finding has them
   double seconds = 0.0;
 
   [[nodiscard]] bool right() const { return missed == 0; }

@@ -64,6 +64,7 @@ Totals total(const std::vector<Score>& scores) {
   int inside = 0;
   for (const Score& s : scores) {
     t.seconds_each += s.seconds / static_cast<double>(scores.size());
+    t.contradictory += s.contradictions.empty() ? 0 : 1;
     if (s.heading_square) {
       t.heading_square += *s.heading_square;
       t.heading_within += *s.heading_square <= 1.96 * 1.96 ? 1.0 : 0.0;
@@ -160,6 +161,8 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
   if (t.uncovered > 0)
     line(out, "not covered      %5d, called unexplained %d, made worse %d (target 0)", t.uncovered,
          t.uncovered_said, t.made_worse);
+  line(out, "contradictions   %5d of %5zu  reports say something against themselves (target 0)",
+       t.contradictory, scores.size());
   if (t.intervals > 0)
     line(out, "95 %% intervals  hold %.1f %% of %d (target 93 to 97), median width %.2f of the oracle's",
          100.0 * t.coverage, t.intervals, t.interval_width);
@@ -178,6 +181,8 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
 void print_failures(std::ostream& out, const std::vector<Score>& scores) {
   for (const Score& s : scores) {
     const bool worse = s.kind == Kind::kUncovered && s.shape_error > 1.02 * s.effect_size;
+    for (const std::string& each : s.contradictions)
+      line(out, "seed %-8llu contradicts itself: %s", static_cast<unsigned long long>(s.seed), each.c_str());
     if (s.right() && s.extra == 0 && !worse) continue;
     line(out, "seed %-8llu %-22s %5.1f sigma  missed %d extra %d%s  error %.3f  found: %s",
          static_cast<unsigned long long>(s.seed), name_of(s.kind), s.sigma, s.missed, s.extra,

@@ -21,6 +21,7 @@ struct Totals {
   // Means of all, of effect-free sensors, of those diagnosed right; share within 1.96 sigma.
   double heading_square = 0.0, heading_square_free = 0.0, heading_square_right = 0.0, heading_within = 0.0;
   int headings = 0, headings_free = 0, headings_wrong = 0;
+  int contradictory = 0;  // reports, of all sensors
   double seconds_each = 0.0;
 };
 

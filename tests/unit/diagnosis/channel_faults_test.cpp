@@ -29,7 +29,7 @@ struct Logged {
     record.time_s = time;
     record.rate_radps = rate;
     record.channels = {{name, channel}};
-    return repair_channels({record});
+    return repair_records({record});
   }
 };
 
@@ -79,6 +79,49 @@ TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
             "supply_V");
   // A thermometer in whole degrees stands still by its resolution and moves by its usual change.
   untouched(Logged([](double t) { return std::round(20.0 + 15.0 * std::sin(t / 900.0)); }), "coil_degC");
+}
+
+// A value is judged by the one before it, however long ago that was: an empty cell beside a glitch hides
+// nothing, nor does a thermometer that is polled every ten seconds, or a record that begins or ends in one.
+TEST(ChannelFaults, EmptyCellsDoNotHideAGlitch) {
+  for (const std::size_t at : {std::size_t{0}, std::size_t{2000}, kSamples - 10}) {
+    Logged logged(warming);
+    for (std::size_t i = 0; i < kSamples; ++i)
+      if (i % 10 != 0) logged.channel[i] = std::nan("");
+    logged.channel[at] = -1e6;
+    const RepairedRecords repaired = logged.repaired("temperature_degC");
+    ASSERT_EQ(repaired.remarks.size(), 1U) << at;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const double value = repaired.records[0].channels[0].values[i];
+      ASSERT_EQ(std::isfinite(value), i % 10 == 0) << i;
+      if (i % 10 == 0) {
+        EXPECT_NEAR(value, warming(static_cast<double>(i)), 0.2) << i;
+      }
+    }
+  }
+}
+
+TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsMissing) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  Logged logged(warming);
+  for (double& rate : logged.rate) rate = 1e-6 * normal(random);
+  logged.rate[1700] = 5e-4;  // a hundred times what the others span
+  const auto clean = logged.rate;
+  const RepairedRecords repaired = logged.repaired("temperature_degC");
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double rate = repaired.records[0].rate_radps[i];
+    if (i == 1700)
+      EXPECT_TRUE(std::isnan(rate));
+    else
+      EXPECT_EQ(rate, clean[i]);
+  }
+  ASSERT_EQ(repaired.remarks.size(), 1U);
+  EXPECT_EQ(repaired.remarks[0], "the rate leaps away and back in 1 sample(s), up to 103.1 °/h: left out");
+  // A knock of ten samples and one of sixty sigma are the sensor's own.
+  logged.rate[1700] = 6e-5;
+  for (std::size_t i = 3000; i < 3010; ++i) logged.rate[i] = 5e-4;
+  EXPECT_TRUE(logged.repaired("temperature_degC").remarks.empty());
 }
 
 // Without rows for 300 s the channel goes on in a straight line: no step for a derivative to see.

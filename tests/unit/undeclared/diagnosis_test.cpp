@@ -7,6 +7,7 @@
 
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
+#include "tests/bench/undeclared/contradictions.h"
 #include "tests/bench/undeclared/logging_faults.h"
 #include "tests/bench/undeclared/project_diagnosis.h"
 #include "tests/bench/undeclared/tally.h"
@@ -65,6 +66,7 @@ TEST(UndeclaredDiagnosis, NoReportPromisesWhatItsModelDoesNotKeep) {
     const double before = rms(ifog::error_of(logged));
     EXPECT_NEAR(d.before.at("residual_rms_radps"), before, 1e-3 * before) << where;
     EXPECT_LE(d.after.at("residual_rms_radps"), 1.02 * before) << where;
+    for (const std::string& each : contradictions(d, captures)) ADD_FAILURE() << where << ": " << each;
     if (fault.empty() || fault == "hole") {
       const double left = rms(ifog::compensated_error(logged, model));
       EXPECT_LE(left, 1.001 * d.after.at("residual_rms_radps")) << where;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "drivers/capture/output_file.h"
@@ -38,12 +40,13 @@ struct Arguments {
   std::vector<std::string> axes;
   double significance = 0.01;
   double fit_from = 0.0, fit_to = 1.0;
+  std::optional<double> since_power_up_s;
   bool quiet = false;
 };
 
 // The model's own effects are subtracted first, by the code that subtracts them online.
-void compensate(Capture& capture, const Model& model) {
-  Compensator compensator(model, capture.axes);
+void compensate(Capture& capture, const Model& model, std::optional<double> since_power_up_s) {
+  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(), since_power_up_s);
   SeriesToCompensate series{capture.time_s, {capture.rate_radps.begin(), capture.rate_radps.end()}, {}};
   for (const std::string& name : compensator.channels()) {
     const CaptureColumn* found = nullptr;
@@ -147,6 +150,11 @@ std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const 
     progress.reset();
     found.push_back({axes[axis], std::move(diagnosis)});
   }
+  if (!found.empty())
+    for (const Capture& capture : captures) {
+      auto& remarks = found.front().diagnosis.remarks;
+      remarks.insert(remarks.begin(), capture.faults.begin(), capture.faults.end());
+    }
   const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
   if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   if (found.empty()) throw std::runtime_error("no such axis in " + arguments.captures[0]);
@@ -207,7 +215,7 @@ void run(const Arguments& arguments) {
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
-    for (Capture& capture : captures) compensate(capture, model);
+    for (Capture& capture : captures) compensate(capture, model, arguments.since_power_up_s);
   }
   for (std::size_t c = 0; c < captures.size(); ++c) arguments.part.cut(captures[c], arguments.captures[c]);
   const std::vector<AxisDiagnosis> found = all_axes(captures, arguments);
@@ -232,6 +240,10 @@ void add_diagnose(CLI::App& app) {
   arguments->part.add_to(*command);
   command->add_option("--axis", arguments->axes, "only these axes");
   command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
+  command
+      ->add_option("--since-power-up", arguments->since_power_up_s,
+                   "seconds from power-up to the captures' first sample: a warm_up of --model is corrected")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--write-model", arguments->write_model, "write the model with what was found");
   command->add_option("--json", arguments->json, "write the diagnosis as JSON");
   command->add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");

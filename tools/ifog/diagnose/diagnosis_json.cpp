@@ -94,6 +94,24 @@ Json heading_json(const HeadingPrediction& heading) {
   return {{"aligned_s", heading.aligned_s}, {"after_s", heading.after_s}, {"sigma_rad", heading.sigma_rad}};
 }
 
+Json delays_json(const std::vector<ReferenceDelay>& delays) {
+  Json json = Json::array();
+  for (const ReferenceDelay& each : delays)
+    json.push_back({{"capture", each.record},
+                    {"delay_s", number(each.delay_s)},
+                    {"std_error_s", number(each.std_error_s)}});
+  return json;
+}
+
+Json delays_json(const std::vector<ChannelDelay>& delays) {
+  Json json = Json::array();
+  for (const ChannelDelay& each : delays)
+    json.push_back({{"channel", each.channel},
+                    {"delay_s", number(each.delay_s)},
+                    {"std_error_s", number(each.std_error_s)}});
+  return json;
+}
+
 }  // namespace
 
 Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
@@ -134,6 +152,8 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
   }
   put("unexplained", [](const Diagnosis& d) { return unexplained_json(d); });
   put("heading_prediction", [](const Diagnosis& d) { return heading_json(d.heading); });
+  put("reference_delay", [](const Diagnosis& d) { return delays_json(d.reference_delays); });
+  put("channel_delays", [](const Diagnosis& d) { return delays_json(d.channel_delays); });
   json["remarks"] = Json::array();
   for (const AxisDiagnosis& each : axes) {
     for (const std::string& remark : each.diagnosis.remarks) {

@@ -1,0 +1,29 @@
+// A channel that was logged late: the effect is there before its cause. One that was logged early looks like
+// one that acts through a lag, and lags are tried anyway.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "filters/diagnosis/regression/candidates.h"
+
+namespace ifog {
+
+struct DelayOfChannel {
+  std::size_t channel = 0;
+  double delay_s = 0.0;      // late by
+  double std_error_s = 0.0;  // by where the likelihood has fallen by one half
+  double gain = 0.0;         // twice the log-likelihood, over no delay
+};
+
+// Values of the channel as they would have been logged without that delay; linear between fine steps, held at
+// the ends of a record.
+void undo_delay(const BlockGrid& grid, double delay_s, FineChannel& channel);
+
+// Of all channels the one whose delay within 60 s gains most, beside the model's other effects; in a channel
+// that the model does not use, a linear effect is looked for. None where no delay gains anything.
+std::optional<DelayOfChannel> most_delayed_channel(const BlockData& data, const std::vector<Candidate>& model,
+                                                   const NoiseShape& shape);
+
+}  // namespace ifog

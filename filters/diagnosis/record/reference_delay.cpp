@@ -1,0 +1,328 @@
+#include "filters/diagnosis/record/reference_delay.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <unsupported/Eigen/FFT>
+
+#include "filters/allan/stretches.h"
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/fractional_shift.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kLongest_s = 60.0;
+constexpr double kSlowest_s = 1.0;        // between samples; a table of dwells is slower
+constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
+constexpr std::size_t kLeast = 200;       // and the fewest that tell
+constexpr std::size_t kOrder = 16;        // of the autoregression
+constexpr int kRounds = 20;
+constexpr double kSettled = 1e-3;  // of a step
+constexpr double kCertain = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kPowers = 4;  // of the reference: constant to cubic
+using Series = std::vector<double>;
+
+struct Pair {
+  Series rate, reference;
+  double step_s = 0.0;
+};
+
+// What is left of a series is white noise once its next value is predicted from the ones before.
+class Autoregression {
+ public:
+  explicit Autoregression(const Series& series) {
+    double mean = 0.0, count = 0.0;
+    for (const double value : series)
+      if (std::isfinite(value)) mean += value, count += 1.0;
+    mean /= std::max(count, 1.0);
+    std::array<double, kOrder + 1> covariance{};
+    for (std::size_t lag = 0; lag <= kOrder; ++lag)
+      for (std::size_t i = lag; i < series.size(); ++i) {
+        const double product = (series[i] - mean) * (series[i - lag] - mean);
+        if (std::isfinite(product)) covariance[lag] += product;
+      }
+    covariance[0] *= 1.0 + 1e-9;
+    levinson(covariance);
+  }
+
+  // NaN where a value before is missing.
+  [[nodiscard]] Series whitened(const Series& series) const {
+    Series out(series.size(), kNone);
+    for (std::size_t i = kOrder; i < series.size(); ++i) {
+      out[i] = series[i];
+      for (std::size_t k = 0; k < kOrder; ++k) out[i] -= weight_[k] * series[i - 1 - k];
+    }
+    return out;
+  }
+
+ private:
+  // Of the equations of Yule and Walker.
+  void levinson(const std::array<double, kOrder + 1>& covariance) {
+    double left = covariance[0];
+    for (std::size_t m = 0; m < kOrder && left > 0.0; ++m) {
+      double reflection = covariance[m + 1];
+      for (std::size_t k = 0; k < m; ++k) reflection -= weight_[k] * covariance[m - k];
+      reflection /= left;
+      const std::array<double, kOrder> before = weight_;
+      for (std::size_t k = 0; k < m; ++k) weight_[k] = before[k] - reflection * before[m - 1 - k];
+      weight_[m] = reflection;
+      left *= 1.0 - reflection * reflection;
+    }
+  }
+
+  std::array<double, kOrder> weight_{};
+};
+
+Series differences(const Series& series) {
+  Series out(series.size(), kNone);
+  for (std::size_t i = 1; i < series.size(); ++i) out[i] = series[i] - series[i - 1];
+  return out;
+}
+
+Series means(const Series& series, std::size_t count) {
+  if (count == 1) return series;
+  Series out(series.size() / count);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    double sum = 0.0;  // NaN as soon as one is missing: a mean of some would come from another time
+    for (std::size_t k = i * count; k < (i + 1) * count; ++k) sum += series[k];
+    out[i] = sum / static_cast<double>(count);
+  }
+  return out;
+}
+
+std::optional<Pair> pair_of(const Record& record) {
+  if (record.reference_radps.empty() || record.time_s.size() < kLeast) return std::nullopt;
+  double period_s = 0.0;
+  Pair pair;
+  try {
+    period_s = sample_clock(record.time_s).period_s;
+    if (period_s > kSlowest_s) return std::nullopt;
+    pair.rate = on_even_grid(record, period_s, {record.rate_radps.begin(), record.rate_radps.end()});
+    pair.reference =
+        on_even_grid(record, period_s, {record.reference_radps.begin(), record.reference_radps.end()});
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;  // no even clock, or hardly anything on it
+  }
+  const std::size_t count = (pair.rate.size() + kMost - 1) / kMost;
+  pair.rate = means(pair.rate, count);
+  pair.reference = means(pair.reference, count);
+  pair.step_s = period_s * static_cast<double>(count);
+  return pair;
+}
+
+std::size_t longest_lag(const Pair& pair) {
+  return std::min(static_cast<std::size_t>(kLongest_s / pair.step_s), pair.rate.size() / 4);
+}
+
+std::vector<std::complex<double>> transform(const Series& series, std::size_t size) {
+  Series padded(size, 0.0);
+  for (std::size_t i = 0; i < series.size(); ++i)
+    if (std::isfinite(series[i])) padded[i] = series[i];
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> spectrum;
+  fft.fwd(spectrum, padded);
+  return spectrum;
+}
+
+// In whole steps, by where the whitened series are most alike.
+double coarse_delay(const Pair& pair) {
+  const Series rate = differences(pair.rate), reference = differences(pair.reference);
+  const Autoregression noise(rate);
+  const auto most = static_cast<std::ptrdiff_t>(longest_lag(pair));
+  const std::size_t size = std::bit_ceil(rate.size() + static_cast<std::size_t>(most) + 1);
+  std::vector<std::complex<double>> product = transform(noise.whitened(rate), size);
+  const std::vector<std::complex<double>> other = transform(noise.whitened(reference), size);
+  for (std::size_t i = 0; i < product.size(); ++i) product[i] = std::conj(product[i]) * other[i];
+  Series likeness;
+  Eigen::FFT<double> fft;
+  fft.inv(likeness, product);
+  std::ptrdiff_t best = 0;
+  const auto at = [&](std::ptrdiff_t lag) {
+    return likeness[static_cast<std::size_t>(lag < 0 ? lag + static_cast<std::ptrdiff_t>(size) : lag)];
+  };
+  for (std::ptrdiff_t lag = -most; lag <= most; ++lag)
+    if (at(lag) > at(best)) best = lag;
+  return static_cast<double>(best);
+}
+
+// Powers of the reference as it would be with a delay, and its slope over a step, by row.
+struct Regressors {
+  std::array<Series, kPowers> powers;
+  Series slope;
+};
+
+Regressors regressors_at(const Series& reference, double scale, double steps, bool with_slope) {
+  Regressors out;
+  const Series moved = shifted(reference, steps);
+  for (std::size_t p = 0; p < kPowers; ++p) {
+    out.powers[p].resize(moved.size());
+    for (std::size_t i = 0; i < moved.size(); ++i)
+      out.powers[p][i] = std::isfinite(moved[i]) ? std::pow(moved[i] / scale, static_cast<double>(p)) : kNone;
+  }
+  if (!with_slope) return out;
+  constexpr double kAside = 0.25;
+  out.slope = shifted(reference, steps + kAside);
+  const Series before = shifted(reference, steps - kAside);
+  for (std::size_t i = 0; i < before.size(); ++i) out.slope[i] = (out.slope[i] - before[i]) / (2.0 * kAside);
+  return out;
+}
+
+struct Fit {
+  Eigen::VectorXd coefficients;
+  double square = 0.0;  // that is left
+  double last_variance = 0.0;
+  std::size_t rows = 0;
+};
+
+// Least squares of the first column on the others, over the rows where none is missing in any of `all`.
+Fit least_squares(const std::vector<Series>& columns, const std::vector<std::uint8_t>& rows) {
+  const auto width = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
+  Eigen::VectorXd row(width);
+  Fit fit;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i]) continue;
+    for (Eigen::Index c = 0; c < width; ++c) row[c] = columns[static_cast<std::size_t>(c)][i];
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    ++fit.rows;
+  }
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  const Eigen::Index p = width - 1;
+  const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(scaled);
+  const Eigen::VectorXd right = scale.asDiagonal() * gram.col(0).tail(p);
+  const Eigen::VectorXd found = factor.solve(right);
+  fit.coefficients = scale.asDiagonal() * found;
+  fit.square = std::max(gram(0, 0) - found.dot(right), 1e-12 * gram(0, 0));
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(p, p));
+  const double freedom = std::max(1.0, static_cast<double>(fit.rows) - static_cast<double>(p));
+  fit.last_variance = fit.square / freedom * inverse(p - 1, p - 1) * scale[p - 1] * scale[p - 1];
+  return fit;
+}
+
+std::vector<std::uint8_t> complete_rows(const std::vector<Series>& columns) {
+  std::vector<std::uint8_t> rows(columns.front().size(), 1);
+  for (const Series& column : columns)
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (!std::isfinite(column[i])) rows[i] = 0;
+  return rows;
+}
+
+std::vector<Series> columns_of(const Series& rate, const Regressors& regressors) {
+  std::vector<Series> columns{rate};
+  columns.insert(columns.end(), regressors.powers.begin(), regressors.powers.end());
+  if (!regressors.slope.empty()) columns.push_back(regressors.slope);
+  return columns;
+}
+
+std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregression& noise) {
+  std::vector<Series> white;
+  white.reserve(columns.size());
+  for (const Series& column : columns) white.push_back(noise.whitened(column));
+  return white;
+}
+
+// Of the noise that is left where the reference is moved so.
+Autoregression noise_beside(const std::vector<Series>& columns) {
+  std::vector<Series> without(columns.begin(), columns.begin() + 1 + kPowers);
+  const Fit plain = least_squares(without, complete_rows(without));
+  Series left = columns.front();
+  for (std::size_t p = 0; p < kPowers; ++p)
+    for (std::size_t i = 0; i < left.size(); ++i)
+      left[i] -= plain.coefficients[static_cast<Eigen::Index>(p)] * columns[1 + p][i];
+  return Autoregression(left);
+}
+
+struct Delay {
+  double steps = 0.0, error = 0.0;
+  double gain = 0.0;  // twice the log-likelihood, over none
+};
+
+std::optional<Delay> refined(const Pair& pair, double steps) {
+  const double scale = std::sqrt(variance_of(pair.reference));
+  if (!(scale > 0.0)) return std::nullopt;
+  Delay delay;
+  delay.steps = steps;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Series> columns =
+        columns_of(pair.rate, regressors_at(pair.reference, scale, delay.steps, true));
+    if (columns.front().size() < kLeast) return std::nullopt;
+    const Autoregression noise = noise_beside(columns);
+    const std::vector<Series> white = whitened(columns, noise);
+    std::vector<std::uint8_t> rows = complete_rows(white);
+    const Fit fit = least_squares(white, rows);
+    const double of_reference = fit.coefficients[1] / scale;
+    const double step = fit.coefficients[kPowers] / of_reference;
+    if (fit.rows < kLeast || !std::isfinite(step) || of_reference <= 0.0) return std::nullopt;
+    delay.error = std::sqrt(fit.last_variance) / of_reference;
+    if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
+      const std::vector<Series> as_logged =
+          whitened(columns_of(pair.rate, regressors_at(pair.reference, scale, 0.0, false)), noise);
+      const std::vector<std::uint8_t> known = complete_rows(as_logged);
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        if (!known[i]) rows[i] = 0;
+      const Fit with = least_squares(white, rows);
+      const Fit without = least_squares(as_logged, rows);
+      delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
+      return delay;
+    }
+    delay.steps += std::clamp(step, -1.0, 1.0);
+    if (std::abs(delay.steps) > static_cast<double>(longest_lag(pair))) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// By row of the record, the reference as it would have been without delay.
+Series moved_reference(const Record& record, double delay_s) {
+  const double period_s = sample_clock(record.time_s).period_s;
+  const Series even =
+      shifted(on_even_grid(record, period_s, {record.reference_radps.begin(), record.reference_radps.end()}),
+              delay_s / period_s);
+  Series out(record.time_s.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto k =
+        static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s.front()) / period_s + 0.5));
+    out[i] = even[std::min(k, even.size() - 1)];
+  }
+  return out;
+}
+
+std::string in_words(const ReferenceDelay& delay, const std::string& name, bool several) {
+  std::array<char, 320> text{};
+  const double late = delay.delay_s;
+  std::snprintf(text.data(), text.size(), "%s%s%s%s logged %.4g s %s (+-%.2g): shifted", name.c_str(),
+                several ? " (" : "", several ? delay.record.c_str() : "", several ? ")" : "", std::abs(late),
+                late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
+  return text.data();
+}
+
+}  // namespace
+
+AlignedRecords align_references(const std::vector<Record>& records) {
+  AlignedRecords aligned;
+  aligned.records = records;
+  for (Record& record : aligned.records) {
+    const std::optional<Pair> pair = pair_of(record);
+    if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
+    const std::optional<Delay> delay = refined(*pair, coarse_delay(*pair));
+    const double tries = 2.0 * static_cast<double>(longest_lag(*pair)) + 1.0;
+    if (!delay || delay->gain < kCertain + 2.0 * std::log(tries)) continue;
+    ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};
+    record.reference_radps = aligned.references.emplace_back(moved_reference(record, found.delay_s));
+    aligned.remarks.push_back(in_words(found, record.reference_name, records.size() > 1));
+    aligned.delays.push_back(std::move(found));
+  }
+  return aligned;
+}
+
+}  // namespace ifog

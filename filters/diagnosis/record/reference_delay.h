@@ -1,0 +1,27 @@
+// A reference that was logged late or early against the rate. The difference of the two is then the true
+// rate's change over the delay: no error of the gyro, but where it turns the largest thing in the record.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record.h"
+
+namespace ifog {
+
+struct AlignedRecords {
+  std::vector<Record> records;                  // as given, but for references that were shifted
+  std::vector<std::vector<double>> references;  // which those show; keep as long as `records`
+  std::vector<ReferenceDelay> delays;           // of those
+  std::vector<std::string> remarks;             // one a delay, for people
+};
+
+// The delay within 60 s of greatest likelihood, beside a constant and a cubic of the reference, in
+// innovations of an autoregressive noise. Sought by generalised cross-correlation (Knapp and Carter 1976:
+// both series whitened as the rate demands), then by Gauss and Newton to a part of a sample. Applied where it
+// gains more likelihood than the lags tried would by chance; a reference that does not move has nothing to
+// tell it by. Left as they are: records without a reference, with an uneven clock, and tables of dwells.
+AlignedRecords align_references(const std::vector<Record>& records);
+
+}  // namespace ifog

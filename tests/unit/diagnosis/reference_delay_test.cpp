@@ -1,0 +1,141 @@
+// A reference that was logged late is told by how much, to a part of a sample, and is put right.
+#include "filters/diagnosis/record/reference_delay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record/fractional_shift.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kStep_s = 0.05;
+constexpr std::size_t kSamples = 12000;
+
+// A table that swings and is turned now and then; band-limited to some 1.5 Hz. rad/s.
+double turning(double t) {
+  double rate = 0.3 * std::sin(0.21 * t + 0.4) + 0.1 * std::sin(1.7 * t) + 0.02 * std::sin(6.3 * t + 1.0);
+  for (const double at : {60.0, 210.0, 333.3, 470.7})
+    rate += 0.2 * std::exp(-0.5 * std::pow((t - at) / 0.8, 2));
+  return rate;
+}
+
+struct Logged {
+  std::vector<double> time, rate, reference, temperature;
+  Record record;
+
+  // The reference of a time is the true rate delay_s before it.
+  Logged(std::uint64_t seed, double delay_s, const std::function<double(double)>& truth = turning,
+         double scale_factor = 0.0) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const double t = kStep_s * static_cast<double>(i);
+      time.push_back(t);
+      temperature.push_back(25.0 + 8.0 * std::sin(t / 90.0));
+      rate.push_back(truth(t) * (1.0 + scale_factor * (temperature.back() - 25.0)) + 2e-3 +
+                     1e-3 * normal(random));
+      reference.push_back(truth(t - delay_s) + 1e-4 * normal(random));
+    }
+    record.name = "logged";
+    record.time_s = time;
+    record.rate_radps = rate;
+    record.reference_radps = reference;
+    record.channels = {{"temperature_degC", temperature}};
+  }
+  Logged(const Logged&) = delete;
+  Logged& operator=(const Logged&) = delete;
+};
+
+// The true rate itself is the oracle: no interpolation, a function of time.
+TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
+  for (const double delay_s : {0.31, -0.137, 3.705, 0.012, -21.6}) {
+    const Logged logged(7, delay_s);
+    const AlignedRecords aligned = align_references({logged.record});
+    ASSERT_EQ(aligned.delays.size(), 1U) << delay_s;
+    EXPECT_NEAR(aligned.delays[0].delay_s, delay_s, 4.0 * aligned.delays[0].std_error_s) << delay_s;
+    EXPECT_LT(aligned.delays[0].std_error_s, 1e-3);
+    const auto margin = static_cast<std::size_t>(std::ceil(std::abs(delay_s) / kStep_s)) + 1;
+    for (std::size_t i = margin; i + margin < kSamples; ++i)
+      ASSERT_NEAR(aligned.records[0].reference_radps[i], turning(logged.time[i]), 6e-4)
+          << delay_s << ' ' << i;
+    // Where the reference was not yet, or no longer, logged there is none.
+    EXPECT_TRUE(std::isnan(aligned.records[0].reference_radps[delay_s > 0.0 ? kSamples - 1 : 0]));
+  }
+}
+
+TEST(ReferenceDelay, IsSaidInOneLine) {
+  const Logged late(3, 0.31), early(4, -0.31);
+  const std::string said = align_references({late.record}).remarks.at(0);
+  EXPECT_EQ(said.find("reference_rate_radps logged 0.31"), 0U) << said;
+  EXPECT_NE(said.find(" s late (+-"), std::string::npos) << said;
+  EXPECT_NE(align_references({early.record}).remarks.at(0).find(" s early, or the rate late (+-"),
+            std::string::npos);
+}
+
+// Errors of the delay over its standard error: of unit variance, also beside a scale factor error that
+// depends on the temperature.
+TEST(ReferenceDelay, StandardErrorIsHonest) {
+  double square = 0.0;
+  constexpr int kSeeds = 60;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Logged logged(100 + static_cast<std::uint64_t>(seed), 0.113);
+    const AlignedRecords aligned = align_references({logged.record});
+    ASSERT_EQ(aligned.delays.size(), 1U);
+    square += std::pow((aligned.delays[0].delay_s - 0.113) / aligned.delays[0].std_error_s, 2);
+  }
+  // Chi-square of 60 degrees of freedom over 60: 99.9 % between 0.52 and 1.66.
+  EXPECT_GT(square / kSeeds, 0.52);
+  EXPECT_LT(square / kSeeds, 1.66);
+}
+
+TEST(ReferenceDelay, WhatIsNotLateIsLeftAsItIs) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Logged in_time(200 + seed, 0.0);
+    EXPECT_TRUE(align_references({in_time.record}).delays.empty()) << seed;
+    const Logged with_effect(300 + seed, 0.0, turning, 3e-4);
+    EXPECT_TRUE(align_references({with_effect.record}).delays.empty()) << seed;
+    // A table that hardly moves tells nothing, however late its reference is.
+    const Logged resting(400 + seed, 2.0, [](double) { return 7e-5; });
+    const AlignedRecords left = align_references({resting.record});
+    EXPECT_TRUE(left.delays.empty()) << seed;
+    EXPECT_EQ(left.records[0].reference_radps.data(), resting.reference.data());
+  }
+}
+
+// An hour of dwells is no time series, and a clock that is not even has no steps to shift by.
+TEST(ReferenceDelay, DwellsAreLeftAsTheyAre) {
+  Logged logged(5, 0.31);
+  for (std::size_t i = 0; i < kSamples; ++i) logged.time[i] = 3.0 * static_cast<double>(i);
+  EXPECT_TRUE(align_references({logged.record}).delays.empty());
+}
+
+TEST(ReferenceDelay, TheDiagnosisIsThatOfTheShiftedReference) {
+  const Logged logged(11, 0.31, turning, 3e-4);
+  const Diagnosis diagnosis = diagnose({logged.record}, {});
+  ASSERT_EQ(diagnosis.reference_delays.size(), 1U);
+  ASSERT_FALSE(diagnosis.effects.empty());
+  for (const FoundEffect& found : diagnosis.effects)
+    EXPECT_EQ(found.effect.form, "product") << found.effect.form;
+  // Noise of 1e-3 a sample, and nothing of the 0.03 rad/s that the delay had put there.
+  EXPECT_LT(diagnosis.after.at("residual_rms_radps"), 1.1e-3);
+}
+
+TEST(FractionalShift, MovesASineAsTheClosedFormDoes) {
+  std::vector<double> sine;
+  for (int k = 0; k < 400; ++k) sine.push_back(std::sin(0.9 * k));
+  for (const double steps : {0.0, 0.5, -3.3, 7.25}) {
+    const std::vector<double> moved = shifted(sine, steps);
+    for (int k = 30; k < 370; ++k)
+      EXPECT_NEAR(moved[static_cast<std::size_t>(k)], std::sin(0.9 * (k + steps)), 2e-3) << steps;
+  }
+  EXPECT_TRUE(std::isnan(shifted(sine, 7.25).back()));
+  EXPECT_TRUE(std::isnan(shifted(sine, -3.3).front()));
+}
+
+}  // namespace
+}  // namespace ifog
