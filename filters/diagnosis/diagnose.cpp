@@ -9,6 +9,7 @@
 #include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/channel_faults.h"
+#include "filters/diagnosis/record/derived_channels.h"
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/record/reference_delay.h"
@@ -30,6 +31,7 @@
 #include "filters/diagnosis/residual/resonances.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "filters/diagnosis/search/acceptance.h"
+#include "filters/diagnosis/search/earth_rate.h"
 
 namespace ifog {
 namespace {
@@ -81,6 +83,7 @@ class Run {
       : records_(records),
         ramps_(without.ramps),
         options_(options),
+        earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
         data_(cut_to_blocks(without.records)),
         errors_(even_errors(records, without, data_.grid.sample_s)) {}
 
@@ -123,6 +126,7 @@ class Run {
     search.progress = options_.progress;
     search.given = given;
     found_ = search_effects(data_, reconstructed_, search);
+    read_as_earth_rate(reconstructed_, earth_, found_);
   }
 
   // A delay is a parameter of the channel, and has to pay for itself: all effects sought anew with the
@@ -190,8 +194,10 @@ class Run {
   void drop_what_changes_sign() {
     for (;;) {
       const std::vector<ByCapture> all = compare_captures(reconstructed_, found_.fitted, found_.noise);
-      const auto worst =
-          std::find_if(all.begin(), all.end(), [](const ByCapture& by) { return by.changes_sign(); });
+      // The Earth's rate does, from heading to heading.
+      const auto worst = std::find_if(all.begin(), all.end(), [&](const ByCapture& by) {
+        return by.changes_sign() && found_.fitted[by.effect].first_reading == FirstReading::kError;
+      });
       if (worst == all.end()) return;
       say(change_in_words(effect_of(data_, found_.fitted[worst->effect]), *worst, records_));
       found_ = without_effect(data_, reconstructed_, std::move(found_), worst->effect);
@@ -254,6 +260,7 @@ class Run {
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
     result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
     report_changes_of_size();
+    say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
     say(grown_in_words(result_, errors_));
     if (moving_) describe_moving(*moving_, result_.unexplained);
@@ -274,6 +281,7 @@ class Run {
   const std::vector<Record>& records_;  // as given
   const std::vector<RampFit>& ramps_;
   const DiagnoseOptions& options_;
+  const EarthRateOptions earth_;
   BlockData data_;           // without the ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
@@ -292,9 +300,12 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
   check_columns(records);
-  const RepairedRecords repaired = repair_records(records);
+  // An angle's wraps are no faults, and differences are of channels without any.
+  const DerivedRecords whole = with_unwrapped_angles(records);
+  const RepairedRecords repaired = repair_records(whole.records);
   const AlignedRecords aligned = align_references(repaired.records);
-  const WithoutTurns resting = without_turns(aligned.records);
+  const DerivedRecords derived = with_derived_channels(aligned.records);
+  const WithoutTurns resting = without_turns(derived.records);
   const std::vector<Record> fitted = share.whole() ? resting.records : fitted_parts(resting.records, share);
   const WithoutRamps without = take_out_ramps(fitted, options.significance);
   Diagnosis diagnosis = Run(fitted, without, options).run();

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct DiagnoseOptions {
   // fitted, and blocks of it take turns at being held out.
   double fit_from = 0.0, fit_to = 1.0;
   std::size_t most_effects = 8;
+  bool subtract_earth_rate = false;    // what the Earth's rate explains; otherwise it is shown, no more
+  std::optional<double> latitude_rad;  // bounds its size further
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 

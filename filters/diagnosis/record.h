@@ -14,6 +14,7 @@ namespace ifog {
 struct RecordChannel {
   std::string name;                // the capture's column, NAME_UNIT
   std::span<const double> values;  // NaN: missing, held
+  double period = 0.0;             // of an angle whose wraps were taken out, in its unit; 0: none
 };
 
 struct Record {
@@ -23,8 +24,9 @@ struct Record {
   std::span<const double> reference_radps{};  // empty: none; then the true rate is taken as constant
   std::string reference_name = "reference_rate_radps";
   std::vector<RecordChannel> channels;
-  std::vector<std::span<const double>> other_axes;  // rates of the same sensor: it rests when all of them do
-  std::vector<Stretch> at_rest;                     // samples, in order; empty: not looked for, all
+  // Rates of the same sensor, by the names of their columns: it rests when all of them do.
+  std::vector<RecordChannel> other_axes;
+  std::vector<Stretch> at_rest;  // samples, in order; empty: not looked for, all
 };
 
 // Of the channel of that name; empty when the record has none.

@@ -7,12 +7,18 @@ namespace ifog {
 void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& model) {
   std::size_t old = 0;
   for (const Effect& effect : model.effects) old += effect.parameters.size();
-  std::size_t added = 0;
+  std::vector<std::size_t> rows;  // of the diagnosis' covariance
+  std::size_t all = 0;
   for (const FoundEffect& found : diagnosis.effects) {
-    model.effects.push_back(found.effect);
-    model.effects.back().axis = axis;
-    added += found.effect.parameters.size();
+    const std::size_t next = all + found.effect.parameters.size();
+    if (!found.effect.shown_only) {
+      model.effects.push_back(found.effect);
+      model.effects.back().axis = axis;
+      for (std::size_t i = all; i < next; ++i) rows.push_back(i);
+    }
+    all = next;
   }
+  const std::size_t added = rows.size();
   // Axes are fitted apart, so nothing is known of covariances across them: zero.
   std::vector<double> covariance((old + added) * (old + added), 0.0);
   for (std::size_t i = 0; i < old && model.covariance.size() == old * old; ++i) {
@@ -20,7 +26,7 @@ void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& mo
   }
   for (std::size_t i = 0; i < added; ++i) {
     for (std::size_t j = 0; j < added; ++j) {
-      covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[i * added + j];
+      covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[rows[i] * all + rows[j]];
     }
   }
   model.covariance = std::move(covariance);

@@ -14,6 +14,23 @@ constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 // Scale factor errors are below a tenth, so each round gains a digit or more; twelve reach the last bit.
 constexpr int kRounds = 12;
 
+constexpr std::size_t kOwn = kMaxAxes;  // the rate of the axis that a term will be placed on
+
+ChannelRange range_of(const std::string& channel, const std::vector<ChannelRange>& known) {
+  ChannelRange found{channel, -kEverywhere, kEverywhere};
+  for (const ChannelRange& range : known)
+    if (range.channel == channel) found = range;
+  return found;
+}
+
+// Whatever axis it is of.
+ChannelRange range_of_reference(const std::vector<ChannelRange>& known) {
+  ChannelRange found{"", -kEverywhere, kEverywhere};
+  for (const ChannelRange& range : known)
+    if (is_reference_rate(range.channel)) found = range;
+  return found;
+}
+
 std::string label_of(const Effect& effect) {
   return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
 }
@@ -22,40 +39,28 @@ std::string label_of(const Effect& effect) {
 
 Compensator::Compensator(const Model& model, const std::vector<std::string>& axes, double stale_after_s,
                          std::optional<double> since_power_up_s)
-    : rate_range_{"", -kEverywhere, kEverywhere},
-      axes_(axes.size()),
+    : axes_(axes.size()),
+      of_rate_(axes.size(), 0),
       stale_after_s_(stale_after_s),
       since_power_up_s_(since_power_up_s) {
   if (axes.empty() || axes.size() > kMaxAxes) {
     throw std::invalid_argument("a compensator has 1 to 3 axes, not " + std::to_string(axes.size()));
   }
   for (const Effect& effect : model.effects) {
-    add_effect(effect, parameters_, axes);
+    add_effect(effect, parameters_, axes, model.ranges);
     parameters_ += effect.parameters.size();
   }
   if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
   held_.resize(channels_.size());
-  read_ranges(model.ranges);
-}
-
-void Compensator::read_ranges(const std::vector<ChannelRange>& known) {
-  for (const ChannelRange& range : known) {
-    if (is_reference_rate(range.channel)) rate_range_ = range;
-  }
-  for (const std::string& name : channels_) {
-    ChannelRange range{name, -kEverywhere, kEverywhere};
-    for (const ChannelRange& each : known) {
-      if (each.channel == name) range = each;
-    }
-    ranges_.push_back(range);
-  }
+  for (const std::string& name : channels_) ranges_.push_back(range_of(name, model.ranges));
+  for (const Term& term : terms_) of_rate_[term.axis] |= term.of_rate ? 1 : 0;
 }
 
 void Compensator::add_effect(const Effect& effect, std::size_t first_row,
-                             const std::vector<std::string>& axes) {
+                             const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges) {
   const auto form = form_named(effect.form);
   if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
-  if (describes_noise(*form) || !carries_over(*form)) {
+  if (describes_noise(*form) || !carries_over(*form) || effect.shown_only) {
     left_out_.push_back(label_of(effect));
     return;
   }
@@ -70,36 +75,56 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
   term.parameter = kNone;
   term.coefficient_error = 0.0;
+  term.of_rate = false;
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     if (effect.parameters[i].name != "coefficient" || *form == Form::kLookup) continue;
     term.parameter = first_row + i;
     term.coefficient_error = effect.parameters[i].std_error;
   }
   try {
-    add_factor(term, shape_settings(effect), effect.channel);
-    if (*form == Form::kProduct) add_factor(term, with_shape_settings(effect), effect.with_channel);
+    add_factor(term, shape_settings(effect), effect.channel, axes, ranges);
+    if (*form == Form::kProduct)
+      add_factor(term, with_shape_settings(effect), effect.with_channel, axes, ranges);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
   }
   place(std::move(term), effect, axes);
 }
 
-void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel) {
-  const bool rate = is_reference_rate(channel);
+void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel,
+                             const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges) {
+  const std::string of_axis = axis_of_rate(channel);
+  const auto other = std::find(axes.begin(), axes.end(), of_axis);
+  const bool of_other = !of_axis.empty() && other != axes.end();
+  const bool rate = of_other || is_reference_rate(channel);
   if (rate && (has_memory(settings.form) || settings.angle)) {
     throw std::invalid_argument("a form with memory cannot be a function of the rate");
   }
-  const bool timed = settings.form == Form::kWarmUp;
   settings.elapsed_s = since_power_up_s_.value_or(0.0);
-  term.factors.push_back({Shape(std::move(settings)), rate || timed ? kNone : channel_index(channel), rate});
+  Factor factor{Shape(std::move(settings)), kNone, kNone, kNone, range_of(channel, ranges)};
+  const ChannelNames names = names_in(channel);
+  if (of_other) factor.rate = static_cast<std::size_t>(other - axes.begin());
+  if (rate && !of_other) {
+    factor.rate = kOwn;
+    factor.range = range_of_reference(ranges);
+  }
+  if (!rate && factor.shape.settings().form != Form::kWarmUp) {
+    factor.channel = channel_index(names.of);
+    if (!names.less.empty()) factor.less = channel_index(names.less);
+  }
+  term.of_rate |= rate;
+  term.factors.push_back(std::move(factor));
 }
 
 void Compensator::place(Term term, const Effect& effect, const std::vector<std::string>& axes) {
   bool placed = false;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
-    term.axis = axis;
-    terms_.push_back(term);
+    Term mine = term;
+    mine.axis = axis;
+    for (Factor& factor : mine.factors)
+      if (factor.rate == kOwn) factor.rate = axis;
+    terms_.push_back(std::move(mine));
     placed = true;
   }
   if (!placed) {
@@ -123,6 +148,7 @@ void Compensator::hold_channels(const CompensatorInput& in, CompensatorOutput& o
     held.stale = !std::isfinite(value) || age > stale_after_s_;
     if (std::isfinite(value)) {
       held.seen = true;
+      held.value = value;
       held.reach = reach_of(value, ranges_[i]);
     }
     if (held.stale) out.flags |= kStaleChannel;
@@ -139,80 +165,98 @@ void Compensator::Value::times(double factor, const Shape& shape, const Reach& r
   value *= factor;
 }
 
-void Compensator::evaluate(Term& term, double dt_s) noexcept {
+Reach Compensator::reach_of_factor(const Factor& factor) const noexcept {
+  const Held& held = held_[factor.channel];
+  return factor.less == kNone ? held.reach : reach_of(held.value - held_[factor.less].value, factor.range);
+}
+
+void Compensator::evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept {
   term.channels = {};
   term.usable = true;
   for (Factor& factor : term.factors) {
-    if (factor.of_rate) continue;
+    if (factor.rate != kNone) continue;
     if (factor.channel == kNone) {
       term.channels.value *= factor.shape.step(0.0, dt_s);
       continue;
     }
-    const Held& held = held_[factor.channel];
-    if (!held.seen) {
+    if (!held_[factor.channel].seen || (factor.less != kNone && !held_[factor.less].seen)) {
       term.usable = false;
       return;
     }
-    term.channels.times(factor.shape.step(held.reach, dt_s), factor.shape, held.reach);
+    const Reach reach = reach_of_factor(factor);
+    if (factor.less != kNone && reach.outside()) flags |= kOutOfRange;
+    term.channels.times(factor.shape.step(reach, dt_s), factor.shape, reach);
   }
 }
 
-Compensator::Value Compensator::at_rate(const Term& term, double rate) const noexcept {
+Compensator::Value Compensator::at_rates(const Term& term, const Axes& rates) const noexcept {
   Value value = term.channels;
   for (const Factor& factor : term.factors) {
-    if (!factor.of_rate) continue;
-    const Reach reach = reach_of(rate, rate_range_);
+    if (factor.rate == kNone) continue;
+    const double rate = rates[factor.rate];
+    if (factor.rate != term.axis && !std::isfinite(rate)) return {0.0, 0.0, 0.0};
+    const Reach reach = reach_of(rate, factor.range);
     value.times(factor.shape.at(reach), factor.shape, reach);
   }
   return value;
 }
 
-double Compensator::parameter_variance(std::size_t axis, double rate) const noexcept {
+double Compensator::correction(std::size_t axis, const Axes& rates) const noexcept {
+  double sum = 0.0;
+  for (const Term& term : terms_) {
+    if (term.axis == axis && term.usable) sum += term.coefficient * at_rates(term, rates).value;
+  }
+  return sum;
+}
+
+double Compensator::parameter_variance(std::size_t axis, const Axes& rates) const noexcept {
   if (covariance_.empty()) return 0.0;
   double variance = 0.0;
   for (const Term& a : terms_) {
     if (a.axis != axis || !a.usable || a.parameter == kNone) continue;
-    const double ga = at_rate(a, rate).value;
+    const double ga = at_rates(a, rates).value;
     for (const Term& b : terms_) {
       if (b.axis != axis || !b.usable || b.parameter == kNone) continue;
-      variance += ga * covariance_[a.parameter * parameters_ + b.parameter] * at_rate(b, rate).value;
+      variance += ga * covariance_[a.parameter * parameters_ + b.parameter] * at_rates(b, rates).value;
     }
   }
   return std::max(variance, 0.0);
 }
 
+void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& out) const noexcept {
+  double inflation = 0.0;
+  for (const Term& term : terms_) {
+    if (term.axis != axis) continue;
+    for (const Factor& factor : term.factors) {
+      if (factor.rate == kNone) continue;
+      if (reach_of(rates[factor.rate], factor.range).outside()) out.flags |= kOutOfRange;
+      if (factor.rate != axis && !std::isfinite(rates[factor.rate])) out.flags |= kStaleChannel;
+    }
+    if (!term.usable) continue;
+    const Value value = at_rates(term, rates);
+    const double left = term.coefficient * value.left_behind;
+    const double bent = term.coefficient_error * value.unseen_curvature;
+    inflation += left * left + bent * bent;
+  }
+  out.variance_rad2ps2[axis] = parameter_variance(axis, rates) + inflation;
+}
+
 void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexcept {
   out.flags = 0;
   hold_channels(in, out);
-  for (Term& term : terms_) evaluate(term, in.dt_s);
+  for (Term& term : terms_) evaluate(term, in.dt_s, out.flags);
 
+  Axes rates = in.rate_radps;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t axis = 0; axis < axes_; ++axis) {
+      if (round > 0 && !of_rate_[axis]) continue;
+      out.correction_radps[axis] = correction(axis, rates);
+      rates[axis] = in.rate_radps[axis] - out.correction_radps[axis];
+    }
+  }
   for (std::size_t axis = 0; axis < axes_; ++axis) {
-    const double measured = in.rate_radps[axis];
-    double rate = measured;
-    double correction = 0.0;
-    bool of_the_rate = false;
-    for (const Term& term : terms_) {
-      for (const Factor& factor : term.factors) of_the_rate |= term.axis == axis && factor.of_rate;
-    }
-    for (int round = 0; round < (of_the_rate ? kRounds : 1); ++round) {
-      correction = 0.0;
-      for (const Term& term : terms_) {
-        if (term.axis == axis && term.usable) correction += term.coefficient * at_rate(term, rate).value;
-      }
-      rate = measured - correction;
-    }
-    if (of_the_rate && reach_of(rate, rate_range_).outside()) out.flags |= kOutOfRange;
-    double inflation = 0.0;
-    for (const Term& term : terms_) {
-      if (term.axis != axis || !term.usable) continue;
-      const Value value = at_rate(term, rate);
-      const double left = term.coefficient * value.left_behind;
-      const double bent = term.coefficient_error * value.unseen_curvature;
-      inflation += left * left + bent * bent;
-    }
-    out.correction_radps[axis] = correction;
-    out.compensated_radps[axis] = rate;
-    out.variance_rad2ps2[axis] = parameter_variance(axis, rate) + inflation;
+    out.compensated_radps[axis] = rates[axis];
+    judge(axis, rates, out);
   }
 }
 
@@ -228,19 +272,20 @@ void Compensator::take_over(const Compensator& previous) noexcept {
     for (std::size_t j = 0; j < previous.channels_.size(); ++j) {
       if (channels_[i] != previous.channels_[j] || !previous.held_[j].seen) continue;
       held_[i].seen = true;
-      held_[i].reach = reach_of(previous.held_[j].reach.value + previous.held_[j].reach.beyond, ranges_[i]);
+      held_[i].value = previous.held_[j].value;
+      held_[i].reach = reach_of(held_[i].value, ranges_[i]);
     }
   }
+  const auto same = [&](std::size_t mine, std::size_t other) {
+    if (mine == kNone || other == kNone) return mine == other;
+    return channels_[mine] == previous.channels_[other];
+  };
   for (Term& term : terms_) {
     for (Factor& factor : term.factors) {
       for (const Term& old : previous.terms_) {
         for (const Factor& other : old.factors) {
-          const bool same_channel =
-              factor.channel == other.channel
-                  ? factor.channel == kNone || channels_[factor.channel] == previous.channels_[other.channel]
-                  : factor.channel != kNone && other.channel != kNone &&
-                        channels_[factor.channel] == previous.channels_[other.channel];
-          if (same_channel) factor.shape.take_over(other.shape);
+          if (same(factor.channel, other.channel) && same(factor.less, other.less))
+            factor.shape.take_over(other.shape);
         }
       }
     }

@@ -2,9 +2,9 @@
 // axes of one sensor. step() is the daemon's hot path: no allocation, no lock, no exception; the same code
 // serves `ifog denoise`.
 //
-// With b the effects of the environment and s the scale factor error, itself a function of temperature and
-// rate, the true rate solves z = w + b + s(T, w) w. The reference rate of the fit is not there online; w
-// takes its place.
+// With b the effects of the environment, s the scale factor error, itself a function of temperature and rate,
+// and m the misalignment to the sensor's other axes, the true rates solve z = w + b + s(T, w) w + m w_other.
+// The reference rate of the fit is not there online; w takes its place.
 #pragma once
 
 #include <array>
@@ -68,8 +68,10 @@ class Compensator {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   struct Factor {
     Shape shape;
-    std::size_t channel;  // kNone: the rate itself, or time
-    bool of_rate;
+    std::size_t channel;  // kNone: a rate, or time
+    std::size_t less;     // of a difference of two channels the second; kNone
+    std::size_t rate;     // the axis whose rate it is a function of; kNone
+    ChannelRange range;   // of a rate or a difference
   };
   // A product of shapes, and by how much it may be wrong outside the range, as Shape has it.
   struct Value {
@@ -80,36 +82,45 @@ class Compensator {
     std::size_t axis;
     double coefficient;
     double coefficient_error;
+    bool of_rate;           // of any axis
     std::size_t parameter;  // row of the coefficient in the covariance, kNone without
     std::vector<Factor> factors;
     Value channels{};  // of the factors that do not depend on the rate
     bool usable = false;
   };
   struct Held {
+    double value = 0.0;
     Reach reach;
     bool seen = false;
     bool stale = false;
   };
 
-  void read_ranges(const std::vector<ChannelRange>& known);
-  void add_effect(const Effect& effect, std::size_t first_row, const std::vector<std::string>& axes);
-  void add_factor(Term& term, ShapeSettings settings, const std::string& channel);
+  void add_effect(const Effect& effect, std::size_t first_row, const std::vector<std::string>& axes,
+                  const std::vector<ChannelRange>& ranges);
+  void add_factor(Term& term, ShapeSettings settings, const std::string& channel,
+                  const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges);
   void place(Term term, const Effect& effect, const std::vector<std::string>& axes);
   void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
-  void evaluate(Term& term, double dt_s) noexcept;
-  // The whole term at a rate; the channels' part alone for a term that does not depend on it.
-  [[nodiscard]] Value at_rate(const Term& term, double rate) const noexcept;
-  [[nodiscard]] double parameter_variance(std::size_t axis, double rate) const noexcept;
+  void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
+  // Where a factor's channel is, which has had a value.
+  [[nodiscard]] Reach reach_of_factor(const Factor& factor) const noexcept;
+  // The whole term at these rates of the axes; the channels' part alone for a term that does not depend on
+  // them. Zero while another axis it depends on has no value.
+  [[nodiscard]] Value at_rates(const Term& term, const Axes& rates) const noexcept;
+  [[nodiscard]] double correction(std::size_t axis, const Axes& rates) const noexcept;
+  // Sets the axis' variance and flags.
+  void judge(std::size_t axis, const Axes& rates, CompensatorOutput& out) const noexcept;
+  [[nodiscard]] double parameter_variance(std::size_t axis, const Axes& rates) const noexcept;
   std::size_t channel_index(const std::string& name);
 
   std::vector<std::string> channels_, left_out_;
   std::vector<ChannelRange> ranges_;  // of channels_, infinite where the model gives none
-  ChannelRange rate_range_;
   std::vector<Held> held_;
   std::vector<Term> terms_;
   std::vector<double> covariance_;
   std::size_t parameters_ = 0;
   std::size_t axes_;
+  std::vector<std::uint8_t> of_rate_;  // by axis: its correction depends on a rate
   double stale_after_s_;
   std::optional<double> since_power_up_s_;
 };

@@ -6,7 +6,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::array<std::pair<Form, std::string_view>, 20> kNames = {{
+constexpr std::array<std::pair<Form, std::string_view>, 23> kNames = {{
     {Form::kLinear, "linear"},
     {Form::kQuadratic, "quadratic"},
     {Form::kCubic, "cubic"},
@@ -17,6 +17,9 @@ constexpr std::array<std::pair<Form, std::string_view>, 20> kNames = {{
     {Form::kLagged, "lagged"},
     {Form::kLookup, "lookup"},
     {Form::kProduct, "product"},
+    {Form::kAbsolute, "absolute"},
+    {Form::kCosine, "cosine"},
+    {Form::kSine, "sine"},
     {Form::kBandPower, "band_power"},
     {Form::kLine, "line"},
     {Form::kStep, "step"},
@@ -28,6 +31,8 @@ constexpr std::array<std::pair<Form, std::string_view>, 20> kNames = {{
     {Form::kNoiseChange, "noise_change"},
     {Form::kQuantisation, "quantisation"},
 }};
+
+constexpr std::string_view kLess = " - ";
 
 }  // namespace
 
@@ -84,6 +89,28 @@ double parameter(const Effect& effect, std::string_view name) {
 std::string_view time_constant_name(Form form) {
   if (form == Form::kLagged) return "lag_s";
   return form == Form::kWarmUp ? "time_constant_s" : "bandwidth_s";
+}
+
+std::string difference_of(std::string_view of, std::string_view less) {
+  return std::string(of) + std::string(kLess) + std::string(less);
+}
+
+ChannelNames names_in(std::string_view channel) {
+  const auto at = channel.find(kLess);
+  if (at == std::string_view::npos) return {std::string(channel), ""};
+  return {std::string(channel.substr(0, at)), std::string(channel.substr(at + kLess.size()))};
+}
+
+std::string rate_of_axis(std::string_view axis) {
+  return axis.empty() ? "rate_radps" : "rate_" + std::string(axis) + "_radps";
+}
+
+std::string axis_of_rate(std::string_view channel) {
+  constexpr std::string_view kBefore = "rate_";
+  constexpr std::string_view kAfter = "_radps";
+  if (!channel.starts_with(kBefore) || !channel.ends_with(kAfter)) return "";
+  if (channel.size() <= kBefore.size() + kAfter.size()) return "";
+  return std::string(channel.substr(kBefore.size(), channel.size() - kBefore.size() - kAfter.size()));
 }
 
 bool is_reference_rate(std::string_view channel) { return channel.starts_with("reference_rate"); }

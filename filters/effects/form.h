@@ -3,8 +3,9 @@
 // With c the channel less its reference, tau time constants, LP the first-order low-pass:
 //   linear c            quadratic c^2         cubic c^3        quintic c^5       septic c^7
 //   rate d/dt LP(c)     second_rate d2/dt2 LP(LP(c))           lagged LP(c) or LP(LP(c)) with two time
-//   constants lookup f(c), piecewise linear; with `angle` the table is an angle and the effect its difference
-//   over dt product c * with_form(with_channel) band_power mean square of c - LP(c)
+//   constants   lookup f(c), piecewise linear; with `angle` the table is an angle and the effect its
+//   difference over dt product c * with_form(with_channel) band_power mean square of c - LP(c)   absolute |c|
+//   cosine, sine of 2 pi c/period, the channel an angle: once a turn, or a whole part of it
 // and of the time t since the record's start (or the daemon's):
 //   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
 // earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
@@ -31,6 +32,9 @@ enum class Form {
   kLagged,
   kLookup,
   kProduct,
+  kAbsolute,
+  kCosine,
+  kSine,
   kBandPower,
   kLine,
   kStep,
@@ -65,6 +69,17 @@ std::string_view name_of(Form form);
 // What a form's time constant is called: "lag_s" of lagged, "time_constant_s" of warm_up, "bandwidth_s" of
 // the others.
 [[nodiscard]] std::string_view time_constant_name(Form form);
+
+// A channel of an effect is a column, or the difference of two: "A - B". Column names have no blanks.
+struct ChannelNames {
+  std::string of, less;  // less: "" for a column
+};
+[[nodiscard]] std::string difference_of(std::string_view of, std::string_view less);
+[[nodiscard]] ChannelNames names_in(std::string_view channel);
+
+// The measured rate of an axis of the same sensor as a channel: "rate_y_radps" for "y".
+[[nodiscard]] std::string rate_of_axis(std::string_view axis);
+[[nodiscard]] std::string axis_of_rate(std::string_view channel);  // "" when the channel is none
 
 // The reference rate, known on a rate table; online its place is taken by the rate itself.
 [[nodiscard]] bool is_reference_rate(std::string_view channel);

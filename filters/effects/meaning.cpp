@@ -1,6 +1,8 @@
 #include "filters/effects/meaning.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace ifog {
 namespace {
@@ -21,6 +23,7 @@ std::string form_unit(Form form, const std::string& unit) {
     case Form::kBandPower:
       return unit + "^2";
     case Form::kLagged:
+    case Form::kAbsolute:
       return unit;
     default:
       return power_unit(unit, std::max(1, power_of(form)));
@@ -40,6 +43,32 @@ std::string order_of(Form form) {
     default:
       return "";
   }
+}
+
+std::string of_gradient(Form form) {
+  if (form == Form::kRate)
+    return "Shupe effect: bias follows the rate of change of the gradient between two thermometers";
+  return "Shupe effect: " + order_of(form) +
+         "dependence of the bias on the gradient between two thermometers" +
+         (form == Form::kLagged ? ", with a lag" : "");
+}
+
+std::string of_other_axis(const std::string& name, Form form) {
+  const std::string axis = axis_of_rate(name);
+  if (form == Form::kLinear) return "misalignment: the axis sees a part of the rotation about " + axis;
+  return order_of(form) + "dependence on the rotation about " + axis;
+}
+
+std::string of_angle(const Effect& effect) {
+  const std::string unit = unit_of(effect.channel);
+  const double turn = unit == "deg" ? 360.0 : unit == "turns" ? 1.0 : 2.0 * std::numbers::pi;
+  const long times = std::lround(turn / std::max(effect.period, 1e-300));
+  return (times == 1   ? "once"
+          : times == 2 ? "twice"
+                       : std::to_string(times) + " times") +
+         std::string(
+             " a turn: what the sensor meets in a direction of the room, as a magnetic field or the "
+             "Earth's rate, or a part of it that runs out of true");
 }
 
 std::string of_temperature(Form form) {
@@ -64,8 +93,7 @@ std::string of_temperature(Form form) {
 std::string of_acceleration(Form form) {
   switch (form) {
     case Form::kLinear:
-      return "g-sensitivity: bias follows the specific force (or the Earth's rate turning into a tilting "
-             "axis)";
+      return "g-sensitivity: bias follows the specific force";
     case Form::kEarthRate:
       return "the Earth's rate turning into the axis as the sensor tilts";
     case Form::kQuadratic:
@@ -79,14 +107,18 @@ std::string of_acceleration(Form form) {
 
 std::string of_reference(Form form) {
   if (form == Form::kLinear) return "scale factor error";
+  if (form == Form::kAbsolute) return "scale factor asymmetry: another one backwards";
   if (power_of(form) % 2 == 1) return "scale factor nonlinearity, " + order_of(form) + "in the rate";
   return "scale factor asymmetry between the directions, " + order_of(form) + "in the rate";
 }
 
 std::string of_channel(ChannelKind kind, Form form, const std::string& name) {
+  if (kind == ChannelKind::kTemperature && !names_in(name).less.empty()) return of_gradient(form);
   switch (kind) {
     case ChannelKind::kTemperature:
       return of_temperature(form);
+    case ChannelKind::kOtherAxis:
+      return of_other_axis(name, form);
     case ChannelKind::kAcceleration:
       return of_acceleration(form);
     case ChannelKind::kReferenceRate:
@@ -114,6 +146,8 @@ std::string of_channel(ChannelKind kind, Form form, const std::string& name) {
       return "bias follows the second derivative of " + name;
     case Form::kLagged:
       return "bias follows " + name + " with a lag";
+    case Form::kAbsolute:
+      return "bias follows the size of " + name + ", whatever its sign";
     case Form::kLookup:
       return "bias is a curve in " + name;
     case Form::kBandPower:
@@ -143,6 +177,7 @@ std::string of_product(const Effect& effect, Form with_form) {
 
 ChannelKind kind_of(std::string_view channel) {
   if (is_reference_rate(channel)) return ChannelKind::kReferenceRate;
+  if (!axis_of_rate(channel).empty()) return ChannelKind::kOtherAxis;
   if (has(channel, "ramp")) return ChannelKind::kRamp;
   if (has(channel, "temp") || channel.ends_with("_degC") || channel.ends_with("_K"))
     return ChannelKind::kTemperature;
@@ -158,6 +193,7 @@ ChannelKind kind_of(std::string_view channel) {
 }
 
 double reference_of(std::string_view channel) {
+  if (!names_in(channel).less.empty()) return 0.0;
   if (channel.ends_with("_degC")) return 25.0;
   if (channel.ends_with("_V")) return 12.0;
   return 0.0;
@@ -194,9 +230,18 @@ std::string meaning_of(const Effect& effect) {
       return "the noise level changed during the record";
     case Form::kQuantisation:
       return "the rate comes in steps";
+    case Form::kCosine:
+    case Form::kSine:
+      return of_angle(effect);
     default:
       return of_channel(kind_of(effect.channel), *form, effect.channel);
   }
+}
+
+std::string meaning_of_earth_rate(const Effect& effect) {
+  const bool first = power_of(form_named(effect.form).value_or(Form::kEarthRate)) == 1;
+  return std::string("the Earth's rate turning into the axis as the sensor tilts") +
+         (first ? "" : ", what its straight line leaves");
 }
 
 std::string coefficient_unit(const Effect& effect) {
@@ -208,7 +253,9 @@ std::string coefficient_unit(const Effect& effect) {
            form_unit(with, unit_of(effect.with_channel));
   }
   if (*form == Form::kRateRamp) return "rad/s^2";
-  if (!has_channel(*form) || *form == Form::kLookup) return "rad/s";
+  if (!has_channel(*form) || *form == Form::kLookup || *form == Form::kCosine || *form == Form::kSine)
+    return "rad/s";
+  if (*form == Form::kLinear && kind_of(effect.channel) == ChannelKind::kOtherAxis) return "rad";
   const std::string unit = unit_of(effect.channel);
   return "rad/s/" + form_unit(*form, unit.empty() ? "unit" : unit);
 }

@@ -18,13 +18,14 @@ enum class ChannelKind {
   kRamp,
   kPressure,
   kReferenceRate,
+  kOtherAxis,
   kOther
 };
 
 [[nodiscard]] ChannelKind kind_of(std::string_view channel);
 
 // The channel's value at which effects are zero by convention, so that coefficients of different records
-// compare: 25 degC, 12 V, 0 otherwise.
+// compare: 25 degC, 12 V, 0 otherwise and for differences of two.
 [[nodiscard]] double reference_of(std::string_view channel);
 
 // The unit part of NAME_UNIT: "degC" of "case_temperature_degC"; "" when there is none.
@@ -32,6 +33,9 @@ enum class ChannelKind {
 
 // One line in plain words.
 [[nodiscard]] std::string meaning_of(const Effect& effect);
+
+// Likewise of an effect of an acceleration that is the Earth's rate by its first reading.
+[[nodiscard]] std::string meaning_of_earth_rate(const Effect& effect);
 
 // The unit of the effect's coefficient, "rad/s/degC^2".
 [[nodiscard]] std::string coefficient_unit(const Effect& effect);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
@@ -18,9 +19,13 @@ double share(double dt, double time_constant) {
 // vibration.
 constexpr double kPowerAverage_s = 1.0;
 
+bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSine; }
+
 double power(double c, Form form) noexcept {
   const double c2 = c * c;
   switch (form) {
+    case Form::kAbsolute:
+      return std::abs(c);
     case Form::kQuadratic:
       return c2;
     case Form::kCubic:
@@ -54,9 +59,10 @@ ShapeSettings shape_settings(const Effect& effect) {
 
 ShapeSettings with_shape_settings(const Effect& effect) {
   const auto form = form_named(effect.with_form);
-  if (!form || *form == Form::kProduct || *form == Form::kLookup || !has_channel(*form)) {
+  if (!form || *form == Form::kProduct || *form == Form::kLookup || is_periodic(*form) ||
+      !has_channel(*form)) {
     throw std::invalid_argument("product with form " + in_quotes(effect.with_form) +
-                                ", expected a form of a channel other than product and lookup");
+                                ", expected a form of a channel other than product, lookup, cosine and sine");
   }
   ShapeSettings settings;
   settings.form = *form;
@@ -71,6 +77,8 @@ Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
   if (lookup && (settings_.table_x.size() < 2 || settings_.table_x.size() != settings_.table_y.size())) {
     throw std::invalid_argument("a lookup needs a table of at least two knots");
   }
+  if (is_periodic(settings_.form) && !(settings_.period > 0.0))
+    throw std::invalid_argument("a cosine or sine of an angle needs its period");
   if (settings_.time_constant_s < 0.0 || settings_.second_time_constant_s < 0.0) {
     throw std::invalid_argument("a time constant is negative");
   }
@@ -93,7 +101,11 @@ double Shape::table(double value) const noexcept {
 
 double Shape::at(double value) const noexcept {
   if (settings_.form == Form::kLookup) return table(value);
-  return power(value - settings_.reference, settings_.form);
+  const double c = value - settings_.reference;
+  const double turns = is_periodic(settings_.form) ? c / settings_.period : 0.0;
+  if (settings_.form == Form::kCosine) return std::cos(2.0 * std::numbers::pi * turns);
+  if (settings_.form == Form::kSine) return std::sin(2.0 * std::numbers::pi * turns);
+  return power(c, settings_.form);
 }
 
 double Shape::step(double value, double dt_s) noexcept {
@@ -151,6 +163,7 @@ double Shape::slope(double value) const noexcept {
   const int power_here = power_of(settings_.form);
   if (power_here > 0)
     return power_here * std::pow(value - settings_.reference, static_cast<double>(power_here - 1));
+  if (settings_.form == Form::kAbsolute) return std::copysign(1.0, value - settings_.reference);
   if (settings_.form != Form::kLookup || settings_.period > 0.0) return 0.0;
   const auto& x = settings_.table_x;
   const auto& y = settings_.table_y;
@@ -170,10 +183,11 @@ double Shape::step(const Reach& channel, double dt_s) noexcept {
 }
 
 double Shape::left_behind(const Reach& channel) const noexcept {
-  if (settings_.angle || !channel.outside()) return 0.0;  // periodic: every value is inside
+  // Periodic: every value is inside.
+  if (settings_.angle || is_periodic(settings_.form) || !channel.outside()) return 0.0;
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
-  if (power_of(settings_.form) > 0) {
+  if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {
     return std::abs(at(channel.value) - at(channel)) + std::abs(slope(channel.edge) * channel.beyond);
   }
   const double tau = std::max(settings_.time_constant_s, 1e-3);
@@ -200,7 +214,7 @@ bool Shape::take_over(const Shape& previous) noexcept {
   const ShapeSettings& a = settings_;
   const ShapeSettings& b = previous.settings_;
   if (a.form != b.form || a.reference != b.reference || a.time_constant_s != b.time_constant_s ||
-      a.second_time_constant_s != b.second_time_constant_s || a.angle) {
+      a.second_time_constant_s != b.second_time_constant_s || a.period != b.period || a.angle) {
     return false;
   }
   first_ = previous.first_;

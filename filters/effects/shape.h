@@ -16,7 +16,7 @@ struct ShapeSettings {
   double time_constant_s = 0.0;          // rate, second_rate, lagged, band_power, warm_up; 0: no smoothing
   double second_time_constant_s = 0.0;   // lagged: a second stage
   std::vector<double> table_x, table_y;  // lookup
-  double period = 0.0;
+  double period = 0.0;                   // lookup (0: not periodic), cosine, sine
   bool angle = false;
   double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };
@@ -27,8 +27,8 @@ ShapeSettings with_shape_settings(const Effect& effect);  // "product": the seco
 
 class Shape {
  public:
-  // Throws std::invalid_argument for a lookup without a table, a negative time constant or a form without a
-  // channel other than warm_up.
+  // Throws std::invalid_argument for a lookup without a table, a cosine or sine without a period, a negative
+  // time constant or a form without a channel other than warm_up.
   explicit Shape(ShapeSettings settings);
 
   // One sample: the channel's value, and the time it covers. The first sample sets the low-pass to itself, as

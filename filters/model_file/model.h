@@ -23,7 +23,9 @@ struct ModelParameter {
   std::string unit;
 };
 
-// A form applied to a channel; for "product" also `with_form` of `with_channel`.
+// A form applied to a channel; for "product" also `with_form` of `with_channel`. A channel may be the
+// difference of two columns, "A - B": in the file channel = "A", minus_channel = "B" (likewise
+// with_minus_channel).
 struct Effect {
   std::string form;
   std::string channel;  // the capture's column name; "" for forms without one
@@ -33,16 +35,19 @@ struct Effect {
   double with_reference = 0.0;  // "product": likewise of with_channel
   std::vector<ModelParameter> parameters;
   std::vector<double> table_x, table_y;  // "lookup": knots in the channel's unit, values in rad/s
-  double period = 0.0;                   // "lookup": > 0 when periodic
+  double period = 0.0;  // "lookup": > 0 when periodic; "cosine", "sine": of the channel, an angle
   // "lookup": the table is an angle in rad and the effect its difference from sample to sample over dt. A
   // bounded angle cannot swallow rotation, so this is the only kind allowed on channels that themselves
   // follow the rate.
   bool angle = false;
+  // The Earth's rate by its first reading, which is rotation and no error: a diagnosis shows it; it is
+  // neither corrected nor written to a file.
+  bool shown_only = false;
   std::string meaning;
 };
 
 struct ChannelRange {
-  std::string channel;
+  std::string channel;  // or the difference of two, as in an effect
   double low = 0.0, high = 0.0;
 };
 

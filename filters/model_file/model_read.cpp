@@ -4,6 +4,7 @@
 
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/effects/form.h"
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
@@ -181,13 +182,21 @@ FilterSettings read_filter(Table table) {
   return settings_in_force(choice, FilterSettings{});
 }
 
+std::string channel_of(Table& table, const std::string& key, const std::string& minus_key) {
+  std::string channel = table.words(key);
+  const std::string less = table.words(minus_key);
+  if (less.empty()) return channel;
+  if (channel.empty()) table.fail(key, nullptr, "expected the channel that " + minus_key + " is taken from");
+  return difference_of(channel, less);
+}
+
 Effect read_effect(Table table) {
   Effect effect;
   effect.form = table.words("form");
   if (effect.form.empty()) table.fail("form", nullptr, "expected the name of a form");
-  effect.channel = table.words("channel");
+  effect.channel = channel_of(table, "channel", "minus_channel");
   effect.with_form = table.words("with_form");
-  effect.with_channel = table.words("with_channel");
+  effect.with_channel = channel_of(table, "with_channel", "with_minus_channel");
   effect.axis = table.words("axis");
   effect.meaning = table.words("meaning");
   effect.reference = table.number("reference", 0.0);
@@ -249,7 +258,7 @@ Model parse_model(std::string_view text, const std::string& name) {
     table.fail("covariance", nullptr, "expected a covariance matrix, symmetric and positive: " + flaw);
   for (Table& item : table.tables("range")) {
     ChannelRange range;
-    range.channel = item.words("channel");
+    range.channel = channel_of(item, "channel", "minus_channel");
     range.low = item.required("low");
     range.high = item.required("high");
     if (range.high < range.low) item.fail("high", item.find("high"), "expected at least low");

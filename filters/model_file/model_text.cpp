@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <type_traits>
 
+#include "filters/effects/form.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/sha256.h"
 #include "filters/model_file/toml_text.h"
@@ -62,12 +63,18 @@ void write_filter(Text& text, const FilterSettings& filter) {
   }
 }
 
+void write_channel(Text& text, const std::string& prefix, const std::string& channel) {
+  const ChannelNames names = names_in(channel);
+  text.words(prefix + "channel", names.of);
+  text.words(prefix + "minus_channel", names.less);
+}
+
 void write_effect(Text& text, const Effect& effect) {
   text.element("effect");
   text.words("form", effect.form);
-  text.words("channel", effect.channel);
+  write_channel(text, "", effect.channel);
   text.words("with_form", effect.with_form);
-  text.words("with_channel", effect.with_channel);
+  write_channel(text, "with_", effect.with_channel);
   text.words("axis", effect.axis);
   text.words("meaning", effect.meaning);
   text.line("reference", toml_number(effect.reference));
@@ -110,7 +117,7 @@ std::string model_text(const Model& model) {
   for (const Effect& effect : model.effects) write_effect(text, effect);
   for (const ChannelRange& range : model.ranges) {
     text.element("range");
-    text.words("channel", range.channel);
+    write_channel(text, "", range.channel);
     text.line("low", toml_number(range.low));
     text.line("high", toml_number(range.high));
   }

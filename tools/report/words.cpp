@@ -45,6 +45,8 @@ std::string raw_unit(const std::string& column) {
 }  // namespace
 
 std::string channel_words(const std::string& column) {
+  const ChannelNames names = names_in(column);
+  if (!names.less.empty()) return channel_words(names.of) + " less " + channel_words(names.less);
   const std::string unit = raw_unit(column);
   std::string head = column;
   if (!unit.empty()) ends_with(column, "_" + unit, head);
@@ -67,6 +69,8 @@ std::string abscissa_label(const Effect& e) {
     own = words + (lag > 0.0 ? ", lagged " + duration(lag) : ", lagged") +
           (unit.empty() ? "" : " (" + unit + ")");
   }
+  if (form == Form::kAbsolute) own = "size of " + own;
+  if (form == Form::kCosine || form == Form::kSine) own = e.form + " of " + words;
   if (form == Form::kBandPower) own = "mean square of " + words + " (" + unit + "²)";
   if (e.with_channel.empty()) return own;
   return words + " × " + e.with_form + " of " + channel_words(e.with_channel) + " (" + unit + " · " +
@@ -79,6 +83,8 @@ std::string effect_words(const Effect& e) {
   if (!e.channel.empty()) out += " in " + channel_words(e.channel);
   if (e.form == "rate") out = "rate of change of " + channel_words(e.channel);
   if (e.form == "lagged") out = channel_words(e.channel) + ", lagged";
+  if (e.form == "absolute") out = "size of " + channel_words(e.channel);
+  if (e.form == "cosine" || e.form == "sine") out = e.form + " of " + channel_words(e.channel);
   if (e.form == "lookup") out = "curve over " + channel_words(e.channel);
   if (!e.with_channel.empty())
     out = channel_words(e.channel) + " × " + (e.with_form == "linear" ? "" : e.with_form + " ") +
@@ -112,6 +118,7 @@ FieldUnit field_unit(const std::string& si) {
       return {1e6, "ppm" + typeset_unit(rest.substr(8))};
     return {1.0 / kDegreePerHour, "°/h" + typeset_unit(rest)};
   }
+  if (si == "rad") return {1e6, "µrad"};
   return {1.0, typeset_unit(si)};
 }
 

@@ -52,6 +52,9 @@ const std::vector<Kind>& channel_kinds() {
         {"start", 0.0, 0.0, kAny, "counts"},
         {"counts_per_s", 0.0, -kAny, kAny, "counts/s"}},
        {}},
+      {"angle",
+       {{"start", 0.0, -kAny, kAny, "channel's"}, {"turn", kMust, kTiny, kAny, "channel's a turn"}},
+       {}},
   };
   return kKinds;
 }
@@ -100,6 +103,13 @@ const std::vector<Kind>& effect_kinds() {
       {"cubic", {kCoefficient, kReference}, {}, 1},
       {"quintic", {kCoefficient, kReference}, {}, 1},
       {"septic", {kCoefficient, kReference}, {}, 1},
+      {"absolute", {kCoefficient, kReference}, {}, 1},
+      {"cosine", {kCoefficient, {"period", kMust, kTiny, kAny, "channel's"}}, {}, 1},
+      {"sine", {kCoefficient, {"period", kMust, kTiny, kAny, "channel's"}}, {}, 1},
+      {"earth_rate",
+       {{"latitude_deg", kMust, -90.0, 90.0, "°"}, {"heading_deg", kMust, -360.0, 360.0, "°"}},
+       {},
+       1},
       {"rate", {kCoefficient, {"time_constant_s", 0.0, 0.0, kAny, "s"}}, {}, 1},
       {"second_rate", {kCoefficient, kTime}, {}, 1},
       {"lagged", {kCoefficient, kReference, kTime, {"second_s", 0.0, 0.0, kAny, "s"}}, {}, 1},
@@ -194,6 +204,8 @@ void check_channels(const Recipe& recipe, const Kind& kind) {
                                 ", expected a channel's name, or 'rate'");
   if (kind.channels < 1 && !recipe.channel.empty())
     throw std::invalid_argument("key 'channel' is unknown for " + recipe.kind);
+  if (kind.channels < 1 && !recipe.minus_channel.empty())
+    throw std::invalid_argument("key 'minus_channel' is unknown for " + recipe.kind);
   if (kind.channels < 2 && !recipe.with_channel.empty())
     throw std::invalid_argument("key 'with_channel' is unknown for " + recipe.kind);
 }

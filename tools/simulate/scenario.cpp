@@ -230,6 +230,8 @@ class Reader {
           recipe.axis = string(value, key);
         else if (local == "channel" && what == "effect")
           recipe.channel = string(value, key);
+        else if (local == "minus_channel" && what == "effect")
+          recipe.minus_channel = string(value, key);
         else if (local == "with_channel" && what == "effect")
           recipe.with_channel = string(value, key);
         else if (value.is_array())

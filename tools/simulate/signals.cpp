@@ -11,6 +11,8 @@ namespace ifog::simulate {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
+constexpr double kGravity = 9.80665;    // m/s²
 
 // First-order low-pass that starts settled on its first input; time_constant 0 passes everything.
 class LowPass {
@@ -85,6 +87,12 @@ std::vector<double> physical_channel(const Recipe& c, const Grid& grid, std::spa
     for (std::size_t i = 0; i < x.size(); ++i) {
       const bool on = c["on_s"] <= 0.0 || std::fmod(grid.time(i), cycle) >= c["off_s"];
       x[i] = c["level"] + (on ? x[i] : 0.0);
+    }
+  } else if (c.kind == "angle") {  // what a table's encoder says of the turn
+    double angle = c["start"];
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      angle += true_rate[i] * grid.period() * c["turn"] / kTurn;
+      x[i] = angle -= c["turn"] * std::floor(angle / c["turn"]);
     }
   } else {  // feedback_ramp: the loop's phase, whole counts modulo the register
     double counts = c["start"];
@@ -201,7 +209,23 @@ std::vector<double> effect_signal(const Recipe& e, const Grid& grid, std::span<c
     if (e.kind == name)
       for (std::size_t i = 0; i < out.size(); ++i)
         out[i] = e["coefficient"] * power(channel[i] - e["reference"], exponent);
-  if (e.kind == "rate" || e.kind == "second_rate") {
+  if (e.kind == "absolute") {
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = e["coefficient"] * std::abs(channel[i] - e["reference"]);
+  } else if (e.kind == "cosine" || e.kind == "sine") {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double phase = kTurn * channel[i] / e["period"];
+      out[i] = e["coefficient"] * (e.kind == "sine" ? std::sin(phase) : std::cos(phase));
+    }
+  } else if (e.kind == "earth_rate") {
+    // An axis along the heading, tilted as its accelerometer says: the Earth's rate along it.
+    const double latitude = e["latitude_deg"] * kTurn / 360.0;
+    const double north = std::cos(latitude) * std::cos(e["heading_deg"] * kTurn / 360.0);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double up = std::clamp(channel[i] / kGravity, -1.0, 1.0);
+      out[i] = kEarth * (north * std::sqrt(1.0 - up * up) + std::sin(latitude) * up);
+    }
+  } else if (e.kind == "rate" || e.kind == "second_rate") {
     LowPass first(e["time_constant_s"], period), second(e["time_constant_s"], period);
     double x1 = 0.0, d1 = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {

@@ -44,7 +44,7 @@ class Simulator {
     Capture& capture = out.capture;
     capture.axes = s_.axes;
     for (std::size_t a = 0; a < s_.axes.size(); ++a) {
-      truth.effect_radps.push_back(effects(a, truth.true_rate_radps[a]));
+      truth.effect_radps.push_back(effects(a, truth.true_rate_radps));
       capture.rate_radps.push_back(measured(a, truth));
       capture.reference_rate_radps.emplace_back();
       if (s_.reference) capture.reference_rate_radps.back() = reference(a, truth.true_rate_radps[a]);
@@ -75,30 +75,36 @@ class Simulator {
     return rate;
   }
 
-  [[nodiscard]] std::span<const double> channel(const std::string& name, std::span<const double> true_rate,
-                                                const std::string& whose) const {
+  using Rates = std::vector<std::vector<double>>;
+
+  [[nodiscard]] std::span<const double> channel(const std::string& name, std::size_t axis,
+                                                const Rates& true_rates, const std::string& whose) const {
     if (name.empty()) return {};
-    if (name == "rate") return true_rate;
+    if (name == "rate") return true_rates[axis];
+    if (name.starts_with("rate_")) return true_rates[axis_index(name.substr(5), whose)];
     for (std::size_t c = 0; c < s_.channels.size(); ++c)
       if (s_.channels[c].name == name) return channels_[c].physical;
-    throw std::invalid_argument(whose + ": channel " + in_quotes(name) +
-                                " is not in the scenario, expected one of its channels or 'rate'");
+    throw std::invalid_argument(
+        whose + ": channel " + in_quotes(name) +
+        " is not in the scenario, expected one of its channels, 'rate' or 'rate_AXIS'");
   }
 
-  [[nodiscard]] std::vector<std::vector<double>> effects(std::size_t axis,
-                                                         std::span<const double> true_rate) const {
+  [[nodiscard]] std::vector<std::vector<double>> effects(std::size_t axis, const Rates& true_rates) const {
     std::vector<std::vector<double>> parts;
     for (std::size_t e = 0; e < s_.effects.size(); ++e) {
       const Recipe& effect = s_.effects[e];
       const std::string whose = "effect " + effect.kind;
-      const auto of = channel(effect.channel, true_rate, whose);
-      const auto with = channel(effect.with_channel, true_rate, whose);
+      const auto whole = channel(effect.channel, axis, true_rates, whose);
+      const auto less = channel(effect.minus_channel, axis, true_rates, whose);
+      const auto with = channel(effect.with_channel, axis, true_rates, whose);
+      std::vector<double> of(whole.begin(), whole.end());
+      for (std::size_t i = 0; i < less.size(); ++i) of[i] -= less[i];
       if (!effect.axis.empty() && axis_index(effect.axis, whose) != axis) {
         parts.emplace_back(grid_.samples);
         continue;
       }
-      parts.push_back(
-          effect_signal(effect, grid_, of, with, true_rate, Draw(s_.seed, stream(kEffectStream, e, axis))));
+      parts.push_back(effect_signal(effect, grid_, of, with, true_rates[axis],
+                                    Draw(s_.seed, stream(kEffectStream, e, axis))));
     }
     return parts;
   }
@@ -178,6 +184,7 @@ nlohmann::ordered_json told(const Recipe& recipe) {
   if (!recipe.name.empty()) out["name"] = recipe.name;
   if (!recipe.axis.empty()) out["axis"] = recipe.axis;
   if (!recipe.channel.empty()) out["channel"] = recipe.channel;
+  if (!recipe.minus_channel.empty()) out["minus_channel"] = recipe.minus_channel;
   if (!recipe.with_channel.empty()) out["with_channel"] = recipe.with_channel;
   for (const auto& [key, value] : recipe.number) out[key] = value;
   for (const auto& [key, value] : recipe.list) out[key] = value;

@@ -56,7 +56,7 @@ Eigen::VectorXd held_out_effects(const BlockGrid& grid, const NoiseShape& shape,
   centre_records(grid, centred);
   Eigen::Index at = 0;
   for (const Candidate& effect : effects) {
-    if (!carries_over(effect.form)) centred.middleCols(at, effect.width()).setZero();
+    if (!effect.corrected()) centred.middleCols(at, effect.width()).setZero();
     at += effect.width();
   }
   Eigen::VectorXd sum(columns.rows());

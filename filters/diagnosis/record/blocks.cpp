@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/effects/meaning.h"
+
 namespace ifog {
 namespace {
 
@@ -186,6 +188,20 @@ FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& gr
   return channel;
 }
 
+// A thermometer of whole degrees in a steady room takes two values and is no switch.
+bool is_switch(const std::vector<Record>& records, const std::string& name) {
+  if (kind_of(name) != ChannelKind::kOther) return false;
+  std::vector<double> seen;
+  for (const Record& record : records) {
+    for (const double value : values_of(record, name)) {
+      if (!std::isfinite(value) || std::find(seen.begin(), seen.end(), value) != seen.end()) continue;
+      if (seen.size() == 2) return false;
+      seen.push_back(value);
+    }
+  }
+  return seen.size() == 2;
+}
+
 }  // namespace
 
 std::size_t BlockGrid::used() const {
@@ -213,6 +229,9 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
     data.channels.push_back(fine_channel(records, data.grid, channel.name, [&](const Record& record) {
       return values_of(record, channel.name);
     }));
+    data.channels.back().two_valued = is_switch(records, channel.name);
+    data.channels.back().of_axis = !axis_of_rate(channel.name).empty();
+    data.channels.back().period = channel.period;
   }
   if (std::all_of(records.begin(), records.end(),
                   [](const Record& r) { return !r.reference_radps.empty(); })) {

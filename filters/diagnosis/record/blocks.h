@@ -61,9 +61,14 @@ struct FineChannel {
   std::vector<double> power;   // variance within each step of the fine grid; empty when a step is one sample
   double low = 0.0, high = 0.0;
   bool varies = false;
-  bool still = false;    // no more than reading noise: its averages are those of white noise
-  bool smooth = false;   // moves smoothly, so that it has no power of its own above its slope
-  bool rotates = false;  // follows the sensor's own rotation; a linear use of it would cancel rotation
+  bool still = false;       // no more than reading noise: its averages are those of white noise
+  bool smooth = false;      // moves smoothly, so that it has no power of its own above its slope
+  bool rotates = false;     // follows the sensor's own rotation; a linear use of it would cancel rotation
+  bool two_valued = false;  // a switch: its powers are itself
+  bool of_axis = false;     // the rate of another axis of the sensor
+  double period = 0.0;      // of an angle without its wraps: only what repeats with it is a function of it
+  // A quantity of the surroundings, that any form may be made of.
+  [[nodiscard]] bool environment() const { return !rotates && !of_axis && period == 0.0; }
 };
 
 struct BlockData {

@@ -281,12 +281,35 @@ bool stands_still(std::span<const double> readings) {
   return true;
 }
 
+namespace {
+
+// Of what both channels were: readings in steps, one taken from the other, are steps of neither.
+void rebuild_differences(BlockData& data) {
+  const auto named = [&](const std::string& name) {
+    return std::find_if(data.channels.begin(), data.channels.end(),
+                        [&](const FineChannel& channel) { return channel.name == name; });
+  };
+  for (FineChannel& channel : data.channels) {
+    const ChannelNames names = names_in(channel.name);
+    if (names.less.empty()) continue;
+    const auto of = named(names.of);
+    const auto less = named(names.less);
+    if (of == data.channels.end() || less == data.channels.end()) continue;
+    channel.smooth = of->smooth && less->smooth;
+    for (std::size_t k = 0; k < channel.values.size(); ++k)
+      channel.values[k] = of->values[k] - less->values[k];
+  }
+}
+
+}  // namespace
+
 BlockData with_reconstructed_channels(const BlockData& data) {
   BlockData reconstructed = data;
   const BlockGrid& grid = data.grid;
   for (std::size_t c = 0; c < reconstructed.channels.size(); ++c) {
     FineChannel& channel = reconstructed.channels[c];
-    if (static_cast<std::ptrdiff_t>(c) == data.reference || !channel.varies || channel.rotates) continue;
+    if (static_cast<std::ptrdiff_t>(c) == data.reference || !channel.varies || !channel.environment())
+      continue;
     for (const BlockRange& record : grid.records) {
       const bool first = record.first == 0;
       const BlockRange steps = grid.fine_steps(record);
@@ -299,6 +322,7 @@ BlockData with_reconstructed_channels(const BlockData& data) {
       channel.still = stands_still(readings) && (first || channel.still);
     }
   }
+  rebuild_differences(reconstructed);
   return reconstructed;
 }
 

@@ -27,8 +27,8 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
     const std::optional<double> period = period_of(record);
     if (!record.reference_radps.empty() || !period) continue;
     const double period_s = *period;
-    std::vector<std::span<const double>> axes = record.other_axes;
-    axes.push_back(record.rate_radps);
+    std::vector<std::span<const double>> axes{record.rate_radps};
+    for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
     const Rest rest = find_rest(axes, period_s);
     if (rest.turned == 0) {
       out.records.back().at_rest = rest.at_rest;

@@ -16,25 +16,82 @@ constexpr double kBlocksOfRate = 2.0;
 // What warms up has a mass. What settles faster is how the record began: a reference that came late, a hand
 // that let go.
 constexpr double kShortestWarmUp_s = 10.0;
+constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
+constexpr double kOfDifference =
+    3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
+constexpr double kOfOtherAxis = 2.0;
+// Another axis was turned when it moved as much as this share of the sensor's own; what runs with the own
+// rotation this closely is a picture of it.
+constexpr double kTurned = 0.05;
+constexpr double kPicture = 0.9;
 
-ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel, double first,
-                          double second) {
+ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel, double first, double second,
+                          double period = 0.0) {
   ShapeSettings settings;
   settings.form = form;
+  settings.period = period;
   settings.reference = channel == Candidate::kNone ? 0.0 : reference_of(data.channels[channel].name);
   settings.time_constant_s = first;
   settings.second_time_constant_s = second;
   return settings;
 }
 
-void add_channel(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+Candidate candidate_of(Form form, std::size_t channel, double tau = 0.0) {
+  Candidate candidate;
+  candidate.form = form;
+  candidate.channel = channel;
+  candidate.time_constant_s = tau;
+  return candidate;
+}
+
+bool is_difference(const FineChannel& channel) { return !names_in(channel.name).less.empty(); }
+
+Eigen::VectorXd means_of(const BlockData& data, std::size_t channel) {
+  Eigen::VectorXd means = column(data, ShapeSettings{}, channel);
+  centre_records(data.grid, means);
+  return means;
+}
+
+// A gradient drives a bias by itself, by its change, or late; its powers and vibrations are nobody's law.
+void add_difference(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const auto add = [&](Form form, double tau) {
-    Candidate candidate;
-    candidate.form = form;
-    candidate.channel = channel;
-    candidate.time_constant_s = tau;
-    found.push_back(candidate);
+    found.push_back(candidate_of(form, channel, tau));
+    found.back().of_channel = kOfDifference;
   };
+  add(Form::kLinear, 0.0);
+  if (data.channels[channel].still) return;
+  for (const Form form : {Form::kRate, Form::kLagged})
+    for (const double tau : time_constants(data.grid, form)) add(form, tau);
+}
+
+void add_angle(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  for (int times = 1; times <= kHarmonics; ++times) {
+    for (const Form form : {Form::kCosine, Form::kSine}) {
+      found.push_back(candidate_of(form, channel));
+      found.back().period = data.channels[channel].period / times;
+    }
+  }
+}
+
+void add_other_axis(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  if (data.reference < 0) return;
+  const Eigen::VectorXd own = means_of(data, static_cast<std::size_t>(data.reference));
+  const Eigen::VectorXd other = means_of(data, channel);
+  if (other.norm() < kTurned * own.norm() || std::abs(own.dot(other)) > kPicture * own.norm() * other.norm())
+    return;
+  found.push_back(candidate_of(Form::kLinear, channel));
+  found.back().of_channel = kOfOtherAxis;
+}
+
+// A switch is its own square; what it heats follows late.
+void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  found.push_back(candidate_of(Form::kLinear, channel));
+  for (const double tau : time_constants(data.grid, Form::kLagged))
+    found.push_back(candidate_of(Form::kLagged, channel, tau));
+}
+
+void add_channel(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  const auto add = [&](Form form, double tau) { found.push_back(candidate_of(form, channel, tau)); };
   const FineChannel& source = data.channels[channel];
   add(Form::kLinear, 0.0);
   // Of a channel that stands still the rest are pictures of reading noise, low-passed into a random walk that
@@ -61,14 +118,16 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
   if (!data.channels[reference].varies) return;
   Candidate candidate;
   candidate.channel = reference;
-  for (const Form form : {Form::kLinear, Form::kQuadratic, Form::kCubic, Form::kQuintic, Form::kSeptic}) {
+  for (const Form form :
+       {Form::kLinear, Form::kQuadratic, Form::kCubic, Form::kQuintic, Form::kSeptic, Form::kAbsolute}) {
     candidate.form = form;
     found.push_back(candidate);
   }
   candidate.form = Form::kProduct;
   for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
     const FineChannel& source = data.channels[channel];
-    if (channel == reference || !source.varies || source.rotates || source.still) continue;
+    if (channel == reference || !source.varies || !source.environment() || source.still) continue;
+    if (is_difference(source)) continue;
     // The channel's own scale factor sensitivity, its nonlinearity's, and its square's.
     candidate.channel = channel;
     candidate.with_channel = reference;
@@ -83,11 +142,38 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
   }
 }
 
+// Two quantities of the surroundings that are no pictures of each other.
+Candidate product_of(std::size_t one, std::size_t other) {
+  Candidate candidate;
+  candidate.form = Form::kProduct;
+  candidate.channel = std::min(one, other);
+  candidate.with_channel = std::max(one, other);
+  return candidate;
+}
+
+bool may_be_factor(const BlockData& data, std::size_t channel) {
+  const FineChannel& source = data.channels[channel];
+  return static_cast<std::ptrdiff_t>(channel) != data.reference && source.varies && source.environment() &&
+         !source.still && !is_difference(source);
+}
+
+// What a switch lets through: another channel's effect while it is on.
+std::vector<std::pair<std::size_t, std::size_t>> switched(const BlockData& data) {
+  std::vector<std::pair<std::size_t, std::size_t>> found;
+  for (std::size_t gate = 0; gate < data.channels.size(); ++gate) {
+    if (!data.channels[gate].two_valued || !may_be_factor(data, gate)) continue;
+    for (std::size_t other = 0; other < data.channels.size(); ++other)
+      if (other != gate && may_be_factor(data, other)) found.emplace_back(gate, other);
+  }
+  return found;
+}
+
 }  // namespace
 
 bool Candidate::same_shape(const Candidate& other) const {
   return form == other.form && channel == other.channel && with_form == other.with_form &&
-         with_channel == other.with_channel && time_s == other.time_s && frequency_hz == other.frequency_hz;
+         with_channel == other.with_channel && time_s == other.time_s && frequency_hz == other.frequency_hz &&
+         period == other.period;
 }
 
 std::vector<double> time_constants(const BlockGrid& grid, Form form) {
@@ -115,8 +201,20 @@ std::vector<Candidate> library(const BlockData& data) {
   std::vector<Candidate> found;
   for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
     if (static_cast<std::ptrdiff_t>(channel) == data.reference || !data.channels[channel].varies) continue;
-    if (!data.channels[channel].rotates) add_channel(data, channel, found);
+    const FineChannel& source = data.channels[channel];
+    if (source.rotates) continue;
+    if (source.of_axis)
+      add_other_axis(data, channel, found);
+    else if (source.period > 0.0)
+      add_angle(data, channel, found);
+    else if (is_difference(source))
+      add_difference(data, channel, found);
+    else if (source.two_valued)
+      add_switch(data, channel, found);
+    else
+      add_channel(data, channel, found);
   }
+  for (const auto& [gate, other] : switched(data)) found.push_back(product_of(gate, other));
   if (data.reference >= 0) add_reference(data, found);
   if (data.grid.dwells) return found;
   Candidate of_time;
@@ -130,21 +228,30 @@ std::vector<Candidate> library(const BlockData& data) {
   return found;
 }
 
-std::vector<Candidate> products_of(const BlockData& data, std::size_t channel) {
-  const auto usable = [&](std::size_t i) {
-    const FineChannel& c = data.channels[i];
-    return static_cast<std::ptrdiff_t>(i) != data.reference && c.varies && !c.rotates && !c.still;
-  };
-  std::vector<Candidate> found;
-  if (!usable(channel)) return found;
-  for (std::size_t other = 0; other < data.channels.size(); ++other) {
-    if (other == channel || !usable(other)) continue;
-    Candidate candidate;
-    candidate.form = Form::kProduct;
-    candidate.channel = std::min(channel, other);
-    candidate.with_channel = std::max(channel, other);
-    found.push_back(candidate);
+std::vector<NaturalPair> natural_pairs(const BlockData& data) {
+  std::vector<NaturalPair> pairs;
+  if (data.grid.dwells) return pairs;
+  for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
+    const FineChannel& source = data.channels[channel];
+    if (source.period > 0.0 && source.varies) {
+      std::vector<Candidate> turns;
+      add_angle(data, channel, turns);
+      for (std::size_t i = 0; i + 1 < turns.size(); i += 2) pairs.push_back({turns[i], turns[i + 1]});
+    }
+    if (!may_be_factor(data, channel) || source.two_valued) continue;
+    pairs.push_back({candidate_of(Form::kLinear, channel), candidate_of(Form::kQuadratic, channel)});
   }
+  for (const auto& [gate, other] : switched(data))
+    pairs.push_back({candidate_of(Form::kLinear, gate), product_of(gate, other)});
+  return pairs;
+}
+
+std::vector<Candidate> products_of(const BlockData& data, std::size_t channel) {
+  std::vector<Candidate> found;
+  const bool of_axis = data.channels[channel].of_axis;
+  if (!of_axis && !may_be_factor(data, channel)) return found;
+  for (std::size_t other = 0; other < data.channels.size(); ++other)
+    if (other != channel && may_be_factor(data, other)) found.push_back(product_of(channel, other));
   return found;
 }
 
@@ -159,7 +266,7 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
     }
     return column(data,
                   settings_of(data, candidate.form, candidate.channel, candidate.time_constant_s,
-                              candidate.second_time_constant_s),
+                              candidate.second_time_constant_s, candidate.period),
                   candidate.channel);
   }
   Columns columns = Columns::Zero(n, candidate.width());
@@ -192,11 +299,16 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
   return columns;
 }
 
-double complexity(const Candidate& candidate) {
+namespace {
+
+double complexity_of_form(const Candidate& candidate) {
   switch (candidate.form) {
     case Form::kLinear:
       return 0.0;
     case Form::kQuadratic:
+    case Form::kAbsolute:
+    case Form::kCosine:
+    case Form::kSine:
     case Form::kRateRamp:
       return 2.0;
     case Form::kSecondRate:
@@ -215,12 +327,17 @@ double complexity(const Candidate& candidate) {
   }
 }
 
+}  // namespace
+
+double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
+
 Effect effect_of(const BlockData& data, const Candidate& candidate) {
   Effect effect;
   effect.form = name_of(candidate.form);
   if (candidate.channel != Candidate::kNone) {
     effect.channel = data.channels[candidate.channel].name;
     effect.reference = reference_of(effect.channel);
+    effect.period = candidate.period;
   }
   if (candidate.form == Form::kProduct) {
     effect.with_form = name_of(candidate.with_form);
@@ -241,7 +358,10 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
     effect.parameters.push_back({"second_lag_s", candidate.second_time_constant_s, 0.0, "s"});
   }
   if (candidate.form == Form::kStep) effect.parameters.push_back({"time_s", candidate.time_s, 0.0, "s"});
-  effect.meaning = meaning_of(effect);
+  if (candidate.first_reading != FirstReading::kError && candidate.form == Form::kLinear)
+    effect.form = name_of(Form::kEarthRate);
+  effect.shown_only = candidate.first_reading == FirstReading::kEarthRateShown;
+  effect.meaning = candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
   return effect;
 }
 

@@ -8,6 +8,10 @@
 
 namespace ifog {
 
+// What an effect is by its first reading: an error, or the Earth's rate turning into an axis that tilts. That
+// is rotation: it is shown, and subtracted only when asked for.
+enum class FirstReading { kError, kEarthRateShown, kEarthRateSubtracted };
+
 struct Candidate {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   Form form = Form::kLinear;
@@ -19,9 +23,16 @@ struct Candidate {
   double time_s = 0.0;        // step: block time in its record
   std::size_t record = 0;     // step, line: where it is
   double frequency_hz = 0.0;  // line
+  double period = 0.0;        // cosine, sine
+  double of_channel = 0.0;    // what its channel adds to the complexity: one that no logger wrote
+  FirstReading first_reading = FirstReading::kError;
 
   [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0; }
+  // Whether the model will take it away, in this record and the next.
+  [[nodiscard]] bool corrected() const {
+    return carries_over(form) && first_reading != FirstReading::kEarthRateShown;
+  }
   [[nodiscard]] bool same_shape(const Candidate& other) const;  // but for time constants
 };
 
@@ -29,11 +40,21 @@ struct Candidate {
 // show.
 std::vector<double> time_constants(const BlockGrid& grid, Form form);
 
-// lookup is not among them: a table of a channel has a coefficient a knot, and polynomials to the cubic say
-// what a few knots would (the feedback ramp's table is fitted in ramp.h). Neither are steps, which scan.h
-// places, nor lines, which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same
-// regressor as acceleration, see findings.cpp.
+// Of the forms only those are tried on a channel that can be its: of a switch no powers, of an angle only
+// what repeats with it, of another axis' rate, where that was turned, the misalignment. lookup is not among
+// them: a table of a channel has a coefficient a knot, and polynomials to the cubic say what a few knots
+// would (the feedback ramp's table is fitted in ramp.h). Neither are steps, which scan.h places, nor lines,
+// which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same regressor as
+// acceleration, see findings.cpp.
 std::vector<Candidate> library(const BlockData& data);
+
+// Two effects that are one law together, each of which may be hidden while the other is missing: a law about
+// a point that nobody knows, k (c - c0)^2 or k g (c - c0) while a switch g is on, and a swing of unknown
+// phase.
+struct NaturalPair {
+  Candidate first, second;
+};
+std::vector<NaturalPair> natural_pairs(const BlockData& data);
 
 // Products of a channel with the others, worth trying once the channel has an effect of its own: the effect's
 // size may depend on a second channel.

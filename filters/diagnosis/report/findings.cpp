@@ -134,21 +134,27 @@ void add_alternatives(const BlockData& data, const BlockData& reconstructed, con
     pair.separate_by =
         capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate);
     findings.pairs.push_back(std::move(pair));
-    if (alternative.loss < kNoRival) findings.others.push_back(std::move(other));
+    // What stands in for rotation says nothing of the error.
+    const bool shown = found.fitted[alternative.of].first_reading == FirstReading::kEarthRateShown;
+    if (alternative.loss < kNoRival && !shown) findings.others.push_back(std::move(other));
   }
 }
 
-// On one heading the Earth's rate turning into a tilting axis is the same regressor: no data of it can tell.
+// A gyro that tilts on one heading cannot tell the Earth's rate turning into its axis from g-sensitivity of
+// that size: it is the same regressor.
 void add_earth_rate(Findings& findings) {
   for (const FoundEffect& each : findings.effects) {
     const Effect& effect = each.effect;
-    if (effect.form != "linear" || kind_of(effect.channel) != ChannelKind::kAcceleration) continue;
+    if (effect.form != name_of(Form::kEarthRate)) continue;
     Indistinguishable pair;
     pair.effects = {effect, effect};
-    pair.effects[1].form = "earth_rate";
+    pair.effects[1].form = name_of(Form::kLinear);
     pair.correlation = 1.0;
     pair.separate_by =
-        "the same capture with the heading reversed: the Earth's rate changes sign, g-sensitivity does not";
+        "the same capture with the heading reversed: the horizontal part of the Earth's rate changes its "
+        "sign, "
+        "g-sensitivity does not; its vertical part, along the gyro's own axis, only an acceleration without "
+        "tilt tells";
     findings.pairs.push_back(std::move(pair));
   }
 }
@@ -206,6 +212,7 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
   std::vector<ChannelRange> ranges;
   for (const FineChannel& channel : data.channels) {
     const auto uses = [&](const FoundEffect& found) {
+      if (found.effect.shown_only || channel.period > 0.0) return false;  // an angle has no range
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
     };
     if (std::any_of(effects.begin(), effects.end(), uses))

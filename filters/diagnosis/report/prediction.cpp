@@ -75,6 +75,7 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
   candidate.time_constant_s = parameter(effect, time_constant_name(*form));
   candidate.second_time_constant_s = parameter(effect, "second_lag_s");
   candidate.frequency_hz = parameter(effect, "frequency_hz");
+  candidate.period = effect.period;
   return candidate;
 }
 
@@ -118,6 +119,7 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
   for (const Effect& effect : effects) {
     const Eigen::Index at = row;
     row += static_cast<Eigen::Index>(effect.parameters.size());
+    if (effect.shown_only) continue;  // rotation, which the heading is to follow
     if (effect.form == "line") {
       on.lines.push_back(effect);
       continue;

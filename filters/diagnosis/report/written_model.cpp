@@ -56,10 +56,10 @@ std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& record
   std::optional<std::size_t> harmful;
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::optional<Form> form = form_named(diagnosis.effects[i].effect.form);
-    if (!form || !carries_over(*form)) continue;
+    if (!form || !carries_over(*form) || diagnosis.effects[i].effect.shown_only) continue;
     Model model;
     for (std::size_t j = 0; j < diagnosis.effects.size(); ++j) {
-      if (j == i) continue;
+      if (j == i || diagnosis.effects[j].effect.shown_only) continue;
       model.effects.push_back(diagnosis.effects[j].effect);
       model.effects.back().axis.clear();
     }

@@ -71,7 +71,7 @@ Best best_share(const BlockGrid& grid, const Columns& base, const Columns& loops
 bool may_have_a_loop(const BlockData& data, std::size_t channel) {
   const FineChannel& c = data.channels[channel];
   return static_cast<std::ptrdiff_t>(channel) != data.reference && c.varies && c.smooth && !c.still &&
-         !c.rotates;
+         c.environment() && names_in(c.name).less.empty();
 }
 
 }  // namespace

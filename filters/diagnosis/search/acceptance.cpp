@@ -57,7 +57,7 @@ bool warm_up_stands(const BlockData& reconstructed, const SearchResult& found, s
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen) {
   std::optional<std::size_t> least;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (!carries_over(chosen[i].candidate.form)) continue;
+    if (!chosen[i].candidate.corrected()) continue;
     if (!least || chosen[i].likelihood_ratio < chosen[*least].likelihood_ratio) least = i;
   }
   return least;

@@ -11,6 +11,7 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kPairsAmong = 40;
+constexpr double kDependent = 1e-7;  // of the squares: two columns this alike are one
 
 std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
   std::vector<NoiseShape> shapes;
@@ -37,6 +38,20 @@ std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
   return shapes;
 }
 
+// Of the square of what is left of the measurement, taken away by one column, or by two. Projected columns.
+double gain_of(const Eigen::VectorXd& xy, const Eigen::VectorXd& xx, Eigen::Index j) {
+  return xx[j] > 0.0 ? xy[j] * xy[j] / xx[j] : 0.0;
+}
+
+double gain_of(const Columns& columns, const Eigen::VectorXd& xy, const Eigen::VectorXd& xx,
+               const std::pair<Eigen::Index, Eigen::Index>& pair) {
+  const auto [i, j] = pair;
+  const double both = columns.col(i).dot(columns.col(j));
+  const double determinant = xx[i] * xx[j] - both * both;
+  if (determinant <= kDependent * xx[i] * xx[j]) return 0.0;
+  return (xy[i] * xy[i] * xx[j] - 2.0 * xy[i] * xy[j] * both + xy[j] * xy[j] * xx[i]) / determinant;
+}
+
 }  // namespace
 
 Scan::Scan(const BlockData& data, std::vector<Candidate> candidates)
@@ -54,6 +69,19 @@ void Scan::add(const std::vector<Candidate>& more) {
   }
   columns_.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(candidates_.size()));
   for (std::size_t i = before; i < candidates_.size(); ++i) fill(i);
+}
+
+void Scan::pair(const std::vector<NaturalPair>& pairs) {
+  const auto index = [&](const Candidate& wanted) {
+    const auto found = std::find_if(candidates_.begin(), candidates_.end(),
+                                    [&](const Candidate& each) { return each.same_shape(wanted); });
+    return found == candidates_.end() ? -1 : static_cast<Eigen::Index>(found - candidates_.begin());
+  };
+  for (const NaturalPair& each : pairs) {
+    const Eigen::Index first = index(each.first);
+    const Eigen::Index second = index(each.second);
+    if (first >= 0 && second >= 0) pairs_.emplace_back(first, second);
+  }
 }
 
 // Columns of unit size: units of channels are many decades apart.
@@ -90,9 +118,14 @@ double Scan::independent(const std::vector<Candidate>& base, const NoiseShape& s
 }
 
 std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough,
-                                const Candidate* compared, const NoiseShape* at) const {
-  std::vector<Scored> scored(candidates_.size());
+                                const Candidate* compared, const NoiseShape* at, bool pairs) const {
+  std::vector<Scored> scored(candidates_.size() + (pairs ? pairs_.size() : 0));
   for (std::size_t i = 0; i < candidates_.size(); ++i) scored[i].candidate = candidates_[i];
+  for (std::size_t i = candidates_.size(); i < scored.size(); ++i) {
+    const auto& [first, second] = pairs_[i - candidates_.size()];
+    scored[i].candidate = candidates_[static_cast<std::size_t>(first)];
+    scored[i].with = candidates_[static_cast<std::size_t>(second)];
+  }
   const auto n = static_cast<double>(data_.grid.used());
   std::vector<NoiseShape> shapes = spread(noise.shape, thorough);
   if (at) shapes.insert(shapes.begin(), *at);
@@ -101,9 +134,10 @@ std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseF
     const Eigen::VectorXd xy = p.columns.transpose() * p.y;
     const Eigen::VectorXd xx = p.columns.colwise().squaredNorm();
     for (std::size_t i = 0; i < scored.size(); ++i) {
-      const auto j = static_cast<Eigen::Index>(i);
-      if (!(xx[j] > 0.0)) continue;
-      const double left = std::max(p.square - xy[j] * xy[j] / xx[j], 1e-12 * p.square);
+      const double gain = i < candidates_.size() ? gain_of(xy, xx, static_cast<Eigen::Index>(i))
+                                                 : gain_of(p.columns, xy, xx, pairs_[i - candidates_.size()]);
+      if (!(gain > 0.0)) continue;
+      const double left = std::max(p.square - gain, 1e-12 * p.square);
       const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - noise.log_likelihood);
       if (ratio > scored[i].ratio) {
         scored[i].ratio = ratio;
@@ -113,7 +147,7 @@ std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseF
     if (s == 0 && compared) {
       const Projected mine = project(base, shapes[s], regressors(data_, *compared));
       const Eigen::VectorXd dot = p.columns.transpose() * mine.columns.col(0);
-      for (std::size_t i = 0; i < scored.size(); ++i) {
+      for (std::size_t i = 0; i < candidates_.size(); ++i) {
         const auto j = static_cast<Eigen::Index>(i);
         scored[i].correlation =
             dot[j] / std::sqrt(std::max(xx[j] * mine.columns.col(0).squaredNorm(), 1e-300));

@@ -14,9 +14,10 @@ namespace ifog {
 
 struct Scored {
   Candidate candidate;
-  double ratio = 0.0;        // twice the log-likelihood gained
-  NoiseShape shape;          // the noise model at which it gains that
-  double correlation = 0.0;  // with the effect it is compared to, if any
+  std::optional<Candidate> with;  // of a natural pair the second
+  double ratio = 0.0;             // twice the log-likelihood gained
+  NoiseShape shape;               // the noise model at which it gains that
+  double correlation = 0.0;       // with the effect it is compared to, if any
 };
 
 class Scan {
@@ -32,9 +33,14 @@ class Scan {
   [[nodiscard]] double independent(const std::vector<Candidate>& base, const NoiseShape& shape) const;
 
   // thorough: the full spread of noise models; otherwise a few of them.
+  // With `pairs` these follow the candidates, in their order.
   [[nodiscard]] std::vector<Scored> score(const std::vector<Candidate>& base, const NoiseFit& noise,
                                           bool thorough, const Candidate* compared = nullptr,
-                                          const NoiseShape* at = nullptr) const;
+                                          const NoiseShape* at = nullptr, bool pairs = false) const;
+
+  // Natural pairs whose both effects are in the library; none given: no pairs.
+  void pair(const std::vector<NaturalPair>& pairs);
+  [[nodiscard]] std::size_t pairs() const { return pairs_.size(); }
 
   // The most likely positions of a step of the rate, one a record at most.
   [[nodiscard]] std::vector<Scored> steps(const std::vector<Candidate>& base, const NoiseFit& noise) const;
@@ -56,6 +62,7 @@ class Scan {
 
   const BlockData& data_;
   std::vector<Candidate> candidates_;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> pairs_;  // of candidates
   Columns columns_;
 };
 

@@ -20,8 +20,12 @@ constexpr double kLikeness = 6.0;        // loss below which another effect cann
 constexpr double kChannelsFirst = 10.0;  // twice the description that channels may be longer than a warm-up
 constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
-constexpr double kDependent = 0.2;        // correlation of two coefficients
-constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
+// What a natural pair has to bring beyond its two effects' complexity: it has one more coefficient than a
+// form about a known point.
+constexpr double kSecondOfPair = 6.0;
+constexpr std::size_t kPairsTried = 2;  // beside the shortlist
+constexpr double kDependent = 0.2;      // correlation of two coefficients
+constexpr double kAlike = 0.98;         // or this correlation of the whitened regressors
 
 bool is_event(const Candidate& candidate) {
   return candidate.form == Form::kLine || candidate.form == Form::kStep;
@@ -30,7 +34,9 @@ bool is_event(const Candidate& candidate) {
 class EffectSearch {
  public:
   EffectSearch(const BlockData& data, const SearchOptions& options, std::vector<Candidate> candidates)
-      : data_(data), options_(options), scan_(data, std::move(candidates)), model_(options.given) {}
+      : data_(data), options_(options), scan_(data, std::move(candidates)), model_(options.given) {
+    scan_.pair(natural_pairs(data));
+  }
 
   SearchResult run() {
     SearchResult result;
@@ -55,7 +61,8 @@ class EffectSearch {
   // The chance of a false effect is shared out between channels and steps.
   void count_tries() {
     const double level = 20.0;  // near what will be asked for
-    tries_of_channels_ = scan_.independent(model_, noise_.shape) / kShareOfChannels;
+    const double independent = scan_.independent(model_, noise_.shape) + static_cast<double>(scan_.pairs());
+    tries_of_channels_ = independent / kShareOfChannels;
     tries_of_steps_ = independent_steps(data_.grid, noise_.shape, level) / (1.0 - kShareOfChannels);
     if (data_.grid.dwells) tries_of_channels_ *= kShareOfChannels;
     least_ratio_ = 1.0;
@@ -73,6 +80,7 @@ class EffectSearch {
     std::vector<Candidate> model;
     NoiseFit noise;
     double score = -1e300;  // twice the log-likelihood less complexity
+    std::size_t added = 1;  // the last so many effects
   };
 
   static double penalty(const std::vector<Candidate>& model) {
@@ -95,38 +103,56 @@ class EffectSearch {
   // The best of the shortlist, fully fitted, as an addition to `base`.
   Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough) const {
     Trial best;
-    std::vector<Scored> scored = scan_.score(base, noise, thorough);
+    std::vector<Scored> scored = scan_.score(base, noise, thorough, nullptr, nullptr, thorough);
     if (thorough && !data_.grid.dwells) {
       for (const Scored& step : scan_.steps(base, noise)) scored.push_back(step);
     }
-    std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
-      return a.ratio - complexity(a.candidate) > b.ratio - complexity(b.candidate);
-    });
+    std::sort(scored.begin(), scored.end(),
+              [](const Scored& a, const Scored& b) { return a.ratio - price(a) > b.ratio - price(b); });
+    const auto among = [](const std::vector<Candidate>& model, const Candidate& candidate) {
+      return std::any_of(model.begin(), model.end(),
+                         [&](const Candidate& other) { return other.same_shape(candidate); });
+    };
     std::vector<Candidate> tried;
+    std::size_t pairs = 0;
     for (const Scored& each : scored) {
       if (tried.size() >= kShortlist || each.ratio < 0.5 * least_ratio_) break;
-      const auto alike = [&](const Candidate& other) { return other.same_shape(each.candidate); };
-      if (std::any_of(tried.begin(), tried.end(), alike) || std::any_of(base.begin(), base.end(), alike))
-        continue;
-      tried.push_back(each.candidate);
+      if (each.with && pairs == kPairsTried) continue;
+      const Candidate& last = each.with ? *each.with : each.candidate;
+      if (among(base, each.candidate) || among(base, last) || (!each.with && among(tried, last))) continue;
+      if (each.with)
+        ++pairs;
+      else
+        tried.push_back(last);
       std::vector<Candidate> model = base;
       model.push_back(each.candidate);
-      const Trial trial = refined(model, base.size(), each.shape);
+      if (each.with) model.push_back(last);
+      Trial trial = refined(model, model.size() - 1, each.shape);
+      if (each.with) trial.score -= kSecondOfPair;
+      if (each.with) trial.added = 2;
       if (trial.score > best.score) best = trial;
     }
     return best;
+  }
+
+  static double price(const Scored& scored) {
+    return complexity(scored.candidate) + (scored.with ? complexity(*scored.with) + kSecondOfPair : 0.0);
   }
 
   bool add_one() {
     Trial best = best_addition(model_, noise_, true);
     if (best.model.empty()) return false;
     const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
-    const Candidate& added = best.model.back();
-    if (p_value(added, ratio - complexity(added)) > options_.significance) return false;
-    if (!proven(best)) return false;
+    const std::vector<Candidate> added(best.model.end() - static_cast<std::ptrdiff_t>(best.added),
+                                       best.model.end());
+    const double gain = ratio - penalty(added);
+    const double p = best.added == 2 ? std::min(1.0, kProfiled * tail(gain, 2) * tries_of_channels_)
+                                     : p_value(added.back(), gain);
+    if (p > options_.significance || !proven(best)) return false;
     model_ = best.model;
     noise_ = best.noise;
-    if (model_.back().channel != Candidate::kNone) offer_products(model_.back().channel);
+    for (const Candidate& each : added)
+      if (each.channel != Candidate::kNone) offer_products(each.channel);
     return true;
   }
 

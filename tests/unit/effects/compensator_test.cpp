@@ -68,6 +68,113 @@ TEST(Compensator, InvertsAScaleFactorThatDependsOnTemperatureAndRate) {
   }
 }
 
+// Three axes that see parts of each other's rotation: z = (1 + D) w + M w, solved by Cramer's rule.
+TEST(Compensator, SolvesMisalignmentForAllAxesAtOnce) {
+  const double m = 3e-3;   // of y in x
+  const double k = -2e-3;  // of x in y
+  const double s = 5e-3;   // scale factor of x
+  Model model;
+  Effect on_x = of_rate("linear", m);
+  on_x.channel = "rate_y_radps";
+  on_x.axis = "x";
+  Effect on_y = of_rate("linear", k);
+  on_y.channel = "rate_x_radps";
+  on_y.axis = "y";
+  Effect scale = of_rate("linear", s);
+  scale.axis = "x";
+  model.effects = {on_x, on_y, scale};
+  Compensator compensator(model, {"x", "y", "z"});
+  EXPECT_TRUE(compensator.channels().empty()) << "the other axes come with the sample";
+  CompensatorInput in;
+  in.dt_s = 0.01;
+  in.rate_radps = {0.7, -1.3, 0.2};
+  CompensatorOutput out;
+  compensator.step(in, out);
+  const double determinant = (1.0 + s) - m * k;
+  EXPECT_NEAR(out.compensated_radps[0], (0.7 - m * -1.3) / determinant, 1e-14);
+  EXPECT_NEAR(out.compensated_radps[1], ((1.0 + s) * -1.3 - k * 0.7) / determinant, 1e-14);
+  EXPECT_EQ(out.compensated_radps[2], 0.2);
+  EXPECT_EQ(out.flags, 0U);
+
+  in.rate_radps[1] = kMissing;
+  compensator.step(in, out);
+  EXPECT_NEAR(out.compensated_radps[0], 0.7 / (1.0 + s), 1e-14) << "without the other axis its part stays";
+  EXPECT_NE(out.flags & kStaleChannel, 0U);
+}
+
+// A sensor of one axis beside the column of another: the column is a channel.
+TEST(Compensator, AnotherAxisThatIsNotTheSensorsIsAChannel) {
+  Model model;
+  model.effects = {of_rate("linear", 1e-3)};
+  model.effects[0].channel = "rate_y_radps";
+  Compensator compensator(model, {""});
+  ASSERT_EQ(compensator.channels(), std::vector<std::string>{"rate_y_radps"});
+  EXPECT_NEAR(step(compensator, 0.1, {0.5}).compensated_radps[0], 0.1 - 5e-4, 1e-15);
+}
+
+TEST(Compensator, InvertsAnotherScaleFactorBackwards) {
+  Model model;
+  Effect bias = of_rate("absolute", 0.02);
+  bias.reference = 1e-3;
+  model.effects = {bias};
+  Compensator compensator(model, {""});
+  for (const double w : {-2.0, -0.3, 0.0, 1e-3, 0.7}) {
+    const double z = w + 0.02 * std::abs(w - 1e-3);
+    EXPECT_NEAR(step(compensator, z, {}).compensated_radps[0], w, 1e-13) << w;
+  }
+}
+
+TEST(Compensator, TakesADifferenceOfChannelsWithinItsOwnRange) {
+  Model model;
+  Effect gradient = linear(1e-6);
+  gradient.channel = difference_of("inner_degC", "outer_degC");
+  gradient.reference = 0.0;
+  model.effects = {gradient, linear(2e-6)};
+  model.ranges = {{gradient.channel, -2.0, 2.0}, {"temperature_degC", 0.0, 50.0}};
+  Compensator compensator(model, {""});
+  ASSERT_EQ(compensator.channels(),
+            (std::vector<std::string>{"inner_degC", "outer_degC", "temperature_degC"}));
+  const auto none = step(compensator, 0.0, {30.0, kMissing, 25.0});
+  EXPECT_EQ(none.correction_radps[0], 0.0) << "half a difference is none";
+  const auto inside = step(compensator, 0.0, {80.0, 79.0, 26.0});
+  EXPECT_NEAR(inside.correction_radps[0], 1e-6 + 2e-6, 1e-18);
+  EXPECT_EQ(inside.flags, 0U) << "of the two only the difference has a range";
+  EXPECT_NE(step(compensator, 0.0, {80.0, 75.0, 26.0}).flags & kOutOfRange, 0U);
+  Compensator next(model, {""});
+  next.take_over(compensator);
+  EXPECT_NEAR(step(next, 0.0, {kMissing, kMissing, 25.0}).correction_radps[0], 5e-6, 1e-18) << "held at 5";
+}
+
+TEST(Compensator, FollowsAnAngleThroughItsWraps) {
+  Model model;
+  for (const char* form : {"cosine", "sine"}) {
+    Effect effect;
+    effect.form = form;
+    effect.channel = "table_deg";
+    effect.period = 180.0;
+    effect.parameters = {{"coefficient", form[0] == 'c' ? 3e-6 : -2e-6, 0.0, "rad/s"}};
+    model.effects.push_back(effect);
+  }
+  Compensator compensator(model, {""});
+  for (const double degrees : {0.0, 33.0, 179.0, 359.5, -20.0, 730.0}) {
+    const double phase = 2.0 * degrees * M_PI / 180.0;
+    const auto out = step(compensator, 1e-3, {degrees});
+    EXPECT_NEAR(out.correction_radps[0], 3e-6 * std::cos(phase) - 2e-6 * std::sin(phase), 1e-18) << degrees;
+    EXPECT_EQ(out.flags, 0U);
+  }
+  model.effects[0].period = 0.0;
+  EXPECT_THROW(Compensator(model, {""}), std::invalid_argument);
+}
+
+TEST(Compensator, WhatIsOnlyShownIsNotTakenAway) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  model.effects[0].shown_only = true;
+  Compensator compensator(model, {""});
+  EXPECT_EQ(compensator.left_out(), std::vector<std::string>{"linear of temperature_degC"});
+  EXPECT_EQ(step(compensator, 0.5, {}).compensated_radps[0], 0.5);
+}
+
 TEST(Compensator, HoldsAStaleChannelAndSaysSo) {
   Model model;
   model.effects = {linear(1e-6)};

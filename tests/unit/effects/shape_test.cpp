@@ -26,6 +26,15 @@ TEST(Shape, PowersAreAboutTheReference) {
   EXPECT_DOUBLE_EQ(Shape(of(Form::kSeptic)).step(27.0, 1.0), 128.0);
 }
 
+TEST(Shape, TheAbsoluteValueHasItsKinkAtTheReference) {
+  const Shape shape(of(Form::kAbsolute));
+  EXPECT_DOUBLE_EQ(shape.at(22.0), 3.0);
+  EXPECT_DOUBLE_EQ(shape.at(29.0), 4.0);
+  const Reach below = reach_of(10.0, {"t_degC", 20.0, 30.0});
+  EXPECT_DOUBLE_EQ(shape.at(below), 15.0) << "a straight line on either side, and so beyond the edge";
+  EXPECT_DOUBLE_EQ(shape.left_behind(below), 0.0);
+}
+
 // The response of a first-order lag to a step is 1 - exp(-t/tau), exactly at the sample times.
 TEST(Shape, LagAnswersAStepExponentially) {
   Shape lag(of(Form::kLagged, 40.0));

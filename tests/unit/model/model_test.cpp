@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filters/effects/form.h"
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/sha256.h"
 
@@ -60,6 +61,24 @@ TEST(ModelFile, EverythingComesBackAsWritten) {
   EXPECT_EQ(back.source.after.at("adev_10"), 0.125);
   EXPECT_EQ(back.identity(), sha256_hex(text).substr(0, 12));
   EXPECT_TRUE(back.effects[1].angle);
+}
+
+TEST(ModelFile, ADifferenceOfChannelsIsTwoKeys) {
+  Model model;
+  Effect gradient;
+  gradient.form = "linear";
+  gradient.channel = difference_of("inner_degC", "outer_degC");
+  gradient.parameters = {{"coefficient", 1e-6, 0.0, "rad/s/degC"}};
+  model.effects = {gradient};
+  model.ranges = {{gradient.channel, -2.0, 3.0}};
+  const std::string text = model_text(model);
+  EXPECT_NE(text.find("channel = \"inner_degC\"\nminus_channel = \"outer_degC\"\n"), std::string::npos)
+      << text;
+  const Model back = parse_model(text, "m.toml");
+  EXPECT_EQ(back.effects[0].channel, gradient.channel);
+  EXPECT_EQ(back.ranges[0].channel, gradient.channel);
+  EXPECT_THROW(parse_model("version = 1\n[[effect]]\nform = \"linear\"\nminus_channel = \"b_V\"\n", "m.toml"),
+               std::runtime_error);
 }
 
 TEST(ModelFile, IsReadAgainFromItsFile) {

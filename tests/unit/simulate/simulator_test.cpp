@@ -100,6 +100,43 @@ TEST_F(ScenarioFile, FeedbackRampFollowsTheRotationAndWraps) {
   EXPECT_NEAR(std::remainder(ramp[500] - ramp[400], 1000.0), std::remainder(0.5 * 20000, 1000.0), 1.0);
 }
 
+TEST_F(ScenarioFile, AnotherAxisADifferenceAndATurnAreChannelsOfEffects) {
+  const Simulation s = simulate(
+      "sample_rate_hz = 10\nduration_s = 100\naxes = [\"x\", \"y\"]\n"
+      "[[motion]]\nkind = \"sine\"\naxis = \"y\"\namplitude_radps = 0.5\nperiod_s = 40\n"
+      "[[channel]]\nname = \"table_deg\"\nshape = \"angle\"\naxis = \"y\"\nturn = 360\n"
+      "[[channel]]\nname = \"inner_degC\"\nshape = \"ramp\"\nfrom = 20\nto = 30\n"
+      "[[channel]]\nname = \"outer_degC\"\nshape = \"constant\"\nlevel = 18\n"
+      "[[effect]]\nform = \"linear\"\naxis = \"x\"\nchannel = \"rate_y\"\ncoefficient = 1e-3\n"
+      "[[effect]]\nform = \"absolute\"\naxis = \"y\"\nchannel = \"rate\"\ncoefficient = 1e-4\n"
+      "[[effect]]\nform = \"linear\"\naxis = \"x\"\nchannel = \"inner_degC\"\nminus_channel = "
+      "\"outer_degC\"\n"
+      "coefficient = 1e-6\n"
+      "[[effect]]\nform = \"cosine\"\naxis = \"x\"\nchannel = \"table_deg\"\nperiod = 360\ncoefficient = "
+      "2e-6\n");
+  const auto& y = s.truth.true_rate_radps[1];
+  double angle = 0.0;
+  for (std::size_t i = 0; i < s.capture.size(); ++i) {
+    angle += y[i] * 0.1;
+    EXPECT_NEAR(s.capture.rate_radps[0][i],
+                1e-3 * y[i] + 1e-6 * (s.capture.channels[1].values[i] - 18.0) + 2e-6 * std::cos(angle),
+                1e-14);
+    EXPECT_NEAR(s.capture.rate_radps[1][i], y[i] + 1e-4 * std::abs(y[i]), 1e-15);
+    EXPECT_GE(s.capture.channels[0].values[i], 0.0);
+    EXPECT_LT(s.capture.channels[0].values[i], 360.0);
+  }
+}
+
+// Level and pointing north it sees the horizontal part, standing on end the vertical one.
+TEST_F(ScenarioFile, TheEarthsRateTurnsIntoAnAxisThatTilts) {
+  const Simulation s = simulate(
+      "sample_rate_hz = 10\nduration_s = 100\n"
+      "[[channel]]\nname = \"accel_x_mps2\"\nshape = \"steps\"\ndwell_s = 50\nlevels = [0.0, 9.80665]\n"
+      "[[effect]]\nform = \"earth_rate\"\nchannel = \"accel_x_mps2\"\nlatitude_deg = 30\nheading_deg = 60\n");
+  EXPECT_NEAR(s.capture.rate_radps[0][10], 7.292115e-5 * std::sqrt(0.75) * 0.5, 1e-15);
+  EXPECT_NEAR(s.capture.rate_radps[0][900], 7.292115e-5 * 0.5, 1e-15);
+}
+
 TEST_F(ScenarioFile, SameSeedSameBitsAndPartsDoNotDisturbEachOther) {
   const std::string noisy = "seed = 5\n" + kTemperature + "noise = 0.1\n[noise]\nN = 1e-6\nB = 1e-7\n";
   const Simulation a = simulate(noisy), b = simulate(noisy);
@@ -147,7 +184,8 @@ TEST_F(ScenarioFile, RefusesInOneLine) {
             ":2: [[effect]]: key 'channel' is missing for linear, expected a channel's name, or 'rate'");
   EXPECT_EQ(
       refusal("duration_s = 10\n[[effect]]\nform = \"linear\"\ncoefficient = 1\nchannel = \"t_degC\"\n"),
-      "effect linear: channel 't_degC' is not in the scenario, expected one of its channels or 'rate'");
+      "effect linear: channel 't_degC' is not in the scenario, expected one of its channels, 'rate' or "
+      "'rate_AXIS'");
   EXPECT_EQ(
       refusal(
           "duration_s = 10\n[[channel]]\nname = \"t_degC\"\nshape = \"constant\"\nlevel = 1\nlevle = 2\n"),

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <list>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record/derived_channels.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
@@ -42,6 +44,8 @@ struct Arguments {
   double fit_from = 0.0, fit_to = 1.0;
   std::optional<double> since_power_up_s;
   bool quiet = false;
+  bool earth = false;
+  std::optional<double> latitude_deg;
 };
 
 // The model's own effects are subtracted first, by the code that subtracts them online.
@@ -75,7 +79,8 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
   for (const CaptureColumn& column : capture.channels)
     record.channels.push_back({column.name, column.values});
   for (std::size_t other = 0; other < capture.axes.size(); ++other)
-    if (other != axis) record.other_axes.emplace_back(capture.rate_radps[other]);
+    if (other != axis)
+      record.other_axes.push_back({rate_of_axis(capture.axes[other]), capture.rate_radps[other]});
   return record;
 }
 
@@ -138,6 +143,8 @@ std::vector<AxisDiagnosis> all_axes(const std::vector<Capture>& captures, const 
     options.axis = axes[axis];
     options.fit_from = arguments.fit_from;
     options.fit_to = arguments.fit_to;
+    options.subtract_earth_rate = arguments.earth;
+    if (arguments.latitude_deg) options.latitude_rad = *arguments.latitude_deg * kDegree;
     auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
                                                options.most_effects + 1);
     options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
@@ -190,12 +197,16 @@ void write_report(const std::vector<Capture>& captures, const std::vector<AxisDi
   for (std::size_t c = 0; c < captures.size(); ++c)
     page.inputs.push_back({arguments.captures[c], hashes[c], captures[c].comments});
   const std::vector<std::string>& axes = captures.front().axes;
+  std::list<DerivedRecords> derived;  // whose columns the page draws
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
     const auto index =
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
+    std::vector<Record> records;
     for (std::size_t c = 0; c < captures.size(); ++c)
-      axis.records.push_back(record_of(captures[c], arguments.captures[c], index));
+      records.push_back(record_of(captures[c], arguments.captures[c], index));
+    derived.push_back(with_derived_channels(records));
+    axis.records = derived.back().records;
     page.axes.push_back(std::move(axis));
   }
   write_text_file(arguments.report, report::diagnosis_page(page));
@@ -260,6 +271,13 @@ void add_diagnose(CLI::App& app) {
       ->add_option("--fit-to", arguments->fit_to,
                    "fit up to this share of each capture's time; the rest judges")
       ->check(CLI::Range(0.1, 1.0));
+  command->add_flag(
+      "--earth", arguments->earth,
+      "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
+  command
+      ->add_option("--latitude", arguments->latitude_deg,
+                   "of the captures, degrees: bounds what can be the Earth's rate")
+      ->check(CLI::Range(-90.0, 90.0));
   command->add_flag("--quiet", arguments->quiet, "no report on the console");
   command->callback([arguments] { run(*arguments); });
 }

@@ -14,9 +14,14 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json named(const Effect& effect) {
   Json json;
   json["form"] = effect.form;
-  json["channel"] = effect.channel.empty() ? Json(nullptr) : Json(effect.channel);
-  if (!effect.with_form.empty())
-    json["with"] = {{"form", effect.with_form}, {"channel", effect.with_channel}};
+  const ChannelNames names = names_in(effect.channel);
+  json["channel"] = names.of.empty() ? Json(nullptr) : Json(names.of);
+  if (!names.less.empty()) json["minus_channel"] = names.less;
+  if (!effect.with_form.empty()) {
+    const ChannelNames with = names_in(effect.with_channel);
+    json["with"] = {{"form", effect.with_form}, {"channel", with.of}};
+    if (!with.less.empty()) json["with"]["minus_channel"] = with.less;
+  }
   return json;
 }
 
@@ -36,6 +41,7 @@ Json noise_json(const NoiseTerms& noise) {
 Json effect_json(const FoundEffect& found) {
   Json json = named(found.effect);
   json["meaning"] = found.effect.meaning;
+  if (found.effect.shown_only) json["subtracted"] = false;
   Json parameters = Json::object();
   for (const ModelParameter& parameter : found.effect.parameters) {
     parameters[parameter.name] = {{"value", number(parameter.value)},
@@ -47,6 +53,7 @@ Json effect_json(const FoundEffect& found) {
     json["reference"] = found.effect.reference;
     if (!found.effect.with_form.empty()) json["with"]["reference"] = found.effect.with_reference;
   }
+  if (found.effect.table_x.empty() && found.effect.period > 0.0) json["period"] = found.effect.period;
   if (!found.effect.table_x.empty()) {
     json["table"] = {{"x", found.effect.table_x},
                      {"y", found.effect.table_y},

@@ -37,7 +37,8 @@ std::string value_of(const ModelParameter& parameter) {
 
 std::string effect_lines(const FoundEffect& found, std::size_t number, bool overlap) {
   const Effect& effect = found.effect;
-  std::string lines = text("  %zu. %s\n     %s\n", number, named(effect).c_str(), effect.meaning.c_str());
+  std::string lines = text("  %zu. %s%s\n     %s\n", number, named(effect).c_str(),
+                           effect.shown_only ? " (shown, not subtracted)" : "", effect.meaning.c_str());
   for (const ModelParameter& parameter : effect.parameters) {
     std::string name = parameter.name;
     for (char& c : name) c = c == '_' ? ' ' : c;
@@ -50,9 +51,10 @@ std::string effect_lines(const FoundEffect& found, std::size_t number, bool over
     lines += text("     %-18s %.4g °/h\n", "amplitude", amplitude / kDegreePerHour);
   }
   if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
-  lines += text("     %s %s of the error's variance; by chance: %s\n",
+  lines += text("     %s %s of the %s variance; by chance: %s\n",
                 overlap ? "taken alone, beside parts that overlap with it," : "explains",
-                percent(found.variance_explained).c_str(), chance(found.p_value).c_str());
+                percent(found.variance_explained).c_str(), effect.shown_only ? "rate's" : "error's",
+                chance(found.p_value).c_str());
   return lines;
 }
 

@@ -1,0 +1,138 @@
+#include "filters/diagnosis/record/derived_channels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kMostDifferences = 6;
+constexpr double kWholeTurn = 0.9;  // of the period, that a wrap jumps and the values reach
+constexpr double kUnsure = 0.01;    // share of steps too long to say which way the angle went
+
+double period_by_unit(const std::string& channel) {
+  const std::string unit = unit_of(channel);
+  if (unit == "rad") return 2.0 * std::numbers::pi;
+  if (unit == "deg") return 360.0;
+  return unit == "turns" ? 1.0 : 0.0;
+}
+
+bool moves(std::span<const double> values) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return high > low;
+}
+
+template <class Name>
+bool all_have(const std::vector<Record>& records, const Name& name) {
+  return std::all_of(records.begin(), records.end(),
+                     [&](const Record& record) { return moves(values_of(record, name)); });
+}
+
+// One measures the same quantity at another place as the other does.
+bool alike(const std::string& one, const std::string& other) {
+  const ChannelKind kind = kind_of(one);
+  const bool has_gradients = kind == ChannelKind::kTemperature || kind == ChannelKind::kPressure;
+  return has_gradients && kind == kind_of(other) && unit_of(one) == unit_of(other);
+}
+
+void add_difference(const std::string& one, const std::string& other, DerivedRecords& derived) {
+  for (Record& record : derived.records) {
+    const std::span<const double> a = values_of(record, one);
+    const std::span<const double> b = values_of(record, other);
+    std::vector<double>& difference = derived.values.emplace_back(a.size());
+    double held_a = std::nan("");  // loggers poll their thermometers in turn
+    double held_b = std::nan("");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (std::isfinite(a[i])) held_a = a[i];
+      if (std::isfinite(b[i])) held_b = b[i];
+      difference[i] = held_a - held_b;
+    }
+    record.channels.push_back({difference_of(one, other), difference});
+  }
+}
+
+void add_differences(const std::vector<Record>& records, DerivedRecords& derived) {
+  std::vector<std::string> names;
+  for (const RecordChannel& channel : records.front().channels)
+    if (all_have(records, channel.name)) names.push_back(channel.name);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = i + 1; j < names.size() && count < kMostDifferences; ++j) {
+      if (!alike(names[i], names[j])) continue;
+      add_difference(names[i], names[j], derived);
+      ++count;
+    }
+  }
+}
+
+}  // namespace
+
+double angle_period(const std::string& channel, std::span<const double> values) {
+  const double period = period_by_unit(channel);
+  if (!(period > 0.0)) return 0.0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  double before = std::nan("");
+  std::size_t wraps = 0;
+  std::size_t unsure = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+    const double jump = std::abs(value - before);
+    wraps += jump > kWholeTurn * period ? 1 : 0;
+    unsure += jump > 0.25 * period && jump < 0.75 * period ? 1 : 0;
+    before = value;
+  }
+  const bool within_a_turn = high - low > kWholeTurn * period && high - low < 1.001 * period;
+  const bool clear = static_cast<double>(unsure) <= kUnsure * static_cast<double>(values.size());
+  return within_a_turn && wraps > 0 && clear ? period : 0.0;
+}
+
+DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
+  DerivedRecords derived{records, {}};
+  if (records.empty()) return derived;
+  for (const RecordChannel& channel : records.front().channels) {
+    double period = 0.0;
+    for (const Record& record : records)
+      period = std::max(period, angle_period(channel.name, values_of(record, channel.name)));
+    if (!(period > 0.0)) continue;
+    for (Record& record : derived.records) {
+      for (RecordChannel& mine : record.channels) {
+        if (mine.name != channel.name) continue;
+        std::vector<double>& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
+        double before = std::nan("");
+        for (double& value : whole) {
+          if (!std::isfinite(value)) continue;
+          if (std::isfinite(before)) value -= period * std::round((value - before) / period);
+          before = value;
+        }
+        mine.values = whole;
+        mine.period = period;
+      }
+    }
+  }
+  return derived;
+}
+
+DerivedRecords with_derived_channels(const std::vector<Record>& records) {
+  DerivedRecords derived{records, {}};
+  if (records.empty()) return derived;
+  add_differences(records, derived);
+  const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
+  if (!std::all_of(records.begin(), records.end(), referenced)) return derived;
+  for (Record& record : derived.records)
+    for (const RecordChannel& axis : record.other_axes) record.channels.push_back(axis);
+  return derived;
+}
+
+}  // namespace ifog

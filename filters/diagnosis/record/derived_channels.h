@@ -1,0 +1,32 @@
+// Channels that no logger writes and that physics asks for: the difference of two like channels (two
+// thermometers on one coil see its gradient), the rates of the sensor's other axes, and angles without their
+// wraps.
+#pragma once
+
+#include <list>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/record.h"
+
+namespace ifog {
+
+struct DerivedRecords {
+  std::vector<Record> records;
+  std::list<std::vector<double>> values;  // which new channels' spans show; keep as long as `records`
+};
+
+// 2 pi, 360 or 1 when the channel is an angle by its unit (rad, deg, turns) that stays within a turn and
+// wraps by a whole one; 0 otherwise.
+double angle_period(const std::string& channel, std::span<const double> values);
+
+// Angles go on where they wrapped, in every record; RecordChannel::period says which they are.
+DerivedRecords with_unwrapped_angles(const std::vector<Record>& records);
+
+// Adds, of the channels that all records have and that move, the differences of like ones (at most six),
+// named as difference_of() does, and where there is a reference the measured rates of the other axes: without
+// one, what two axes have in common is rotation, and a correction must not take it away.
+DerivedRecords with_derived_channels(const std::vector<Record>& records);
+
+}  // namespace ifog

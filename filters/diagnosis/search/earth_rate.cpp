@@ -1,0 +1,151 @@
+#include "filters/diagnosis/search/earth_rate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "filters/effects/meaning.h"
+#include "filters/units/field_units.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
+constexpr double kGravity = 9.80665;    // m/s^2
+constexpr double kWithin = 2.0;         // standard errors
+constexpr double kOfGravity = 0.05;     // by which a resting triad may miss g: scale and mounting errors
+constexpr double kUndone = 0.5;         // share of an acceleration's square that the others may leave
+
+double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kGravity; }
+
+bool is_acceleration(const BlockData& data, std::size_t channel) {
+  return channel != Candidate::kNone && kind_of(data.channels[channel].name) == ChannelKind::kAcceleration;
+}
+
+// Slope of y on x, both about their means.
+double slope_of(const std::vector<double>& x, const std::vector<double>& y) {
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  const auto n = static_cast<double>(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    mean_x += x[k] / n;
+    mean_y += y[k] / n;
+  }
+  double xx = 0.0;
+  double xy = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    xx += (x[k] - mean_x) * (x[k] - mean_x);
+    xy += (x[k] - mean_x) * (y[k] - mean_y);
+  }
+  return xx > 0.0 ? xy / xx : 0.0;
+}
+
+// Power of g by which an effect's largest coefficient goes down; 0 for what is never the Earth's rate.
+int order_of(const BlockData& data, const Candidate& candidate) {
+  if (!is_acceleration(data, candidate.channel)) return 0;
+  if (candidate.form == Form::kLagged) return 1;
+  if (candidate.form == Form::kProduct)
+    return is_acceleration(data, candidate.with_channel) && candidate.with_form == Form::kLinear ? 2 : 0;
+  return std::min(power_of(candidate.form), 3);
+}
+
+bool is_earth_rate(const BlockData& data, const EarthRateOptions& options, const Candidate& candidate,
+                   double coefficient, double error) {
+  const int order = order_of(data, candidate);
+  if (order == 0) return false;
+  const std::string& name = data.channels[candidate.channel].name;
+  double most = order == 1 ? largest_earth_rate(name, options) : kEarth / gravity_in(name);
+  for (int i = 1; i < order; ++i) most /= gravity_in(name);
+  return std::abs(coefficient) - kWithin * error <= most && may_be_tilt(data, candidate.channel);
+}
+
+// What a straight line leaves of the Earth's rate, where several headings share one coefficient or tilts are
+// wide, is picked up by powers and products of the same accelerations: no larger than the line itself may be.
+bool is_left_by_the_line(const BlockData& data, const Candidate& candidate, double coefficient) {
+  if (order_of(data, candidate) == 0 || !may_be_tilt(data, candidate.channel)) return false;
+  const FineChannel& channel = data.channels[candidate.channel];
+  const Eigen::VectorXd column = regressors(data, candidate).col(0);
+  const double swing = std::abs(coefficient) * (column.maxCoeff() - column.minCoeff());
+  return swing <= kEarth / gravity_in(channel.name) * (channel.high - channel.low);
+}
+
+}  // namespace
+
+bool may_be_tilt(const BlockData& data, std::size_t channel) {
+  const FineChannel& mine = data.channels[channel];
+  const double g = gravity_in(mine.name);
+  if (std::max(std::abs(mine.low), std::abs(mine.high)) > (1.0 + kOfGravity) * g) return false;
+  std::vector<double> own(mine.values.size());
+  std::vector<double> all(mine.values.size(), 0.0);
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const FineChannel& other = data.channels[c];
+    if (!is_acceleration(data, c) || unit_of(other.name) != unit_of(mine.name)) continue;
+    ++count;
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] += other.values[k] * other.values[k];
+  }
+  double mean = 0.0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    own[k] = mine.values[k] * mine.values[k];
+    mean += all[k] / static_cast<double>(all.size());
+  }
+  const bool all_of_gravity = std::abs(std::sqrt(mean) - g) < kOfGravity * g;
+  if (all_of_gravity) return slope_of(own, all) < kUndone;
+  return count < 3;
+}
+
+double largest_earth_rate(const std::string& channel, const EarthRateOptions& options) {
+  const double most = kEarth / gravity_in(channel);
+  if (!options.latitude_rad) return most;
+  const double vertical = std::abs(std::sin(*options.latitude_rad));
+  const double horizontal = std::cos(*options.latitude_rad);
+  if (options.axis.empty()) return most * std::max(vertical, horizontal);
+  return most * (channel.find("_" + options.axis + "_") != std::string::npos ? vertical : horizontal);
+}
+
+void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found) {
+  const FirstReading reading =
+      options.subtract ? FirstReading::kEarthRateSubtracted : FirstReading::kEarthRateShown;
+  bool line = false;
+  for (const bool first : {true, false}) {
+    Eigen::Index at = data.grid.constants();
+    for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+      Candidate& mine = found.fitted[i];
+      const double coefficient = found.fitted_coefficients[at];
+      const double error = std::sqrt(std::max(0.0, found.covariance(at, at)));
+      at += mine.width();
+      if (first ? !is_earth_rate(data, options, mine, coefficient, error)
+                : !line || !is_left_by_the_line(data, mine, coefficient))
+        continue;
+      line |= order_of(data, mine) == 1;
+      mine.first_reading = reading;
+      found.chosen[i].candidate.first_reading = reading;
+    }
+  }
+}
+
+std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& options,
+                                const SearchResult& found) {
+  std::string words;
+  Eigen::Index at = data.grid.constants();
+  for (const Candidate& each : found.fitted) {
+    const double coefficient = found.fitted_coefficients[at];
+    at += each.width();
+    if (each.first_reading == FirstReading::kError || order_of(data, each) != 1) continue;
+    const std::string& name = data.channels[each.channel].name;
+    const double scale = gravity_in(name) / kDegreePerHour;
+    std::array<char, 160> line{};
+    std::snprintf(line.data(), line.size(), "%.3g °/h per g of %s (at most %.3g)", coefficient * scale,
+                  name.c_str(), largest_earth_rate(name, options) * scale);
+    words += (words.empty() ? "" : " and ") + std::string(line.data());
+  }
+  if (words.empty()) return "";
+  return words + " is what the Earth's rate makes in a gyro that tilts: that is rotation, " +
+         (options.subtract
+              ? "subtracted as asked for with --earth; on another heading it is another"
+              : "shown and not subtracted (--earth subtracts it). The same capture with the heading "
+                "reversed would tell: g-sensitivity keeps its sign");
+}
+
+}  // namespace ifog

@@ -1,0 +1,110 @@
+#include "filters/diagnosis/record/derived_channels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "filters/effects/form.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kTurn = 2.0 * M_PI;
+
+struct Columns {
+  std::vector<double> time, rate, reference, one, other, angle, turned;
+};
+
+// A table that turns forwards, stands and turns back over more than a turn; two thermometers.
+Columns columns(std::size_t n) {
+  Columns c;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = 0.1 * static_cast<double>(i);
+    c.time.push_back(t);
+    c.rate.push_back(1e-4);
+    c.reference.push_back(0.3 * std::sin(t / 50.0));
+    c.one.push_back(20.0 + 0.01 * t);
+    c.other.push_back(18.0 + 0.02 * t);
+    c.angle.push_back(15.0 * (1.0 - std::cos(t / 50.0)));  // the integral of the reference
+    c.turned.push_back(0.2 * std::cos(t / 30.0));
+  }
+  return c;
+}
+
+Record record_of(const Columns& c, const std::vector<double>& wrapped) {
+  Record record;
+  record.time_s = c.time;
+  record.rate_radps = c.rate;
+  record.reference_radps = c.reference;
+  record.channels = {
+      {"inner_degC", c.one}, {"outer_degC", c.other}, {"supply_V", c.one}, {"table_rad", wrapped}};
+  record.other_axes = {{"rate_y_radps", c.turned}};
+  return record;
+}
+
+std::vector<double> wrapped(const std::vector<double>& angle, double period) {
+  std::vector<double> out;
+  for (const double a : angle) out.push_back(a - period * std::floor(a / period));
+  return out;
+}
+
+TEST(DerivedChannels, AnAngleIsToldByItsUnitAndItsWraps) {
+  const Columns c = columns(5000);
+  const std::vector<double> inside = wrapped(c.angle, kTurn);
+  EXPECT_DOUBLE_EQ(angle_period("table_rad", inside), kTurn);
+  std::vector<double> degrees;
+  for (const double a : inside) degrees.push_back(a * 360.0 / kTurn);
+  EXPECT_DOUBLE_EQ(angle_period("heading_deg", degrees), 360.0);
+  EXPECT_EQ(angle_period("ramp_counts", inside), 0.0) << "no unit of an angle";
+  EXPECT_EQ(angle_period("table_rad", c.angle), 0.0) << "goes on over several turns, and wraps nowhere";
+  const std::vector<double> tilt(inside.begin(), inside.begin() + 100);
+  EXPECT_EQ(angle_period("tilt_rad", tilt), 0.0) << "a part of a turn";
+}
+
+TEST(DerivedChannels, UnwrappedItIsTheAngleTurned) {
+  const Columns c = columns(5000);
+  std::vector<double> inside = wrapped(c.angle, kTurn);
+  inside[2000] = std::nan("");
+  const DerivedRecords derived = with_unwrapped_angles({record_of(c, inside)});
+  const RecordChannel& angle = derived.records[0].channels[3];
+  EXPECT_DOUBLE_EQ(angle.period, kTurn);
+  for (std::size_t i = 0; i < c.angle.size(); ++i) {
+    if (i == 2000)
+      EXPECT_TRUE(std::isnan(angle.values[i]));
+    else
+      ASSERT_NEAR(angle.values[i], c.angle[i], 1e-9) << i;
+  }
+  EXPECT_EQ(derived.records[0].channels[0].period, 0.0);
+}
+
+TEST(DerivedChannels, LikeChannelsAreTakenFromEachOtherAndUnlikeOnesAreNot) {
+  const Columns c = columns(100);
+  std::vector<double> polled = c.other;
+  for (std::size_t i = 0; i < polled.size(); ++i)
+    if (i % 2 == 1) polled[i] = std::nan("");
+  Record record = record_of(c, c.angle);
+  record.channels[1].values = polled;
+  const DerivedRecords derived = with_derived_channels({record});
+  const auto& channels = derived.records[0].channels;
+  ASSERT_EQ(channels.size(), 6U) << "one difference and one other axis";
+  EXPECT_EQ(channels[4].name, difference_of("inner_degC", "outer_degC"));
+  EXPECT_DOUBLE_EQ(channels[4].values[40], c.one[40] - c.other[40]);
+  EXPECT_DOUBLE_EQ(channels[4].values[41], c.one[41] - c.other[40]) << "the other one held";
+  EXPECT_EQ(channels[5].name, "rate_y_radps");
+  EXPECT_EQ(names_in(channels[4].name).of, "inner_degC");
+  EXPECT_EQ(names_in(channels[4].name).less, "outer_degC");
+}
+
+TEST(DerivedChannels, WithoutAReferenceAnotherAxisIsRotationAndNoChannel) {
+  const Columns c = columns(100);
+  Record record = record_of(c, c.angle);
+  record.reference_radps = {};
+  EXPECT_EQ(with_derived_channels({record}).records[0].channels.size(), 5U);
+  const std::vector<double> still(100, 0.0);
+  record.reference_radps = still;
+  EXPECT_EQ(with_derived_channels({record}).records[0].channels.size(), 5U) << "a table that never turned";
+}
+
+}  // namespace
+}  // namespace ifog
