@@ -32,8 +32,6 @@ constexpr std::array<std::pair<Form, std::string_view>, 23> kNames = {{
     {Form::kQuantisation, "quantisation"},
 }};
 
-constexpr std::string_view kLess = " - ";
-
 }  // namespace
 
 std::optional<Form> form_named(std::string_view name) {
@@ -89,16 +87,6 @@ double parameter(const Effect& effect, std::string_view name) {
 std::string_view time_constant_name(Form form) {
   if (form == Form::kLagged) return "lag_s";
   return form == Form::kWarmUp ? "time_constant_s" : "bandwidth_s";
-}
-
-std::string difference_of(std::string_view of, std::string_view less) {
-  return std::string(of) + std::string(kLess) + std::string(less);
-}
-
-ChannelNames names_in(std::string_view channel) {
-  const auto at = channel.find(kLess);
-  if (at == std::string_view::npos) return {std::string(channel), ""};
-  return {std::string(channel.substr(0, at)), std::string(channel.substr(at + kLess.size()))};
 }
 
 std::string rate_of_axis(std::string_view axis) {

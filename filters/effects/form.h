@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 
+#include "filters/model_file/channel_names.h"
 #include "filters/model_file/model.h"
 
 namespace ifog {
@@ -69,13 +70,6 @@ std::string_view name_of(Form form);
 // What a form's time constant is called: "lag_s" of lagged, "time_constant_s" of warm_up, "bandwidth_s" of
 // the others.
 [[nodiscard]] std::string_view time_constant_name(Form form);
-
-// A channel of an effect is a column, or the difference of two: "A - B". Column names have no blanks.
-struct ChannelNames {
-  std::string of, less;  // less: "" for a column
-};
-[[nodiscard]] std::string difference_of(std::string_view of, std::string_view less);
-[[nodiscard]] ChannelNames names_in(std::string_view channel);
 
 // The measured rate of an axis of the same sensor as a channel: "rate_y_radps" for "y".
 [[nodiscard]] std::string rate_of_axis(std::string_view axis);

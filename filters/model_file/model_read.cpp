@@ -4,7 +4,7 @@
 
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"

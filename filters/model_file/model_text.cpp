@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <type_traits>
 
-#include "filters/effects/form.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/sha256.h"
 #include "filters/model_file/toml_text.h"

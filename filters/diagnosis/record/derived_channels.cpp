@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMostDifferences = 6;
 constexpr double kWholeTurn = 0.9;  // of the period, that a wrap jumps and the values reach
+constexpr double kGlitches = 1e-3;  // share of the values, at either end of their range
 constexpr double kUnsure = 0.01;    // share of steps too long to say which way the angle went
 
 double period_by_unit(const std::string& channel) {
@@ -29,6 +30,19 @@ bool moves(std::span<const double> values) {
     high = std::max(high, value);
   }
   return high > low;
+}
+
+// What all but one in a thousand values lie between, at either end.
+std::pair<double, double> range_but_for_glitches(std::span<const double> values) {
+  std::vector<double> sorted;
+  for (const double value : values)
+    if (std::isfinite(value)) sorted.push_back(value);
+  if (sorted.empty()) return {0.0, 0.0};
+  const auto few = static_cast<std::ptrdiff_t>(kGlitches * static_cast<double>(sorted.size()));
+  std::nth_element(sorted.begin(), sorted.begin() + few, sorted.end());
+  const double low = sorted[static_cast<std::size_t>(few)];
+  std::nth_element(sorted.begin(), sorted.end() - 1 - few, sorted.end());
+  return {low, sorted[sorted.size() - 1 - static_cast<std::size_t>(few)]};
 }
 
 template <class Name>
@@ -79,15 +93,12 @@ void add_differences(const std::vector<Record>& records, DerivedRecords& derived
 double angle_period(const std::string& channel, std::span<const double> values) {
   const double period = period_by_unit(channel);
   if (!(period > 0.0)) return 0.0;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
+  const auto [low, high] = range_but_for_glitches(values);
   double before = std::nan("");
   std::size_t wraps = 0;
   std::size_t unsure = 0;
   for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
+    if (!(value >= low && value <= high)) continue;
     const double jump = std::abs(value - before);
     wraps += jump > kWholeTurn * period ? 1 : 0;
     unsure += jump > 0.25 * period && jump < 0.75 * period ? 1 : 0;
@@ -110,8 +121,12 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
       for (RecordChannel& mine : record.channels) {
         if (mine.name != channel.name) continue;
         std::vector<double>& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
+        const auto [low, high] = range_but_for_glitches(mine.values);
+        const double margin = 0.5 * (period - std::min(period, high - low)) + 1e-3 * period;
         double before = std::nan("");
         for (double& value : whole) {
+          if (!(value >= low - margin && value <= high + margin))
+            value = std::nan("");  // no angle of this table
           if (!std::isfinite(value)) continue;
           if (std::isfinite(before)) value -= period * std::round((value - before) / period);
           before = value;

@@ -361,7 +361,8 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   if (candidate.first_reading != FirstReading::kError && candidate.form == Form::kLinear)
     effect.form = name_of(Form::kEarthRate);
   effect.shown_only = candidate.first_reading == FirstReading::kEarthRateShown;
-  effect.meaning = candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
+  effect.meaning =
+      candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
   return effect;
 }
 

@@ -78,6 +78,17 @@ TEST(DerivedChannels, UnwrappedItIsTheAngleTurned) {
   EXPECT_EQ(derived.records[0].channels[0].period, 0.0);
 }
 
+TEST(DerivedChannels, AGlitchOfTheLoggerIsNoAngle) {
+  const Columns c = columns(5000);
+  std::vector<double> inside = wrapped(c.angle, kTurn);
+  for (const std::size_t i : {700, 701, 3000}) inside[i] = 1e6;
+  const DerivedRecords derived = with_unwrapped_angles({record_of(c, inside)});
+  const RecordChannel& angle = derived.records[0].channels[3];
+  EXPECT_DOUBLE_EQ(angle.period, kTurn);
+  for (const std::size_t i : {700, 701, 3000}) EXPECT_TRUE(std::isnan(angle.values[i]));
+  for (const std::size_t i : {699, 702, 3001, 4999}) EXPECT_NEAR(angle.values[i], c.angle[i], 1e-9) << i;
+}
+
 TEST(DerivedChannels, LikeChannelsAreTakenFromEachOtherAndUnlikeOnesAreNot) {
   const Columns c = columns(100);
   std::vector<double> polled = c.other;

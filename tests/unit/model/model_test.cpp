@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filters/effects/form.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/sha256.h"
 
