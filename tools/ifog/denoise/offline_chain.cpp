@@ -9,6 +9,7 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "filters/model_file/channel_names.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -65,9 +66,13 @@ double median_step_s(const std::vector<double>& time_s) {
 }
 
 bool used(const Model* model, const std::string& channel) {
+  const auto names_it = [&](const std::string& of_effect) {
+    const ChannelNames names = names_in(of_effect);
+    return names.of == channel || names.less == channel;
+  };
   return model != nullptr &&
          std::any_of(model->effects.begin(), model->effects.end(), [&](const Effect& effect) {
-           return effect.channel == channel || effect.with_channel == channel;
+           return names_it(effect.channel) || names_it(effect.with_channel);
          });
 }
 
