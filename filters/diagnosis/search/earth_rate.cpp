@@ -15,6 +15,7 @@ constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
 constexpr double kGravity = 9.80665;    // m/s^2
 constexpr double kWithin = 2.0;         // standard errors
 constexpr double kOfGravity = 0.05;     // by which a resting triad may miss g: scale and mounting errors
+constexpr double kSteady = 0.2;         // change of the whole force over that of one of its parts
 constexpr double kUndone = 0.5;         // share of an acceleration's square that the others may leave
 
 double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kGravity; }
@@ -39,6 +40,15 @@ double slope_of(const std::vector<double>& x, const std::vector<double>& y) {
     xy += (x[k] - mean_x) * (y[k] - mean_y);
   }
   return xx > 0.0 ? xy / xx : 0.0;
+}
+
+double spread_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  double square = 0.0;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) mean += value / n;
+  for (const double value : values) square += (value - mean) * (value - mean) / n;
+  return std::sqrt(square);
 }
 
 // Power of g by which an effect's largest coefficient goes down; 0 for what is never the Earth's rate.
@@ -91,8 +101,11 @@ bool may_be_tilt(const BlockData& data, std::size_t channel) {
     mean += all[k] / static_cast<double>(all.size());
   }
   const bool all_of_gravity = std::abs(std::sqrt(mean) - g) < kOfGravity * g;
-  if (all_of_gravity) return slope_of(own, all) < kUndone;
-  return count < 3;
+  if (!all_of_gravity) return count < 3;
+  // Of a triad the force itself may not change, whichever axis drives it.
+  const double changes = spread_of(all) / (2.0 * std::sqrt(mean));
+  if (count >= 3 && changes > kSteady * spread_of(mine.values)) return false;
+  return slope_of(own, all) < kUndone;
 }
 
 double largest_earth_rate(const std::string& channel, const EarthRateOptions& options) {

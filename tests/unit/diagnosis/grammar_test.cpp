@@ -163,6 +163,12 @@ TEST(Grammar, AnAccelerationWithoutTiltIsGSensitivityHoweverSmall) {
   s.add("accel_z_mps2", [](double t) { return kGravity + 0.01 * std::cos(t); });
   expect_coefficient(effect_of(diagnose({s.record()}, {}), "linear", "accel_x_mps2"),
                      0.3 * kEarth / kGravity);
+
+  // Driven up and down as well, against what x alone would make the whole force change.
+  for (std::size_t i = 0; i < drive.size(); ++i)
+    s.columns[2].second[i] += 2.0 * std::sin(2.0 * M_PI * s.time[i] / 57.0) - 0.05 * drive[i] * drive[i];
+  expect_coefficient(effect_of(diagnose({s.record()}, {}), "linear", "accel_x_mps2"),
+                     0.3 * kEarth / kGravity);
 }
 
 TEST(Grammar, MisalignmentIsTracedToTheOtherAxis) {
