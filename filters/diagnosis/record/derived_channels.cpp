@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "filters/effects/meaning.h"
 
@@ -11,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMostDifferences = 6;
 constexpr double kWholeTurn = 0.9;  // of the period, that a wrap jumps and the values reach
-constexpr double kGlitches = 1e-3;  // share of the values, at either end of their range
+constexpr double kInside = 0.95;    // share of the values that lie within the turn
+constexpr double kRounding = 1e-3;  // of the period, beyond its ends
 constexpr double kUnsure = 0.01;    // share of steps too long to say which way the angle went
 
 double period_by_unit(const std::string& channel) {
@@ -32,17 +34,21 @@ bool moves(std::span<const double> values) {
   return high > low;
 }
 
-// What all but one in a thousand values lie between, at either end.
-std::pair<double, double> range_but_for_glitches(std::span<const double> values) {
-  std::vector<double> sorted;
-  for (const double value : values)
-    if (std::isfinite(value)) sorted.push_back(value);
-  if (sorted.empty()) return {0.0, 0.0};
-  const auto few = static_cast<std::ptrdiff_t>(kGlitches * static_cast<double>(sorted.size()));
-  std::nth_element(sorted.begin(), sorted.begin() + few, sorted.end());
-  const double low = sorted[static_cast<std::size_t>(few)];
-  std::nth_element(sorted.begin(), sorted.end() - 1 - few, sorted.end());
-  return {low, sorted[sorted.size() - 1 - static_cast<std::size_t>(few)]};
+struct Turn {
+  double low = 0.0, high = 0.0;
+  [[nodiscard]] bool has(double value) const { return value >= low && value <= high; }
+};
+
+// From zero, or from half a turn below it, whichever holds nearly all values: others are a logger's faults.
+std::optional<Turn> turn_of(std::span<const double> values, double period) {
+  for (const double start : {0.0, -0.5 * period}) {
+    const Turn turn{start - kRounding * period, start + (1.0 + kRounding) * period};
+    const auto finite =
+        std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    const auto inside = std::count_if(values.begin(), values.end(), [&](double v) { return turn.has(v); });
+    if (static_cast<double>(inside) >= kInside * static_cast<double>(finite)) return turn;
+  }
+  return std::nullopt;
 }
 
 template <class Name>
@@ -93,20 +99,25 @@ void add_differences(const std::vector<Record>& records, DerivedRecords& derived
 double angle_period(const std::string& channel, std::span<const double> values) {
   const double period = period_by_unit(channel);
   if (!(period > 0.0)) return 0.0;
-  const auto [low, high] = range_but_for_glitches(values);
+  const std::optional<Turn> turn = turn_of(values, period);
+  if (!turn) return 0.0;
+  double low = turn->high;
+  double high = turn->low;
   double before = std::nan("");
   std::size_t wraps = 0;
   std::size_t unsure = 0;
   for (const double value : values) {
-    if (!(value >= low && value <= high)) continue;
+    if (!turn->has(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
     const double jump = std::abs(value - before);
     wraps += jump > kWholeTurn * period ? 1 : 0;
     unsure += jump > 0.25 * period && jump < 0.75 * period ? 1 : 0;
     before = value;
   }
-  const bool within_a_turn = high - low > kWholeTurn * period && high - low < 1.001 * period;
+  const bool all_round = high - low > kWholeTurn * period;
   const bool clear = static_cast<double>(unsure) <= kUnsure * static_cast<double>(values.size());
-  return within_a_turn && wraps > 0 && clear ? period : 0.0;
+  return all_round && wraps > 0 && clear ? period : 0.0;
 }
 
 DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
@@ -121,12 +132,10 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
       for (RecordChannel& mine : record.channels) {
         if (mine.name != channel.name) continue;
         std::vector<double>& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
-        const auto [low, high] = range_but_for_glitches(mine.values);
-        const double margin = 0.5 * (period - std::min(period, high - low)) + 1e-3 * period;
+        const std::optional<Turn> turn = turn_of(mine.values, period);
         double before = std::nan("");
         for (double& value : whole) {
-          if (!(value >= low - margin && value <= high + margin))
-            value = std::nan("");  // no angle of this table
+          if (turn && !turn->has(value)) value = std::nan("");  // no angle of this table
           if (!std::isfinite(value)) continue;
           if (std::isfinite(before)) value -= period * std::round((value - before) / period);
           before = value;
