@@ -13,7 +13,7 @@ struct FlagName {
   std::string_view name;
 };
 
-inline constexpr std::array<FlagName, 14> kFlagNames{{{rate_t::FLAG_AT_REST, "at rest"},
+inline constexpr std::array<FlagName, 15> kFlagNames{{{rate_t::FLAG_AT_REST, "at rest"},
                                                       {rate_t::FLAG_MANOEUVRE, "manoeuvre"},
                                                       {rate_t::FLAG_NOISE_UNKNOWN, "noise not yet known"},
                                                       {rate_t::FLAG_GAP, "gap"},
@@ -25,6 +25,7 @@ inline constexpr std::array<FlagName, 14> kFlagNames{{{rate_t::FLAG_AT_REST, "at
                                                       {rate_t::FLAG_FILTER_RESET, "filter reset"},
                                                       {rate_t::FLAG_STALE_CHANNEL, "channel stale"},
                                                       {rate_t::FLAG_OUT_OF_RANGE, "out of the model's range"},
+                                                      {rate_t::FLAG_RAMP_UNKNOWN, "ramp's phase not known"},
                                                       {rate_t::FLAG_NOT_COMPENSATED, "not compensated"},
                                                       {rate_t::FLAG_CLOCK_STEP, "clock step"}}};
 

@@ -16,6 +16,7 @@ std::int32_t message_flags(const Increment& in, const ChainOutput& out) noexcept
   pass(in.flags, kAtFullScale, rate_t::FLAG_SATURATED);
   pass(out.compensator_flags, kStaleChannel | kNoChannelYet, rate_t::FLAG_STALE_CHANNEL);
   pass(out.compensator_flags, kOutOfRange, rate_t::FLAG_OUT_OF_RANGE);
+  pass(out.compensator_flags, kRampUnknown, rate_t::FLAG_RAMP_UNKNOWN);
   pass(out.flags, kNoiseUnknown, rate_t::FLAG_NOISE_UNKNOWN);
   pass(out.flags, kFilterReset, rate_t::FLAG_FILTER_RESET);
   pass(out.flags, kNotCompensated, rate_t::FLAG_NOT_COMPENSATED);

@@ -113,9 +113,14 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
     channel_[i] = in.channel[wanted_[i]];
     relative_age_[i] = static_cast<double>(in.channel_age_s[wanted_[i]]) * relative_age_max_[i];
   }
-  compensator_->step(
-      {.dt_s = in.dt_s, .rate_radps = in.rate_radps, .channels = channel_, .age_s = relative_age_},
-      correction_);
+  Axes missed_s{};
+  for (std::size_t i = 0; i < kMaxAxes; ++i) missed_s[i] = in.dt_s - in.covered_s[i];
+  compensator_->step({.dt_s = in.dt_s,
+                      .rate_radps = in.rate_radps,
+                      .missed_s = missed_s,
+                      .channels = channel_,
+                      .age_s = relative_age_},
+                     correction_);
   refuse_impossible(in, out);
   out.compensated_radps = correction_.compensated_radps;
   out.compensator_flags = correction_.flags;

@@ -82,6 +82,7 @@ class Run {
   Run(const std::vector<Record>& records, const WithoutRamps& without, const DiagnoseOptions& options)
       : records_(records),
         ramps_(without.ramps),
+        no_ramp_because_(without.remark),
         options_(options),
         earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
         data_(cut_to_blocks(without.records)),
@@ -263,7 +264,10 @@ class Run {
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
     say(grown_in_words(result_, errors_));
-    if (moving_) describe_moving(*moving_, result_.unexplained);
+    if (moving_)
+      describe_moving(*moving_, result_.unexplained);
+    else
+      say(no_ramp_because_);
     if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     if (!moving_ && !data_.grid.dwells)
       say(resonances_in_words(find_resonances(longest_of(errors_).after, data_.grid.sample_s)));
@@ -280,6 +284,7 @@ class Run {
 
   const std::vector<Record>& records_;  // as given
   const std::vector<RampFit>& ramps_;
+  const std::string& no_ramp_because_;  // empty, or a sentence
   const DiagnoseOptions& options_;
   const EarthRateOptions earth_;
   BlockData data_;           // without the ramps

@@ -1,6 +1,7 @@
 // The correction of a whole series, sample by sample as the daemon makes it.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <vector>
@@ -16,15 +17,27 @@ struct SeriesToCompensate {
   std::vector<std::span<const double>> channels;    // by Compensator::channels(); empty: never has a value
 };
 
+// The median step; what goes more than half a step beyond it is a gap.
+inline double usual_step(std::span<const double> time_s) {
+  std::vector<double> steps;
+  steps.reserve(time_s.size());
+  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
 // Calls use(sample, output) for every sample in turn. The first sample covers as much time as the second.
 template <class Use>
 void compensate_series(Compensator& compensator, const SeriesToCompensate& series, Use&& use) {
   std::vector<double> now(series.channels.size());
   CompensatorInput in;
   CompensatorOutput out;
+  const double usual_s = usual_step(series.time_s);
   for (std::size_t i = 0; i < series.time_s.size(); ++i) {
     const std::size_t end = i == 0 ? 1 : i;
     in.dt_s = series.time_s[end] - series.time_s[end - 1];
+    in.missed_s.fill(in.dt_s > 1.5 * usual_s ? in.dt_s - usual_s : 0.0);
     for (std::size_t c = 0; c < now.size(); ++c)
       now[c] = series.channels[c].empty() ? std::numeric_limits<double>::quiet_NaN() : series.channels[c][i];
     in.channels = now;

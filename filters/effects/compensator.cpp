@@ -35,6 +35,11 @@ std::string label_of(const Effect& effect) {
   return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
 }
 
+[[noreturn]] void refuse_axis(const Effect& effect) {
+  throw std::invalid_argument("effect " + label_of(effect) + ": the sensor has no axis " +
+                              in_quotes(effect.axis));
+}
+
 }  // namespace
 
 Compensator::Compensator(const Model& model, const std::vector<std::string>& axes, double stale_after_s,
@@ -68,6 +73,10 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     left_out_.push_back(label_of(effect) + " (the time since power-up is not known)");
     return;
   }
+  if (*form == Form::kRebuiltRamp) {
+    add_ramp(effect, axes);
+    return;
+  }
   if (has_channel(*form) && effect.channel.empty()) {
     throw std::invalid_argument("effect " + in_quotes(effect.form) + " names no channel");
   }
@@ -89,6 +98,21 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
   }
   place(std::move(term), effect, axes);
+}
+
+void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>& axes) {
+  bool placed = false;
+  try {
+    const RampTracker tracker(ramp_settings(effect));
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
+      ramps_.push_back({axis, tracker});
+      placed = true;
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
+  }
+  if (!placed) refuse_axis(effect);
 }
 
 void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel,
@@ -127,10 +151,7 @@ void Compensator::place(Term term, const Effect& effect, const std::vector<std::
     terms_.push_back(std::move(mine));
     placed = true;
   }
-  if (!placed) {
-    throw std::invalid_argument("effect " + label_of(effect) + ": the sensor has no axis " +
-                                in_quotes(effect.axis));
-  }
+  if (!placed) refuse_axis(effect);
 }
 
 std::size_t Compensator::channel_index(const std::string& name) {
@@ -258,6 +279,21 @@ void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexc
     out.compensated_radps[axis] = rates[axis];
     judge(axis, rates, out);
   }
+  subtract_ramps(in, out);
+}
+
+// Last, for a ramp is found in what the other effects leave.
+void Compensator::subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept {
+  for (Ramp& ramp : ramps_) {
+    const std::size_t axis = ramp.axis;
+    const double error = ramp.tracker.step({.measured_radps = in.rate_radps[axis],
+                                            .rest_radps = out.compensated_radps[axis],
+                                            .dt_s = in.dt_s,
+                                            .missed_s = in.missed_s[axis]});
+    if (!ramp.tracker.locked()) out.flags |= kRampUnknown;
+    out.correction_radps[axis] += error;
+    out.compensated_radps[axis] -= error;
+  }
 }
 
 void Compensator::restart() noexcept {
@@ -265,9 +301,14 @@ void Compensator::restart() noexcept {
   for (Term& term : terms_) {
     for (Factor& factor : term.factors) factor.shape.restart();
   }
+  for (Ramp& ramp : ramps_) ramp.tracker.restart();
 }
 
 void Compensator::take_over(const Compensator& previous) noexcept {
+  for (Ramp& ramp : ramps_) {
+    for (const Ramp& other : previous.ramps_)
+      if (ramp.axis == other.axis && ramp.tracker.take_over(other.tracker)) break;
+  }
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     for (std::size_t j = 0; j < previous.channels_.size(); ++j) {
       if (channels_[i] != previous.channels_[j] || !previous.held_[j].seen) continue;

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/effects/ramp_tracker.h"
 #include "filters/effects/shape.h"
 #include "filters/model_file/model.h"
 #include "filters/settings/axes.h"
@@ -25,11 +26,14 @@ enum CompensatorFlags : std::uint32_t {
   kStaleChannel = 1,  // a channel is missing or older than allowed: held at its last value
   kOutOfRange = 2,  // a channel is outside the range the model was fitted on: see reach.h; variance inflated
   kNoChannelYet = 4,  // a channel has never had a value: its effects are left out
+  kRampUnknown = 8,   // the phase of a rebuilt feedback ramp is not known: its effect is left out
 };
 
 struct CompensatorInput {
   double dt_s = 0.0;  // time covered by this sample; after a gap, the whole gap
-  Axes rate_radps{};
+  Axes rate_radps{};  // NaN: not measured
+  // Of dt, what rate_radps says nothing of: a gap. The angle turned in it is not known.
+  Axes missed_s{};
   std::span<const double> channels{};  // in the order of Compensator::channels(); NaN: missing now
   std::span<const double> age_s{};     // of each channel's value; empty: all are as old as the sample
 };
@@ -88,6 +92,10 @@ class Compensator {
     Value channels{};  // of the factors that do not depend on the rate
     bool usable = false;
   };
+  struct Ramp {
+    std::size_t axis;
+    RampTracker tracker;
+  };
   struct Held {
     double value = 0.0;
     Reach reach;
@@ -97,11 +105,13 @@ class Compensator {
 
   void add_effect(const Effect& effect, std::size_t first_row, const std::vector<std::string>& axes,
                   const std::vector<ChannelRange>& ranges);
+  void add_ramp(const Effect& effect, const std::vector<std::string>& axes);
   void add_factor(Term& term, ShapeSettings settings, const std::string& channel,
                   const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges);
   void place(Term term, const Effect& effect, const std::vector<std::string>& axes);
   void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
+  void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   // Where a factor's channel is, which has had a value.
   [[nodiscard]] Reach reach_of_factor(const Factor& factor) const noexcept;
   // The whole term at these rates of the axes; the channels' part alone for a term that does not depend on
@@ -117,6 +127,7 @@ class Compensator {
   std::vector<ChannelRange> ranges_;  // of channels_, infinite where the model gives none
   std::vector<Held> held_;
   std::vector<Term> terms_;
+  std::vector<Ramp> ramps_;
   std::vector<double> covariance_;
   std::size_t parameters_ = 0;
   std::size_t axes_;

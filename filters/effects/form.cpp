@@ -6,7 +6,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::array<std::pair<Form, std::string_view>, 23> kNames = {{
+constexpr std::array<std::pair<Form, std::string_view>, 24> kNames = {{
     {Form::kLinear, "linear"},
     {Form::kQuadratic, "quadratic"},
     {Form::kCubic, "cubic"},
@@ -25,6 +25,7 @@ constexpr std::array<std::pair<Form, std::string_view>, 23> kNames = {{
     {Form::kStep, "step"},
     {Form::kRateRamp, "rate_ramp"},
     {Form::kWarmUp, "warm_up"},
+    {Form::kRebuiltRamp, "rebuilt_ramp"},
     {Form::kEarthRate, "earth_rate"},
     {Form::kGaussMarkov, "gauss_markov"},
     {Form::kOutliers, "outliers"},
@@ -57,7 +58,9 @@ bool has_memory(Form form) {
 
 bool describes_noise(Form form) { return form >= Form::kGaussMarkov; }
 
-bool carries_over(Form form) { return has_channel(form) || form == Form::kWarmUp; }
+bool carries_over(Form form) {
+  return has_channel(form) || form == Form::kWarmUp || form == Form::kRebuiltRamp;
+}
 
 int power_of(Form form) {
   switch (form) {

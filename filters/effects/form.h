@@ -8,6 +8,7 @@
 //   cosine, sine of 2 pi c/period, the channel an angle: once a turn, or a whole part of it
 // and of the time t since the record's start (or the daemon's):
 //   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
+//   rebuilt_ramp: a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
 // earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
 // acceleration. gauss_markov, outliers, noise_change, quantisation say what the noise is; there is nothing to
 // subtract.
@@ -41,6 +42,7 @@ enum class Form {
   kStep,
   kRateRamp,
   kWarmUp,
+  kRebuiltRamp,
   kEarthRate,
   kGaussMarkov,
   kOutliers,

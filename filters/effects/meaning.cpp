@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <numbers>
+#include <sstream>
 
 namespace ifog {
 namespace {
@@ -173,6 +175,19 @@ std::string of_product(const Effect& effect, Form with_form) {
   return "product of " + effect.channel + " and " + effect.with_channel;
 }
 
+// k is the coil's diameter over the wavelength and the refractive index (a reset of 2 pi each time light
+// travels a wavelength further): 1.55 um and 1.45.
+std::string of_rebuilt_ramp(const Effect& effect) {
+  const double k = std::abs(parameter(effect, "cycles_per_rad"));
+  std::ostringstream words;
+  words << "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset), which was not "
+           "logged: its "
+           "phase is rebuilt from the angle turned, "
+        << std::lround(k) << " cycles a radian, as a coil of " << std::setprecision(2)
+        << 100.0 * k * 1.55e-6 * 1.45 << " cm at 1.55 um has";
+  return words.str();
+}
+
 }  // namespace
 
 ChannelKind kind_of(std::string_view channel) {
@@ -222,6 +237,8 @@ std::string meaning_of(const Effect& effect) {
       return "the bias drifts steadily with time";
     case Form::kWarmUp:
       return "warm-up: the bias settles exponentially after the start of the record";
+    case Form::kRebuiltRamp:
+      return of_rebuilt_ramp(effect);
     case Form::kGaussMarkov:
       return "slow noise with a correlation time";
     case Form::kOutliers:

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/ramp.h"
+#include "filters/diagnosis/record/ramps_out.h"
 
 namespace ifog {
 

@@ -31,14 +31,4 @@ struct RampFit {
 std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
                                 double significance);
 
-struct WithoutRamps {
-  std::vector<RampFit> ramps;
-  std::vector<Record> records;             // without channels that wrap, and less what the ramps explain
-  std::vector<std::vector<double>> rates;  // what their rates point to, when a ramp was found
-};
-
-// A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So
-// it may explain the rate as a ramp's angle or not at all.
-WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance);
-
 }  // namespace ifog

@@ -54,7 +54,7 @@ struct Series {
 struct Columns {
   std::vector<double> time_s, dt_s;
   std::vector<Series> axes;
-  std::uint64_t gated = 0, stale = 0, out_of_range = 0, unknown_noise = 0;
+  std::uint64_t gated = 0, stale = 0, out_of_range = 0, ramp_unknown = 0, unknown_noise = 0;
 };
 
 void append(std::string& text, double value) {
@@ -126,6 +126,7 @@ nlohmann::json summary(const Options& options, const Columns& columns, const Off
           {"gated", columns.gated},
           {"stale_channel", columns.stale},
           {"out_of_range", columns.out_of_range},
+          {"ramp_phase_unknown", columns.ramp_unknown},
           {"samples_before_noise_known", columns.unknown_noise},
           {"filter",
            {{"rule", filter.rule},
@@ -287,6 +288,7 @@ void run(Options options) {
     if ((out.estimate.flags & kGated) != 0) ++columns.gated;
     if ((out.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) ++columns.stale;
     if ((out.compensator_flags & kOutOfRange) != 0) ++columns.out_of_range;
+    if ((out.compensator_flags & kRampUnknown) != 0) ++columns.ramp_unknown;
     if ((out.flags & kNoiseUnknown) != 0) ++columns.unknown_noise;
   };
   OfflineResult result;

@@ -1,0 +1,40 @@
+// The harmonics of a closed loop's feedback ramp in the rate: lines at multiples of k cycles for each radian
+// turned. Looked for over the angle that the sensor itself has measured, so that they stand still however the
+// rate changes; against lines of fixed frequencies, which stand still over time.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "filters/diagnosis/record/unbroken_part.h"
+
+namespace ifog {
+
+// Cycles a radian that a coil can have: diameter over wavelength times refractive index, 1 cm to 4 m.
+inline constexpr double kLeastCycles = 5e3;
+inline constexpr double kMostCycles = 2e6;
+inline constexpr std::size_t kMostHarmonics = 96;
+
+struct RampComb {
+  double cycles_per_rad = 0.0;  // positive
+  std::size_t harmonics = 0;    // that are worth their two parameters
+  std::size_t plain = 0;        // of the first sixteen, that stand out of the noise alone
+  double ratio = 0.0;           // twice the log-likelihood they gain
+  double over_fixed = 0.0;      // of it, what the best fixed frequency of each harmonic does not gain
+  double tries = 0.0;           // values of k that could have been found
+};
+
+// Nothing where no comb stands out of the noise.
+std::optional<RampComb> find_ramp_comb(const UnbrokenPart& part);
+// The same of a comb of fixed frequencies, cycles_per_rad at the mean rate; two plain harmonics or
+// more.
+std::optional<RampComb> find_fixed_comb(const UnbrokenPart& part);
+
+// Cycles a radian that the part can show: from a fundamental above the slow part that was taken out, with
+// twenty cycles or more, to one below half the sample rate. Empty (least > most) near zero rate.
+struct VisibleCycles {
+  double least = 0.0, most = 0.0;
+};
+VisibleCycles visible_cycles(const UnbrokenPart& part);
+
+}  // namespace ifog

@@ -1,0 +1,168 @@
+#include "filters/diagnosis/record/rebuilt_ramp.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/ramp_comb.h"
+#include "filters/diagnosis/record/ramp_table.h"
+#include "filters/effects/compensate_series.h"
+#include "filters/effects/meaning.h"
+#include "filters/units/field_units.h"
+
+namespace ifog {
+namespace {
+
+// What a comb that follows the angle has to gain beyond its harmonics at fixed frequencies, each at its best.
+constexpr double kOverFixed = 30.0;
+// Slower sensors cannot show a ramp, and nothing is said of it.
+constexpr double kQuickSensor_hz = 20.0;
+constexpr double kUsualCycles = 1e5;  // a coil of 10 cm at 1.55 um has 7e4
+constexpr double kSeenCycles = 20.0;
+constexpr double kCertain = 3.0;  // standard errors of the table
+
+double rms(const std::vector<double>& angle) {
+  double square = 0.0;
+  for (const double value : angle) square += value * value;
+  return std::sqrt(square / static_cast<double>(angle.size()));
+}
+
+std::string rounded(double value, int digits) {
+  std::ostringstream out;
+  out.precision(digits);
+  out << value;
+  return out.str();
+}
+
+std::string fixed_in_words(const RampComb& comb, const UnbrokenPart& part) {
+  const double rate = std::abs(part.mean_turn_rad()) / part.sample_s;
+  return "lines at multiples of " + rounded(comb.cycles_per_rad * rate, 4) +
+         " Hz belong together. A feedback ramp (phase modulator, 2 pi reset) that was not logged would make "
+         "them, with " +
+         std::to_string(std::lround(comb.cycles_per_rad)) +
+         " cycles for each radian turned, and a machine nearby as well: the rate changed too little to show "
+         "whether they move with it. A capture at another rate would tell, and so would the feedback ramp, "
+         "logged";
+}
+
+std::string too_slow_in_words(const UnbrokenPart& part) {
+  const double span_s = static_cast<double>(part.size()) * part.sample_s;
+  const double needed = kSeenCycles / kUsualCycles / span_s;
+  return "a feedback ramp (phase modulator, 2 pi reset) that was not logged would not show here, so near "
+         "zero "
+         "rate its line stands still: it would from " +
+         rounded(needed / kDegreePerHour, 2) + " degrees an hour on";
+}
+
+// Runs the tracker over the records as the daemon would. use(record, sample, correction).
+template <class Use>
+void run_over(const std::vector<Record>& records, const RampSettings& settings, Use&& use) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    RampTracker tracker(settings);
+    const double usual_s = usual_step(record.time_s);
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+      const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
+      double error = record.rate_radps[i];
+      if (!record.reference_radps.empty()) error -= record.reference_radps[i];
+      use(r, i,
+          tracker.step({.measured_radps = record.rate_radps[i],
+                        .rest_radps = error,
+                        .dt_s = dt,
+                        .missed_s = dt > 1.5 * usual_s ? dt - usual_s : 0.0}));
+    }
+  }
+}
+
+Effect effect_of(const RampTable& table) {
+  Effect effect;
+  effect.form = "rebuilt_ramp";
+  effect.period = 1.0;
+  effect.angle = true;
+  const std::vector<double> angle = table.one_cycle();
+  for (std::size_t i = 0; i <= angle.size(); ++i) {
+    effect.table_x.push_back(static_cast<double>(i) / static_cast<double>(angle.size()));
+    effect.table_y.push_back(angle[i % angle.size()]);
+  }
+  effect.parameters = {{"angle_rms", rms(angle), table.angle_error, "rad"},
+                       {"cycles_per_rad", table.cycles_per_rad, table.cycles_error, "1/rad"},
+                       {"noise_density", table.noise_density, table.noise_error, "rad/s/sqrt(Hz)"},
+                       {"phase_walk", table.phase_walk, table.walk_error, "cycles/sqrt(s)"}};
+  effect.meaning = meaning_of(effect);
+  return effect;
+}
+
+void correct_all(const std::vector<Record>& records, std::size_t fitted, const UnbrokenPart& part,
+                 const RampTable& table, RampFit& fit) {
+  for (const Record& record : records) fit.correction.emplace_back(record.time_s.size(), 0.0);
+  fit.held_out = fit.correction;
+  run_over(records, table.settings(), [&](std::size_t r, std::size_t i, double ramp) {
+    fit.correction[r][i] = fit.held_out[r][i] = ramp;
+  });
+  for (std::size_t p = 0; p < kRampParts; ++p) {
+    run_over({records[fitted]}, table.without(p).settings(), [&](std::size_t, std::size_t i, double ramp) {
+      if (i < part.first || i >= part.first + part.size()) return;
+      if (ramp_part(i - part.first, part.size()) == p) fit.held_out[fitted][i] = ramp;
+    });
+  }
+}
+
+double energy_taken(const std::vector<Record>& records, const RampFit& fit) {
+  double taken = 0.0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const std::vector<double> error = error_of(records[r]);
+    double mean = 0.0;
+    double n = 0.0;
+    for (const double e : error) {
+      if (!std::isfinite(e)) continue;
+      mean += e;
+      n += 1.0;
+    }
+    mean /= std::max(n, 1.0);
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      const double ramp = fit.held_out[r][i];
+      if (std::isfinite(error[i])) taken += ramp * (2.0 * (error[i] - mean) - ramp);
+    }
+  }
+  return taken;
+}
+
+}  // namespace
+
+RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance) {
+  RebuiltRamp out;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const UnbrokenPart part = unbroken_part(records[r]);
+    if (part.size() == 0) continue;
+    if (kUsualCycles * std::abs(part.mean_turn_rad()) * static_cast<double>(part.size()) < kSeenCycles) {
+      if (records[r].reference_radps.empty() && part.sample_s * kQuickSensor_hz < 1.0 && out.remark.empty())
+        out.remark = too_slow_in_words(part);
+      continue;
+    }
+    const std::optional<RampComb> comb = find_ramp_comb(part);
+    if (!comb || comb->over_fixed < kOverFixed) {
+      const std::optional<RampComb> fixed = find_fixed_comb(part);
+      if (fixed && out.remark.empty()) out.remark = fixed_in_words(*fixed, part);
+      continue;
+    }
+    const boost::math::chi_squared by_chance(2.0 * static_cast<double>(comb->harmonics));
+    const double p_value = std::min(1.0, comb->tries * cdf(complement(by_chance, comb->ratio)));
+    if (p_value > significance) continue;
+    const std::optional<RampTable> table = fit_ramp_table(part, *comb);
+    if (!table || rms(table->one_cycle()) < kCertain * table->angle_error) continue;
+    RampFit fit;
+    fit.effect = effect_of(*table);
+    fit.ratio = comb->ratio;
+    fit.p_value = p_value;
+    correct_all(records, r, part, *table, fit);
+    if (energy_taken(records, fit) <= 0.0) continue;
+    out.fit = std::move(fit);
+    out.remark.clear();
+    return out;
+  }
+  return out;
+}
+
+}  // namespace ifog

@@ -1,0 +1,174 @@
+// The measured ramp without its channel: blueseis_bs1_ramp as if nobody had logged ramp_counts. Fitted on the
+// first half of the record; judged on the second as the daemon would meet it, its phase unknown. The counts
+// are the oracle for k. Skipped, with the reason, where the capture is not there.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <memory>
+
+#include "drivers/capture/capture.h"
+#include "filters/diagnosis/diagnose.h"
+#include "filters/effects/compensator.h"
+#include "filters/effects/form.h"
+#include "filters/units/field_units.h"
+
+namespace ifog {
+namespace {
+
+constexpr const char* kPath = IFOG_SHARED_DATA "/blueseis_bs1_ramp.csv.gz";
+constexpr double kPeriod = 32768.0;  // counts
+constexpr double kStep_s = 0.005;
+
+struct Measured {
+  Capture capture;
+  Diagnosis diagnosis;
+  Model model;
+};
+
+// Read and diagnosed once for all tests; empty where there is no capture.
+const Measured* measured() {
+  static const std::unique_ptr<Measured> once = [] {
+    if (!std::filesystem::exists(kPath)) return std::unique_ptr<Measured>();
+    auto made = std::make_unique<Measured>();
+    made->capture = read_capture(kPath);
+    Record record;
+    record.name = kPath;
+    record.time_s = made->capture.time_s;
+    record.rate_radps = made->capture.rate_radps[0];
+    DiagnoseOptions options;
+    options.fit_to = 0.5;
+    made->diagnosis = diagnose({record}, options);
+    add_to_model(made->diagnosis, "", made->model);
+    return made;
+  }();
+  return once.get();
+}
+
+class MeasuredRebuiltRamp : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (measured() == nullptr)
+      GTEST_SKIP() << "no " << kPath
+                   << ": the measured captures belong beside the project, in ../shared/data";
+  }
+};
+
+struct SecondHalf {
+  std::vector<double> left;  // rad/s
+  std::size_t unknown = 0;   // samples that were flagged
+};
+
+// From the middle on, by a compensator that begins there, with `rotation` (rad/s by sample) added to the
+// rate.
+SecondHalf compensated(const std::vector<double>* rotation) {
+  const Capture& capture = measured()->capture;
+  Compensator compensator(measured()->model, {""});
+  SecondHalf out;
+  CompensatorInput in;
+  CompensatorOutput corrected;
+  for (std::size_t i = capture.size() / 2; i < capture.size(); ++i) {
+    in.dt_s = capture.time_s[i] - capture.time_s[i - 1];
+    in.rate_radps[0] = capture.rate_radps[0][i] + (rotation ? (*rotation)[out.left.size()] : 0.0);
+    compensator.step(in, corrected);
+    out.left.push_back(corrected.compensated_radps[0]);
+    if ((corrected.flags & kRampUnknown) == 0) continue;
+    ++out.unknown;
+    EXPECT_EQ(corrected.correction_radps[0], 0.0);
+  }
+  return out;
+}
+
+double deviation(const std::vector<double>& x) {
+  double mean = 0.0;
+  double square = 0.0;
+  for (const double v : x) mean += v / static_cast<double>(x.size());
+  for (const double v : x) square += (v - mean) * (v - mean);
+  return std::sqrt(square / static_cast<double>(x.size()));
+}
+
+// Overlapping Allan deviation, straight from its definition.
+double allan(const std::vector<double>& x, std::size_t m) {
+  double square = 0.0;
+  double n = 0.0;
+  for (std::size_t i = 0; i + 2 * m <= x.size(); ++i) {
+    double d = 0.0;
+    for (std::size_t k = 0; k < m; ++k) d += (x[i + m + k] - x[i + k]) / static_cast<double>(m);
+    square += d * d;
+    n += 1.0;
+  }
+  return std::sqrt(0.5 * square / n);
+}
+
+TEST_F(MeasuredRebuiltRamp, IsFoundAlone) {
+  int rebuilt = 0;
+  for (const FoundEffect& found : measured()->diagnosis.effects) {
+    const std::optional<Form> form = form_named(found.effect.form);
+    rebuilt += form == Form::kRebuiltRamp;
+    EXPECT_TRUE(form == Form::kRebuiltRamp || !form || !carries_over(*form)) << found.effect.form;
+  }
+  EXPECT_EQ(rebuilt, 1);
+}
+
+// The counter's cycles over the angle of the rate, of the half that was fitted.
+TEST_F(MeasuredRebuiltRamp, KIsThatOfTheCounter) {
+  const Capture& capture = measured()->capture;
+  const CaptureColumn& ramp = capture.channels.front();
+  ASSERT_EQ(ramp.name, "ramp_counts");
+  double cycles = 0.0;
+  double angle = 0.0;
+  for (std::size_t i = 1; i < capture.size() / 2; ++i) {
+    const double step = ramp.values[i] - ramp.values[i - 1];
+    cycles += (step - kPeriod * std::round(step / kPeriod)) / kPeriod;
+    angle += capture.rate_radps[0][i] * (capture.time_s[i] - capture.time_s[i - 1]);
+  }
+  for (const FoundEffect& found : measured()->diagnosis.effects) {
+    if (found.effect.form != "rebuilt_ramp") continue;
+    EXPECT_NEAR(parameter(found.effect, "cycles_per_rad") / std::abs(cycles / angle), 1.0, 5e-6);
+  }
+}
+
+TEST_F(MeasuredRebuiltRamp, LeavesWhatIsPromisedOnTheSecondHalf) {
+  const SecondHalf second = compensated(nullptr);
+  EXPECT_LE(deviation(second.left), 445e-9);
+  EXPECT_LE(allan(second.left, 20), 0.0115 * kDegreePerHour);
+  EXPECT_LE(allan(second.left, 200), 0.0036 * kDegreePerHour);
+  EXPECT_GT(second.unknown, 0U);
+  EXPECT_LE(second.unknown, 200U);  // one second
+  std::printf("%.2f nrad/s, Allan %.5f and %.5f °/h at 0.1 and 1 s, %zu samples before the phase is known\n",
+              1e9 * deviation(second.left), allan(second.left, 20) / kDegreePerHour,
+              allan(second.left, 200) / kDegreePerHour, second.unknown);
+}
+
+TEST_F(MeasuredRebuiltRamp, IsTransparentToRotation) {
+  const std::vector<double> still = compensated(nullptr).left;
+  const double earth = 5.4e-5;  // rad/s
+  double worst_gain = 0.0;
+  double worst_phase = 0.0;
+  for (const double bias : {0.0, -earth, -2.0 * earth, 20.0 * earth, 8.6e-3}) {
+    for (const double frequency : {0.1, 1.0, 5.0, 20.0, 50.0, 80.0}) {
+      const double amplitude = 2e-5;
+      std::vector<double> rotation(still.size());
+      for (std::size_t i = 0; i < rotation.size(); ++i)
+        rotation[i] = bias + amplitude * std::sin(2.0 * M_PI * frequency * kStep_s * static_cast<double>(i));
+      const std::vector<double> turning = compensated(&rotation).left;
+      std::complex<double> in = 0.0;
+      std::complex<double> out = 0.0;
+      for (std::size_t i = 0; i < rotation.size(); ++i) {
+        const std::complex<double> carrier =
+            std::polar(1.0, -2.0 * M_PI * frequency * kStep_s * static_cast<double>(i));
+        in += (rotation[i] - bias) * carrier;
+        out += (turning[i] - still[i] - bias) * carrier;
+      }
+      EXPECT_NEAR(std::abs(out / in), 1.0, 0.02) << bias << " rad/s, " << frequency << " Hz";
+      EXPECT_NEAR(std::arg(out / in), 0.0, 2.0 * kDegree) << bias << " rad/s, " << frequency << " Hz";
+      worst_gain = std::max(worst_gain, std::abs(std::abs(out / in) - 1.0));
+      worst_phase = std::max(worst_phase, std::abs(std::arg(out / in)));
+    }
+  }
+  std::printf("gain within %.3f %%, phase within %.3f degrees\n", 100.0 * worst_gain, worst_phase / kDegree);
+}
+
+}  // namespace
+}  // namespace ifog
