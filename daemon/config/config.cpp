@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "daemon/config/table_reader.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/chain/plausibility.h"
 #include "filters/model_file/toml_file.h"
@@ -386,7 +387,9 @@ Config read_config(const std::string& path) {
   } catch (const std::exception& error) {
     throw ConfigError(error.what());
   }
-  return parse_config(text, path);
+  Config out = parse_config(text, path);
+  use_adopted_models(out, state_folder(out.state_folder));
+  return out;
 }
 
 }  // namespace ifog

@@ -122,8 +122,12 @@ struct ConfigError : std::runtime_error {
 };
 
 // Throws ConfigError. Relative paths in it (models, DBC files, captures, plugin folders) are relative to the
-// file.
+// file. A sensor without `model` has the one that was adopted for it, see use_adopted_models().
 Config read_config(const std::string& path);
 Config parse_config(const std::string& text, const std::string& path);
+
+// Gives every sensor without a model the one that is kept for it in the state folder, if any. folder "":
+// none.
+void use_adopted_models(Config& config, const std::string& folder);
 
 }  // namespace ifog

@@ -15,6 +15,7 @@
 #include "daemon/realtime/realtime.h"
 #include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "msgs/state_name.h"
@@ -87,7 +88,8 @@ Housekeeping::Housekeeping(Config config) : config_(std::move(config)), log_(mak
       int index = 0;
       for (const ChannelConfig& channel : outside_channels(sensor))
         wanted.push_back({channel, parts.outside, index++});
-      StatusReport report(sensor.name, parts.channels, axis_names(description));
+      StatusReport report(sensor.name, parts.channels, axis_names(description),
+                          parts.pipeline->plan().facts.nominal_rate_hz);
       sensors_.push_back(std::make_unique<Sensor>(Sensor{.config = sensor,
                                                          .parts = std::move(parts),
                                                          .report = std::move(report),
@@ -200,6 +202,7 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (!fault_worded) sensor.log->warn("{}", message.fault);
   sensor.fault = message.fault;
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
+  if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
   publish(sensor);
   keep_noise(sensor, false);
 }
@@ -276,6 +279,7 @@ void Housekeeping::reload() {
       each.sensor->config = std::move(each.config);
       each.sensor->parts.pipeline->filter().offer(std::move(each.parts));
       record_anew(*each.sensor, each.noise);
+      each.sensor->report.renew_watch();
     }
   } else {
     log_->error("reload refused: nothing has changed for any sensor");
@@ -332,6 +336,9 @@ int Housekeeping::run() {
     if (const std::string missed = lock_memory(); !missed.empty()) log_->warn("{}", missed);
   const Signals signals;
   start_all();
+  // Now that SIGHUP has somewhere to go: who finds the mark may ask for a reload.
+  if (const std::string missed = mark_.set(state_folder(config_.state_folder)); !missed.empty())
+    log_->warn("{}", missed);
   notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
   bool ended = false, reload_asked = false;
   std::int64_t deadline_ns = monotonic_ns();

@@ -12,6 +12,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/assemble.h"
+#include "daemon/state/running_mark.h"
 
 namespace ifog {
 
@@ -65,6 +66,7 @@ class Housekeeping {
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
+  RunningMark mark_;
   std::vector<std::uint8_t> buffer_;
   bool watchdog_ = true;  // signs of life are given: none after a pipeline was once stuck
 };

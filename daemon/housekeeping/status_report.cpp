@@ -66,8 +66,8 @@ std::string fault_of(const Reader& reader) {
 }  // namespace
 
 StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels,
-                           const std::vector<std::string>& axes)
-    : before_(), now_() {
+                           const std::vector<std::string>& axes, double sample_rate_hz)
+    : before_(), now_(), watch_(axes.size(), sample_rate_hz) {
   now_.sensor = std::move(sensor);
   now_.version = IFOG_VERSION;
   now_.axes = static_cast<std::int8_t>(axes.size());
@@ -181,12 +181,17 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   before_ = now_;
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
+  now_.model_since = snapshot.model_since_ns / 1000;
   now_.fault = imbalance(snapshot.reader, snapshot.books);
   if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
   take_books(snapshot);
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
+  watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
+              pipeline.filter().counters().out_of_range.value());
+  now_.noticed = watch_.noticed();
+  now_.notice = watch_.words();
   now_.ring_overflows = as_signed(pipeline.queue().overflows());
   now_.events_lost = as_signed(pipeline.events_lost());
   now_.state = state_of(pipeline);
@@ -206,6 +211,8 @@ void StatusReport::update(Recorder& recorder) {
   now_.record_file_bytes = as_signed(recorder.file_bytes());
   now_.record_removed = as_signed(recorder.files_removed());
 }
+
+std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
 
 std::string StatusReport::moved() const {
   std::string out;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/health/sensor_watch.h"
 #include "daemon/pipeline/pipeline.h"
 #include "daemon/recorder/recorder.h"
 
@@ -13,7 +14,8 @@ namespace ifog {
 
 class StatusReport {
  public:
-  StatusReport(std::string sensor, std::vector<std::string> channels, const std::vector<std::string>& axes);
+  StatusReport(std::string sensor, std::vector<std::string> channels, const std::vector<std::string>& axes,
+               double sample_rate_hz);
 
   // From the counters now and the last snapshot of the filter, with its books; interval_s since the call
   // before.
@@ -22,6 +24,11 @@ class StatusReport {
   void update(Recorder& recorder);
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
+
+  // What was noticed of the sensor with the last update() and was not before, in words; "" for nothing.
+  [[nodiscard]] std::string newly_noticed() const;
+  // What the sensor was, is learned anew.
+  void renew_watch() { watch_.renew(); }
 
   // A warning of the transport has been logged.
   void count_warning() { ++now_.transport_warnings; }
@@ -35,6 +42,7 @@ class StatusReport {
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
 
   ifog::status_t before_, now_;
+  SensorWatch watch_;
   std::uint64_t decoded_ = 0;   // samples, at the last update()
   std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
 };

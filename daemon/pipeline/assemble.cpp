@@ -4,6 +4,7 @@
 
 #include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "daemon/state/state_folder.h"
 #include "msgs/channel_name.h"
 
 namespace ifog {

@@ -89,6 +89,7 @@ void FilterStage::stand_back(std::int64_t slept_ns) noexcept {
 
 void FilterStage::process(const Increment& in) noexcept {
   chain_.process(in, out_);
+  if (current_.model_since_ns == 0) current_.model_since_ns = in.utime_ns;
   const ChainParts& parts = chain_.parts();
   const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
   if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
@@ -129,12 +130,19 @@ void FilterStage::follow_noise(const Increment& in) noexcept {
     mean_interval_s_ += (in.dt_s - mean_interval_s_) / static_cast<double>(intervals_);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
-    if ((in.flags & kGapBefore) != 0) allan_[i].restart();
-    // A merged sample is a mean over another time than its neighbours': no difference may use it.
-    if (in.samples == 1 && ((in.valid_axes >> i) & 1U) != 0)
-      allan_[i].add(out_.compensated_radps[i]);
-    else
+    if ((in.flags & kGapBefore) != 0) {
       allan_[i].restart();
+      current_.rest.break_off(i);
+    }
+    // A merged sample is a mean over another time than its neighbours': no difference may use it.
+    if (in.samples == 1 && ((in.valid_axes >> i) & 1U) != 0) {
+      allan_[i].add(out_.compensated_radps[i]);
+      current_.rest.add(i, (out_.estimate.flags & kAtRest) != 0, out_.compensated_radps[i],
+                        out_.estimate.innovation_radps[i]);
+    } else {
+      allan_[i].restart();
+      current_.rest.break_off(i);
+    }
   }
 }
 
@@ -145,6 +153,8 @@ void FilterStage::adopt(std::uint64_t sequence) noexcept {
   if (parts == nullptr) return;
   retired_.store(chain_.swap(std::move(parts)).release(), std::memory_order_release);
   encoder_.use(chain_.parts());
+  // A reload that gave the same model is no other one.
+  if (chain_.parts().model_identity() != current_.model.data()) current_.model_since_ns = 0;
   noise_known_ = chain_.parts().noise_known();
   counters_.filter_resets.add(1);
   events_.report({.kind = EventKind::model_in_use, .sequence = sequence});

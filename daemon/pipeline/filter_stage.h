@@ -13,6 +13,7 @@
 
 #include "daemon/health/books.h"
 #include "daemon/health/latency.h"
+#include "daemon/health/rest_sums.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/processor_share.h"
@@ -33,12 +34,14 @@ struct FilterSnapshot {
     channel_age_s.fill(std::numeric_limits<float>::infinity());
   }
   EstimatorHealth health;
+  RestSums rest;
   bool has_health = false;              // false during start-up
   std::optional<LearnedNoise> learned;  // ChainParts::learned()
   LatencyHistogram latency;             // since the snapshot before
   std::array<double, kMaxChannels> channel;
   std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};
+  std::int64_t model_since_ns = 0;  // utime of the first sample with it; 0: there was none
   // Of one moment: what lies between them is in the ring.
   ReaderBooks reader;
   FilterBooks books;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 
@@ -27,14 +26,6 @@ std::string in_words(const KeptNoise& kept) {
 }
 
 }  // namespace
-
-std::string state_folder(const std::string& configured) {
-  if (!configured.empty()) return configured;
-  const char* const given = std::getenv("STATE_DIRECTORY");
-  if (given == nullptr) return "";
-  const std::string all = given;
-  return all.substr(0, all.find(':'));
-}
 
 NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, const std::string& driver,
                          const SensorFacts& facts) {

@@ -16,9 +16,6 @@ namespace ifog {
 // Of the file, in the state folder as in a flight recording.
 [[nodiscard]] inline std::string noise_file_name(const std::string& sensor) { return sensor + ".noise.toml"; }
 
-// The folder as configured, else the first of the service manager's STATE_DIRECTORY, else "".
-[[nodiscard]] std::string state_folder(const std::string& configured);
-
 class NoiseMemory {
  public:
   NoiseMemory() = default;

@@ -88,9 +88,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
   if (fstat(fd, &info) == 0 && S_ISDIR(info.st_mode)) {
     ::close(fd);
     more_ = recordings_in(path_);
-    open_next();
-    held_.resize(kHead);
-    held_.resize(unpack(held_.data(), kHead));
+    begin();
     return;
   }
   file_.reset(gzdopen(fd, "rb"));
@@ -104,6 +102,17 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
   held_.resize(kHead);
   held_.resize(unpack(held_.data(), kHead));
   reopens_ = path_ != "-" && S_ISREG(info.st_mode) && gzdirect(file_.get()) == 1;
+}
+
+InputFile::InputFile(std::string path, std::deque<std::string> files)
+    : path_(std::move(path)), more_(std::move(files)) {
+  begin();
+}
+
+void InputFile::begin() {
+  open_next();
+  held_.resize(kHead);
+  held_.resize(unpack(held_.data(), kHead));
 }
 
 InputFile::InputFile(std::string path, std::string text) : path_(std::move(path)), held_(std::move(text)) {}

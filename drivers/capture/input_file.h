@@ -21,6 +21,8 @@ class InputFile {
   // "-" is standard input, once in a process. Throws std::runtime_error with one line: missing, unreadable, a
   // folder without flight recordings.
   explicit InputFile(std::string path);
+  // These files, one behind the other; `path` stands for them. Throws as above.
+  InputFile(std::string path, std::deque<std::string> files);
   // A text already at hand; `path` stands for the file.
   InputFile(std::string path, std::string text);
 
@@ -49,6 +51,7 @@ class InputFile {
   };
   std::size_t unpack(char* to, std::size_t most);
   bool open_next();
+  void begin();
 
   std::string path_;
   std::unique_ptr<gzFile_s, Close> file_;

@@ -1,8 +1,10 @@
 // A model exchanged while the daemon runs, from the messages recorded: every sample is there, the model
 // changes once, and on either side of that the compensated rate is, bit for bit, what `ifog denoise` computes
-// with that side's model.
+// with that side's model. The published angle is, to 1e-12 rad, the sum of the published increments.
 //
 // usage: log_reload LOG CHANNEL BEFORE.csv AFTER.csv
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "tests/system/log_columns.h"
@@ -21,6 +23,8 @@ int check(char** argv) {
   std::size_t changes = 0;
   std::size_t changed_at = 0;
   std::size_t different = 0;
+  long double sum = 0.0L;
+  double off = 0.0;
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (i > 0 && messages[i].seq != messages[i - 1].seq + 1) {
       std::fprintf(stderr, "sequence %lld after %lld\n", static_cast<long long>(messages[i].seq),
@@ -31,12 +35,15 @@ int check(char** argv) {
       ++changes;
       changed_at = i;
     }
+    if (i > 0) sum += messages[i].delta_theta.at(0);
+    off =
+        std::max(off, std::abs(static_cast<double>(messages[i].angle.at(0) - messages[0].angle.at(0) - sum)));
     const double expected = changes == 0 ? before.at(i) : after.at(i);
     different += same_bits(messages[i].compensated.at(0), expected) ? 0 : 1;
   }
-  std::printf("%zu samples, the model changed %zu times, at %zu; %zu differences\n", messages.size(), changes,
-              changed_at, different);
-  return changes == 1 && different == 0 ? 0 : 1;
+  std::printf("%zu samples, the model changed %zu times, at %zu; %zu differences; angle off by %.1e rad\n",
+              messages.size(), changes, changed_at, different, off);
+  return changes == 1 && different == 0 && off <= 1e-12 ? 0 : 1;
 }
 
 }  // namespace

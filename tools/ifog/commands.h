@@ -27,5 +27,10 @@ void add_record(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_tune(CLI::App& app);
 void add_diagnose(CLI::App& app);
+void add_status(CLI::App& app);
+void add_proposals(CLI::App& app);
+void add_adopt(CLI::App& app);
+void add_revert(CLI::App& app);
+void add_night(CLI::App& app);
 
 }  // namespace ifog::tools

@@ -23,7 +23,7 @@ TEST(PipelineStatus, CountersGoOnOverAReload) {
   rig.transport->allowed_ = kHalf * kFrame;
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
-  StatusReport report("test", rig.chain.channels, rig.chain.axes);
+  StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
   const auto look = [&](std::size_t messages) {
     while (rig.publisher->messages().size() < messages) std::this_thread::sleep_for(1ms);
     rig.pipeline->filter().ask();
@@ -74,7 +74,7 @@ TEST(PipelineStatus, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
   while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
   rig.transport->allowed_ = ~std::size_t{0};
   while (rig.pipeline->reader().counters().samples.value() < 1000) std::this_thread::sleep_for(1ms);
-  StatusReport report("test", rig.chain.channels, rig.chain.axes);
+  StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
   const status_t& status = report.update(*rig.pipeline, snapshot, 1.0);
   EXPECT_EQ(status.samples_waiting, 0);
   EXPECT_EQ(status.samples_in, 100);
@@ -117,7 +117,7 @@ TEST(PipelineStatus, TheStatusCarriesTheAllanDeviation) {
   while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
   rig.pipeline->stop();
 
-  StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"});
+  StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"}, 1000.0);
   const status_t& sent = report.update(*rig.pipeline, snapshot, 1.0);
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(sent.getEncodedSize()));
   ASSERT_EQ(sent.encode(bytes.data(), 0, sent.getEncodedSize()), sent.getEncodedSize());

@@ -53,7 +53,8 @@ FlightInput::FlightInput(InputFile& file)
   with_name([this] { reader_.next(); });
 }
 
-DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options) const {
+DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options,
+                                        const std::vector<std::string>& folders) const {
   const bool other = !driver.empty() && driver != header().driver;
   DriverSettings settings = other ? DriverSettings{} : header().options;
   std::vector<std::unique_ptr<NamedText>> carried;
@@ -65,7 +66,8 @@ DriverInstance FlightInput::make_driver(const std::string& driver, const DriverS
     if (header().driver.empty() && !other)
       throw std::runtime_error(
           "is a recording of LCM messages, expected none of --driver and --option with it");
-    DriverInstance made = ifog::make_driver(other ? driver : header().driver, settings);
+    DriverInstance made =
+        ifog::make_driver(other ? driver : header().driver, settings, plugin_folders(folders));
     for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
     return made;
   });

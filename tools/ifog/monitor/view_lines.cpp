@@ -9,6 +9,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
 #include "msgs/state_name.h"
+#include "tools/ifog/field/books.h"
 #include "tools/ifog/monitor/spark_line.h"
 
 namespace ifog::tools {
@@ -87,22 +88,6 @@ std::string head_line(std::string_view name, const SensorView& sensor) {
   return out;
 }
 
-// What came in and where it went, as status_t's identities have it.
-std::vector<std::string> books(const status_t& status) {
-  std::vector<std::string> out;
-  if (status.frames_read > 0)
-    out = {"books: " + n(status.frames_read) + " CAN frames = " + n(status.frames_good) + " decoded",
-           "+ " + n(status.frames_format) + " refused", "+ " + n(status.frames_other) + " not the sensor's;"};
-  else
-    out = {"books: " + n(status.bytes_read) + " bytes = " + n(status.bytes_framed) + " in frames",
-           "+ " + n(status.bytes_skipped) + " skipped", "+ " + n(status.bytes_pending) + " pending;"};
-  out.insert(out.end(),
-             {n(status.samples_in) + " samples = " + n(status.samples_published) + " published",
-              "+ " + n(status.samples_merged) + " merged", "+ " + n(status.lcm_failures) + " not sent",
-              "+ " + n(status.samples_waiting) + " waiting,", n(status.samples_repeated) + " came twice"});
-  return out;
-}
-
 // Environment channels by name; the age of one that is not fresh.
 std::vector<std::string> channels(const status_t& status) {
   constexpr double kFresh_s = 2.0;
@@ -175,9 +160,10 @@ std::vector<std::string> view_lines(std::string_view name, const SensorView& sen
   if (sensor.status()) {
     const status_t& status = *sensor.status();
     if (!status.fault.empty()) add({"fault: " + printable(status.fault)});
+    if (!status.notice.empty()) add({"noticed: " + printable(status.notice, kLongestMessage)});
     if (style.details) {
       add(health(status));
-      add(books(status), " ");
+      add(books_parts(status), " ");
       add(channels(status));
     }
   }

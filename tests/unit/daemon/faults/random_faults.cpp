@@ -114,7 +114,8 @@ class Run {
     network_ = publisher.get();
     pipeline_ = std::make_unique<Pipeline>(plan, std::move(transport), std::move(driver), outside_,
                                            std::make_unique<ChainParts>(chain_), std::move(publisher));
-    report_ = std::make_unique<StatusReport>("test", chain_.channels, chain_.axes);
+    report_ =
+        std::make_unique<StatusReport>("test", chain_.channels, chain_.axes, chain_.facts.nominal_rate_hz);
     flood(seed + 3);
   }
 

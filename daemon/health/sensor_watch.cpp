@@ -1,0 +1,192 @@
+#include "daemon/health/sensor_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "filters/units/field_units.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kFewestSamples = 100.0;  // of a block
+constexpr double kMostlyAtRest = 0.9;     // of a block that counts
+constexpr double kLoud = 1.5;             // times the mean square
+constexpr double kOddCorrelation = 0.1, kOddErrors = 5.0;
+// Turned by so much, rad, the Earth's rate along an axis may be another by 0.015 °/h.
+constexpr double kTurned = 1e-3;
+constexpr int kSilence = 10;  // looks without a sample: the device may have been off
+constexpr double kRange_s = 600.0, kRangeShare = 0.5;
+constexpr double kTellStep = 360.0;  // blocks
+constexpr double kForStep = 0.8;     // of the false alarms allowed
+constexpr double kCusums = 3.0;
+constexpr double kLatest = 0.2;  // weight of a block in how loud it is now
+
+double blocks_between_alarms(std::size_t axes, double block_s, double share) {
+  return SensorWatch::kAlarmEvery_s / block_s * static_cast<double>(axes) / share;
+}
+
+}  // namespace
+
+SensorWatch::Axis::Axis(double usual, double colour, double step)
+    : loud(usual), odd_neighbours(usual), follows(colour), steps(step) {}
+
+SensorWatch::SensorWatch(std::size_t axes, double sample_rate_hz)
+    : block_samples_(std::max(kFewestSamples, std::round(kBlock_s * sample_rate_hz))),
+      period_s_(1.0 / sample_rate_hz) {
+  const double block_s = block_samples_ * period_s_;
+  const double cusum = std::log(blocks_between_alarms(axes, block_s, (1.0 - kForStep) / kCusums));
+  const double step = window_threshold(blocks_between_alarms(axes, block_s, kForStep), StepTest::kWindows);
+  axes_.assign(axes, Axis(cusum, cusum, step));
+}
+
+void SensorWatch::renew() {
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    Axis& axis = axes_[a];
+    axis.blocks = axis.square = axis.correlation = axis.skipped = axis.turned = axis.bias_for = 0.0;
+    axis.at_block = before_.axis[a];
+    axis.loud.restart();
+    axis.odd_neighbours.restart();
+    axis.follows.restart();
+    axis.steps.restart();
+    axis.level = LevelNoise();
+  }
+  range_ = false;
+  samples_ = seen_;
+}
+
+void SensorWatch::take(const RestSums& sums, std::uint64_t samples, std::uint64_t out_of_range) {
+  if (samples < samples_ + static_cast<std::uint64_t>(kRange_s / period_s_)) {
+    // The ten minutes go on.
+  } else {
+    range_ = static_cast<double>(out_of_range - out_of_range_) >
+             kRangeShare * static_cast<double>(samples - samples_);
+    samples_ = samples;
+    out_of_range_ = out_of_range;
+  }
+  silent_ = samples == seen_ ? silent_ + 1 : 0;
+  seen_ = samples;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    Axis& axis = axes_[a];
+    if (silent_ == kSilence) axis.level.forget_level();
+    follow_motion(axis, sums.axis[a], before_.axis[a]);
+    take_block(axis, sums.axis[a]);
+  }
+  before_ = sums;
+}
+
+// How far the sensor was turned while it did not rest: a step of the bias, too, ends a rest for a moment, but
+// makes no angle.
+void SensorWatch::follow_motion(Axis& axis, const RestSums::Axis& now, const RestSums::Axis& before) const {
+  const double moved = now.moved - before.moved;
+  const double level = axis.level.level();
+  if (moved <= 0.0 || !std::isfinite(level)) return;
+  axis.turned += (now.moved_rate - before.moved_rate - moved * level) * period_s_;
+  if (std::abs(axis.turned) <= kTurned) return;
+  axis.level.forget_level();
+  axis.follows.break_off();
+  axis.steps.restart();
+  axis.turned = 0.0;
+}
+
+void SensorWatch::take_block(Axis& axis, const RestSums::Axis& sums) {
+  const RestSums::Axis& from = axis.at_block;
+  const double resting = sums.samples - from.samples, moved = sums.moved - from.moved;
+  if (resting + moved < block_samples_) return;
+  const double mean = (sums.rate - from.rate) / resting;
+  const double square = (sums.square - from.square) / resting;
+  const double pairs = sums.pairs - from.pairs;
+  const double correlation = (sums.product - from.product) / pairs / square;
+  axis.skipped += std::max(1.0, std::round((resting + moved) / block_samples_));
+  axis.at_block = sums;
+  if (resting < kMostlyAtRest * (resting + moved) || !(pairs > 0.0) || !(square > 0.0)) return;
+  test_noise(axis, square, correlation, pairs);
+  test_level(axis, mean);
+  axis.skipped = 0.0;
+}
+
+void SensorWatch::test_noise(Axis& axis, double square, double correlation, double pairs) {
+  bool odd = false;
+  if (axis.blocks >= kLearned) {
+    const double louder = square / axis.square;
+    const bool loud = louder > kLoud;
+    if (loud) axis.louder += (louder - axis.louder) * (axis.louder == 0.0 ? 1.0 : kLatest);
+    const bool strange =
+        std::abs(correlation - axis.correlation) > std::max(kOddCorrelation, kOddErrors / std::sqrt(pairs));
+    axis.loud.take(loud);
+    axis.odd_neighbours.take(strange);
+    odd = loud || strange;
+  }
+  // What is odd teaches nothing of what is usual.
+  if (odd) return;
+  if (!axis.loud.alarmed()) axis.louder = 0.0;
+  axis.blocks += 1.0;
+  axis.square += (square - axis.square) / axis.blocks;
+  axis.correlation += (correlation - axis.correlation) / axis.blocks;
+}
+
+void SensorWatch::test_level(Axis& axis, double mean) {
+  const LevelNoise::Innovation innovation = axis.level.take(mean, axis.skipped);
+  axis.bias_for = std::max(0.0, axis.bias_for - 1.0);
+  if (!innovation.known) return;
+  // Also while it learns: how far sums go is part of that.
+  const bool stepped = axis.steps.take(innovation.value, innovation.gain, innovation.spread);
+  if (axis.level.blocks() < kLearned) return;
+  axis.follows.take(innovation.value);
+  if (!stepped) return;
+  step_radps_ = axis.steps.step();
+  axis.bias_for = kTellStep;
+  axis.level.forget_level();
+  axis.follows.break_off();
+}
+
+std::int32_t SensorWatch::noticed() const {
+  std::int32_t out = range_ ? kNoticedRange : 0;
+  for (const Axis& axis : axes_) {
+    if (axis.loud.alarmed()) out |= kNoticedNoise;
+    if (axis.odd_neighbours.alarmed() || axis.follows.alarmed()) out |= kNoticedColour;
+    if (axis.bias_for > 0.0) out |= kNoticedBias;
+  }
+  return out;
+}
+
+double SensorWatch::largest_step_score() const {
+  double out = 0.0;
+  for (const Axis& axis : axes_) out = std::max(out, axis.steps.largest());
+  return out;
+}
+
+std::string SensorWatch::words(std::int32_t only) const {
+  const std::int32_t now = noticed() & only;
+  std::string out;
+  const auto add = [&](const char* text) { out += (out.empty() ? "" : "; ") + std::string(text); };
+  char text[200];
+  if ((now & kNoticedNoise) != 0) {
+    double most = 0.0;
+    for (const Axis& axis : axes_)
+      if (axis.loud.alarmed()) most = std::max(most, axis.louder);
+    std::snprintf(
+        text, sizeof text,
+        "noise at rest %.1f times what it was (standard deviation): look at mounting, supply and cable, "
+        "then compare recordings with `ifog allan`",
+        std::sqrt(most));
+    add(text);
+  }
+  if ((now & kNoticedColour) != 0)
+    add("innovations are no longer white: something acts on the sensor that its model does not know, run "
+        "`ifog "
+        "night`");
+  if ((now & kNoticedBias) != 0) {
+    std::snprintf(
+        text, sizeof text,
+        "rate at rest has stepped by %+.3g °/h: align again, and run `ifog night` if it was not turned",
+        step_radps_ / kDegreePerHour);
+    add(text);
+  }
+  if ((now & kNoticedRange) != 0)
+    add("a channel is outside the range of the model for over ten minutes: run `ifog night`, which fits it "
+        "there");
+  return out;
+}
+
+}  // namespace ifog

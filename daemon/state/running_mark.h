@@ -1,0 +1,31 @@
+// How others find the daemon that works with a state folder, whoever started it: it holds a lock on a file
+// there for as long as it lives. A lock, unlike a number in a file, ends with its process however that ends.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+namespace ifog {
+
+class RunningMark {
+ public:
+  RunningMark() = default;
+  ~RunningMark();
+  RunningMark(const RunningMark&) = delete;
+  RunningMark& operator=(const RunningMark&) = delete;
+
+  // Of this process, once. folder "": none. Gives a complaint, "" for none: no right to the folder, or
+  // another daemon works with it.
+  [[nodiscard]] std::string set(const std::string& folder);
+
+ private:
+  int fd_ = -1;
+};
+
+// The process that holds the mark; nothing: none does, or no daemon ever did. Throws std::runtime_error with
+// one line when that cannot be seen.
+[[nodiscard]] std::optional<pid_t> running_daemon(const std::string& folder);
+
+}  // namespace ifog

@@ -1,0 +1,14 @@
+// The folder in which the daemon keeps what outlives a run, and what is called how in it.
+#pragma once
+
+#include <string>
+
+namespace ifog {
+
+// The folder as configured, else the first of the service manager's STATE_DIRECTORY, else "".
+[[nodiscard]] std::string state_folder(const std::string& configured);
+
+// The model of a sensor whose configuration names none.
+[[nodiscard]] std::string adopted_model_path(const std::string& folder, const std::string& sensor);
+
+}  // namespace ifog

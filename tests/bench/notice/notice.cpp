@@ -1,0 +1,210 @@
+// What the daemon notices of a gyro, and how often wrongly: many months in blocks, and the whole chain at its
+// sample rate. One line a case; results.md has them.
+//
+// usage: notice_bench blocks MONTHS SEED     months of each kind of noise, in blocks of ten seconds
+//        notice_bench steps TRIALS SEED      steps of the bias and louder noise, after three days at rest
+//        notice_bench chain DAYS SEED        a gyro at 200 Hz through signal chain and watch
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "daemon/health/sensor_watch.h"
+#include "filters/chain/signal_chain.h"
+#include "tests/bench/notice/slow_noise.h"
+
+namespace {
+
+using ifog::RestSums;
+using ifog::SensorWatch;
+using ifog::bench::NoiseKind;
+using ifog::bench::SlowNoise;
+
+constexpr double kRate = 200.0, kBlock_s = SensorWatch::kBlock_s;
+constexpr int kPerDay = static_cast<int>(86400.0 / kBlock_s), kPerMonth = 30 * kPerDay;
+
+// Kinds whose Allan deviation reaches 0.664 B, or the least of N and K, after so long.
+std::vector<NoiseKind> kinds() {
+  std::vector<NoiseKind> out{{"white", 1.0, 0.0, 0.0}};
+  for (const double floor_s : {30.0, 100.0, 300.0, 1000.0})
+    out.push_back({"N, B from " + std::to_string(static_cast<int>(floor_s)) + " s", 1.0,
+                   1.0 / std::sqrt(floor_s) / 0.664, 0.0});
+  for (const double floor_s : {100.0, 300.0, 1000.0})
+    out.push_back({"N, K from " + std::to_string(static_cast<int>(floor_s)) + " s", 1.0, 0.0,
+                   std::sqrt(3.0) / floor_s});
+  return out;
+}
+
+// Bias instability B as IEEE Std 952 has it: the floor of the Allan deviation is 0.664 of it.
+double bias_instability(const NoiseKind& kind) {
+  if (kind.B > 0.0) return kind.B;
+  if (kind.K > 0.0) return std::sqrt(2.0 / std::sqrt(3.0) * kind.N * kind.K) / 0.664;
+  return 0.0;
+}
+
+// A sensor block by block: what ten seconds of samples add to the sums.
+class Blocks {
+ public:
+  Blocks(const NoiseKind& kind, unsigned seed)
+      : kind_(kind), random_(seed), slow_(kind, kBlock_s, random_), watch(1, kRate) {}
+  void next() {
+    constexpr double n = kRate * kBlock_s;
+    const double sigma2 = kind_.N * kind_.N * kRate * louder;
+    const double mean =
+        kind_.N * std::sqrt(louder / kBlock_s) * normal_(random_) + slow_.next(random_) + step;
+    RestSums::Axis& sums = sums_.axis[0];
+    sums.samples += n;
+    sums.rate += n * mean;
+    sums.square += sigma2 * (n + std::sqrt(2.0 * n) * normal_(random_));
+    sums.pairs += n;
+    sums.product += sigma2 * std::sqrt(n) * normal_(random_);
+    samples_ += static_cast<std::uint64_t>(n);
+    watch.take(sums_, samples_, 0);
+  }
+  void forget_alarms() {}
+
+ private:
+  NoiseKind kind_;
+  std::mt19937_64 random_;
+  SlowNoise slow_;
+  std::normal_distribution<double> normal_;
+  RestSums sums_;
+  std::uint64_t samples_ = 0;
+
+ public:
+  SensorWatch watch;
+  double step = 0.0, louder = 1.0;
+};
+
+void months(int count, unsigned seed) {
+  for (const NoiseKind& kind : kinds()) {
+    int noise = 0, colour = 0, bias = 0;
+    double largest = 0.0;
+    for (int month = 0; month < count; ++month) {
+      Blocks blocks(kind, seed + static_cast<unsigned>(month));
+      std::int32_t before = 0;
+      for (int i = 0; i < kPerMonth; ++i) {
+        blocks.next();
+        const std::int32_t fresh = blocks.watch.noticed() & ~before;
+        before = blocks.watch.noticed();
+        noise += (fresh & ifog::kNoticedNoise) != 0;
+        colour += (fresh & ifog::kNoticedColour) != 0;
+        bias += (fresh & ifog::kNoticedBias) != 0;
+        largest = std::max(largest, blocks.watch.largest_step_score());
+      }
+    }
+    std::printf("%-18s %d months: false alarms noise %d, colour %d, bias %d; largest |z| %.2f\n",
+                kind.name.c_str(), count, noise, colour, bias, largest);
+    std::fflush(stdout);
+  }
+}
+
+// The share found within ten minutes, and the median time of those found.
+void look_for(const NoiseKind& kind, const std::string& what, double step, double louder, std::int32_t bit,
+              int trials, unsigned seed) {
+  constexpr int kTenMinutes = static_cast<int>(600.0 / kBlock_s);
+  std::vector<int> found;
+  int spoiled = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    Blocks blocks(kind, seed + static_cast<unsigned>(trial));
+    for (int i = 0; i < 3 * kPerDay; ++i) blocks.next();
+    if ((blocks.watch.noticed() & bit) != 0) {
+      ++spoiled;
+      continue;
+    }
+    blocks.step = step;
+    blocks.louder = louder;
+    for (int i = 1; i <= kTenMinutes; ++i) {
+      blocks.next();
+      if ((blocks.watch.noticed() & bit) == 0) continue;
+      found.push_back(i);
+      break;
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::printf("%-18s %-14s found within ten minutes %zu of %d, median after %.0f s\n", kind.name.c_str(),
+              what.c_str(), found.size(), trials - spoiled,
+              found.empty() ? 0.0 : kBlock_s * found[found.size() / 2]);
+  std::fflush(stdout);
+}
+
+void steps(int trials, unsigned seed) {
+  for (const NoiseKind& kind : kinds()) {
+    look_for(kind, "variance x 2", 0.0, 2.0, ifog::kNoticedNoise, std::min(trials, 50), seed);
+    if (bias_instability(kind) == 0.0) continue;
+    for (const double times : {3.3, 5.0, 6.0, 7.0, 10.0}) {
+      char what[40];
+      std::snprintf(what, sizeof what, "step %.1f B", times);
+      look_for(kind, what, times * bias_instability(kind), 1.0, ifog::kNoticedBias, trials, seed);
+    }
+  }
+}
+
+// A gyro like that of tools/simulate/scenarios/demo.toml.
+void chain(double days, unsigned seed) {
+  const NoiseKind gyro{"chain", 2.5e-8, 1.0e-9, 1.0e-11};
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  SlowNoise slow(gyro, 1.0, random);
+  ifog::ChainSettings settings;
+  settings.facts.axes = 1;
+  settings.facts.nominal_rate_hz = kRate;
+  settings.axes = {""};
+  ifog::SignalChain chain(std::make_unique<ifog::ChainParts>(settings));
+  ifog::ChainOutput out;
+  ifog::Increment in;
+  RestSums sums;
+  SensorWatch watch(1, kRate);
+  const double sigma = gyro.N * std::sqrt(kRate);
+  std::uint64_t samples = 0, at_rest = 0;
+  std::int32_t before = 0;
+  int alarms = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (double second = 0.0; second < days * 86400.0; second += 1.0) {
+    const double level = 5e-5 + slow.next(random);
+    for (int i = 0; i < static_cast<int>(kRate); ++i) {
+      in.sequence = samples++;
+      in.dt_s = 1.0 / kRate;
+      in.samples = 1;
+      in.valid_axes = 1;
+      in.rate_radps[0] = level + sigma * normal(random);
+      in.delta_theta_rad[0] = in.rate_radps[0] * in.dt_s;
+      in.covered_s[0] = in.dt_s;
+      chain.process(in, out);
+      const bool rests = (out.estimate.flags & ifog::kAtRest) != 0;
+      at_rest += rests;
+      sums.add(0, rests, out.compensated_radps[0], out.estimate.innovation_radps[0]);
+    }
+    watch.take(sums, samples, 0);
+    if ((watch.noticed() & ~before) != 0) {
+      ++alarms;
+      std::printf("after %.2f days: %s\n", second / 86400.0, watch.words().c_str());
+    }
+    before = watch.noticed();
+  }
+  std::printf("chain at %.0f Hz, %.1f days: %d false alarms, largest |z| %.2f, %.2f %% at rest, %.0f s\n",
+              kRate, days, alarms, watch.largest_step_score(),
+              100.0 * static_cast<double>(at_rest) / static_cast<double>(samples),
+              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc == 4 ? argv[1] : "";
+  const auto seed = static_cast<unsigned>(argc == 4 ? std::atoi(argv[3]) : 0);
+  if (mode == "blocks") {
+    months(std::atoi(argv[2]), seed);
+  } else if (mode == "steps") {
+    steps(std::atoi(argv[2]), seed);
+  } else if (mode == "chain") {
+    chain(std::atof(argv[2]), seed);
+  } else {
+    std::fprintf(stderr, "usage: notice_bench blocks MONTHS SEED | steps TRIALS SEED | chain DAYS SEED\n");
+    return 2;
+  }
+  return 0;
+}

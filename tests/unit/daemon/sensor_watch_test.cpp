@@ -1,0 +1,241 @@
+// What the daemon notices of a sensor. Oracles: the law that a test's threshold is derived from, and what was
+// put into the samples. Months of them at full rate are in tests/bench/notice.
+#include "daemon/health/sensor_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <regex>
+#include <vector>
+
+#include "daemon/health/sequential_tests.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kRate = 10.0;  // Hz: a block is ten seconds, a hundred samples
+constexpr double kSigma = 1e-6;
+
+// A sensor whose filter has no lag worth a word: what is published as innovation is the noise.
+class Made {
+ public:
+  explicit Made(unsigned seed, std::size_t axes = 1) : watch(axes, kRate), random_(seed), axes_(axes) {}
+  void run(double seconds) {
+    for (int second = 0; second < static_cast<int>(seconds); ++second) {
+      for (int i = 0; i < static_cast<int>(kRate); ++i) {
+        for (std::size_t a = 0; a < axes_; ++a) {
+          const double fresh = normal_(random_);
+          const double noise = sigma * (colour * last_[a] + std::sqrt(1.0 - colour * colour) * fresh);
+          last_[a] = colour * last_[a] + std::sqrt(1.0 - colour * colour) * fresh;
+          sums_.add(a, at_rest, rate + noise, noise);
+        }
+        ++samples_;
+        if (out_of_range) ++out_;
+      }
+      watch.take(sums_, samples_, out_);
+      if (watch.noticed() != 0 && found_s < 0.0) found_s = second;
+    }
+  }
+  SensorWatch watch;
+  double sigma = kSigma, rate = 3e-5, colour = 0.0, found_s = -1.0;
+  bool at_rest = true, out_of_range = false;
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  std::size_t axes_;
+  std::array<double, kMaxAxes> last_{};
+  RestSums sums_;
+  std::uint64_t samples_ = 0, out_ = 0;
+};
+
+constexpr double kHour = 3600.0, kMinute = 60.0;
+
+TEST(SensorWatch, NoticesNothingOfASensorThatStaysAsItIs) {
+  Made made(1, 3);
+  made.run(24.0 * kHour);
+  EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
+  EXPECT_EQ(made.watch.words(), "");
+}
+
+TEST(SensorWatch, NoticesDoubledNoiseAndThatItIsOver) {
+  Made made(2);
+  made.run(3.0 * kHour);
+  made.sigma *= std::sqrt(2.0);
+  made.run(10.0 * kMinute);
+  EXPECT_EQ(made.watch.noticed(), kNoticedNoise) << made.watch.words();
+  EXPECT_GE(made.found_s, 0.0);
+  EXPECT_LT(made.found_s, 2.0 * kMinute);
+  EXPECT_TRUE(std::regex_search(made.watch.words(), std::regex("1\\.[345] times"))) << made.watch.words();
+  made.sigma = kSigma;
+  made.run(kHour);
+  EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
+}
+
+TEST(SensorWatch, NoticesNeighboursThatComeToAgree) {
+  Made made(3);
+  made.run(3.0 * kHour);
+  made.colour = 0.8;
+  made.run(10.0 * kMinute);
+  EXPECT_NE(made.watch.noticed() & kNoticedColour, 0) << made.watch.words();
+  EXPECT_EQ(made.watch.noticed() & kNoticedNoise, 0);
+}
+
+TEST(SensorWatch, NoticesAStepOfTheBiasWithItsSize) {
+  for (const double sign : {1.0, -1.0}) {
+    Made made(4);
+    made.run(6.0 * kHour);
+    // Of ten-second means three standard deviations; of a single sample 0.3.
+    made.rate += sign * 0.3 * kSigma;
+    made.run(10.0 * kMinute);
+    EXPECT_EQ(made.watch.noticed(), kNoticedBias) << made.watch.words();
+    EXPECT_NEAR(made.watch.step_radps(), sign * 0.3 * kSigma, 0.1 * kSigma);
+    made.run(2.0 * kHour);
+    EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
+  }
+}
+
+TEST(SensorWatch, ATurnIsNoStepAndTheNextStepIsFound) {
+  Made made(5);
+  made.run(6.0 * kHour);
+  made.at_rest = false;
+  const double rest = made.rate;
+  made.rate = 0.1;
+  made.run(20.0);
+  made.at_rest = true;
+  made.rate = rest + 10.0 * kSigma;  // another part of the Earth's rate
+  made.run(kHour);
+  EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
+  made.rate += 0.2 * kSigma;
+  made.run(10.0 * kMinute);
+  EXPECT_EQ(made.watch.noticed(), kNoticedBias);
+}
+
+TEST(SensorWatch, AStepThatEndsTheRestForAMomentIsAStep) {
+  Made made(6);
+  made.run(6.0 * kHour);
+  made.rate += 2.0 * kSigma;
+  made.at_rest = false;
+  made.run(1.0);
+  made.at_rest = true;
+  made.run(5.0 * kMinute);
+  EXPECT_EQ(made.watch.noticed(), kNoticedBias) << made.watch.words();
+}
+
+TEST(SensorWatch, NoticesAChannelOutsideTheRangeForLong) {
+  Made made(7);
+  made.out_of_range = true;
+  made.run(5.0 * kMinute);
+  made.out_of_range = false;
+  made.run(6.0 * kMinute);
+  EXPECT_EQ(made.watch.noticed(), 0);
+  made.out_of_range = true;
+  made.run(20.0 * kMinute);
+  EXPECT_EQ(made.watch.noticed(), kNoticedRange);
+  EXPECT_NE(made.watch.words().find("range of the model"), std::string::npos);
+  made.watch.renew();
+  EXPECT_EQ(made.watch.noticed(), 0);
+}
+
+TEST(SensorWatch, AnotherModelIsLearnedAnew) {
+  Made made(8);
+  made.run(3.0 * kHour);
+  made.watch.renew();
+  made.sigma *= 3.0;
+  made.rate += 5.0 * kSigma;
+  made.run(3.0 * kHour);
+  EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
+}
+
+// How long a white series takes to alarm, on average, in blocks.
+template <typename Alarm>
+double mean_time_to_alarm(int runs, Alarm&& alarm_after) {
+  double sum = 0.0;
+  for (int run = 0; run < runs; ++run) sum += alarm_after(static_cast<unsigned>(run));
+  return sum / runs;
+}
+
+// The definition: the first time that the sum of some window of 1 … w blocks is beyond c times its deviation.
+double first_crossing(double threshold, std::size_t windows, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> sums{0.0};
+  for (;;) {
+    sums.push_back(sums.back() + normal(random));
+    for (std::size_t w = 1; w <= std::min(windows, sums.size() - 1); ++w)
+      if (std::abs(sums.back() - sums[sums.size() - 1 - w]) > threshold * std::sqrt(static_cast<double>(w)))
+        return static_cast<double>(sums.size() - 1);
+  }
+}
+
+TEST(SequentialTests, TheWindowsThresholdIsThatOfSiegmundAndVenkatraman) {
+  // Mean times are exponential: 400 of them are known to 5 %, and the formula is for long ones.
+  for (const double blocks : {300.0, 1000.0, 3000.0}) {
+    const double threshold = window_threshold(blocks, StepTest::kWindows);
+    EXPECT_NEAR(window_blocks(threshold, StepTest::kWindows), blocks, 1e-3 * blocks);
+    const double found = mean_time_to_alarm(400, [&](unsigned seed) {
+      return first_crossing(threshold, StepTest::kWindows, seed + 1000U * static_cast<unsigned>(blocks));
+    });
+    EXPECT_NEAR(found / blocks, 1.0, 0.25) << blocks;
+  }
+}
+
+TEST(SequentialTests, TheStepTestAlarmsNoMoreOften) {
+  constexpr double kBlocks = 1000.0;
+  const double threshold = window_threshold(kBlocks, StepTest::kWindows);
+  for (const double gain : {0.0, 0.01, 0.1, 0.5}) {
+    const double found = mean_time_to_alarm(400, [&](unsigned seed) {
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> normal;
+      StepTest test(threshold);
+      double n = 1.0;
+      while (!test.take(normal(random), gain, 1.0)) n += 1.0;
+      return n;
+    });
+    EXPECT_GT(found, 0.9 * kBlocks) << gain;
+  }
+}
+
+TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
+  const double threshold = std::log(1000.0);
+  const double follows = mean_time_to_alarm(200, [&](unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    ColourCusum test(threshold);
+    double n = 0.0;
+    while (!test.alarmed()) test.take(normal(random)), n += 1.0;
+    return n;
+  });
+  EXPECT_GT(follows, 1000.0);
+  const double usual = mean_time_to_alarm(200, [&](unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::bernoulli_distribution odd(0.01);
+    UsualCusum test(threshold);
+    double n = 0.0;
+    while (!test.alarmed()) test.take(odd(random)), n += 1.0;
+    return n;
+  });
+  EXPECT_GT(usual, 1000.0);
+}
+
+TEST(LevelNoise, ItsInnovationsAreOfVarianceOneAndItsWalkTheOnePutIn) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  LevelNoise noise;
+  double level = 4.0, squares = 0.0, gain = 0.0, n = 0.0;
+  for (int i = 0; i < 40000; ++i) {
+    level += 0.1 * normal(random);  // ratio 0.01
+    const LevelNoise::Innovation now = noise.take(level + normal(random), 1.0);
+    if (!now.known || i < 1000) continue;
+    squares += now.value * now.value;
+    n += 1.0;
+    gain = now.gain;
+  }
+  EXPECT_NEAR(squares / n, 1.0, 0.04);
+  // Of a ratio q: P = (q + sqrt(q^2 + 4 q)) / 2 before the update, gain P / (P + 1).
+  EXPECT_NEAR(gain, 0.0951, 0.002);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,231 @@
+// The state folder: proposals, the history of what was adopted, and the mark of a running daemon.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "daemon/config/config.h"
+#include "daemon/state/running_mark.h"
+#include "daemon/state/state_folder.h"
+#include "tools/ifog/field/bookmark.h"
+#include "tools/ifog/field/field.h"
+#include "tools/ifog/field/history.h"
+
+namespace ifog::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StateFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("state-folder-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::string state() const { return folder_.string(); }
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    std::ifstream in(path(name));
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  [[nodiscard]] std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+  template <typename Call>
+  static std::string complaint(Call&& call) {
+    try {
+      call();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_;
+};
+
+Model model_with(double coefficient) {
+  Model out;
+  out.sensor = "nose";
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "temperature_degC";
+  effect.reference = 25.0;
+  effect.parameters = {{"coefficient", coefficient, 1e-9, "rad/s/degC"}};
+  out.effects = {effect};
+  return out;
+}
+
+Proposal proposal_of(const Model& model, const ModelName& against) {
+  Proposal out;
+  out.sensor = "nose";
+  out.made = "2026-01-31T02:30:00Z";
+  out.why = "linear in temperature_degC";
+  out.against = against;
+  out.model = name_of(model);
+  out.model_file = "nose.proposal-" + out.model.identity + ".toml";
+  out.report_file = "nose.proposal-" + out.model.identity + ".html";
+  AxisGain gain;
+  gain.kept.seconds = 3600.0;
+  gain.kept.share = 0.98;
+  gain.kept.share_error = 0.02;
+  gain.kept.errors = {{10.0, 360, 4e-8, 1e-8}};
+  out.gain = {gain};
+  return out;
+}
+
+TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
+  const Model model = model_with(4e-8);
+  write_proposal(state(), proposal_of(model, {"abc", "abcdef"}), model, "<html>");
+  const std::optional<Proposal> back = read_proposal(state(), "nose");
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->against, (ModelName{"abc", "abcdef"}));
+  EXPECT_EQ(back->model, name_of(model));
+  EXPECT_EQ(back->why, "linear in temperature_degC");
+  ASSERT_EQ(back->gain.size(), 1U);
+  EXPECT_EQ(back->gain[0].kept.share, 0.98);
+  EXPECT_EQ(back->gain[0].kept.errors[0].after_radps, 1e-8);
+  EXPECT_EQ(name_of(proposed_model(state(), *back)), name_of(model));
+  EXPECT_EQ(text(back->report_file), "<html>");
+  EXPECT_EQ(sensors_with_proposal(state()), std::vector<std::string>{"nose"});
+  EXPECT_FALSE(read_proposal(state(), "tail"));
+}
+
+TEST_F(StateFolder, ANewProposalTakesTheOldOnesPlaceAndRemovalLeavesNothing) {
+  const Model first = model_with(4e-8), second = model_with(5e-8);
+  write_proposal(state(), proposal_of(first, {}), first, "1");
+  write_proposal(state(), proposal_of(second, {}), second, "2");
+  EXPECT_EQ(files(), 3U);
+  EXPECT_EQ(read_proposal(state(), "nose")->model, name_of(second));
+  remove_proposal(state(), "nose");
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(StateFolder, ADamagedProposalIsOneLine) {
+  const Model model = model_with(4e-8);
+  write_proposal(state(), proposal_of(model, {}), model, "");
+  const std::string whole = text("nose.proposal.json");
+  for (const std::size_t length : {std::size_t{0}, whole.size() / 2, whole.size() - 3}) {
+    write("nose.proposal.json", whole.substr(0, length));
+    EXPECT_EQ(complaint([&] { (void)read_proposal(state(), "nose"); }),
+              path("nose.proposal.json") + ": is no JSON object, expected schema ifog.proposal/1");
+  }
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = whole;
+    changed.replace(changed.find(from), from.size(), to);
+    write("nose.proposal.json", changed);
+    const std::string said = complaint([&] { (void)read_proposal(state(), "nose"); });
+    EXPECT_EQ(said.find('\n'), std::string::npos);
+    return said;
+  };
+  EXPECT_NE(with("ifog.proposal/1", "ifog.proposal/2").find("expected ifog.proposal/1"), std::string::npos);
+  EXPECT_NE(with("\"why\"", "\"who\"").find("damaged"), std::string::npos);
+  EXPECT_NE(with("\"nose\"", "\"tail\"").find("another sensor"), std::string::npos);
+  // What the index names is removed and read: nothing but what lies beside it.
+  EXPECT_NE(with("nose.proposal-", "../../proposal-").find("does not lie beside it"), std::string::npos);
+}
+
+TEST_F(StateFolder, AProposalWhoseModelWasChangedIsRefused) {
+  const Model model = model_with(4e-8);
+  const Proposal proposal = proposal_of(model, {});
+  write_proposal(state(), proposal, model, "");
+  write(proposal.model_file, model_text(model_with(9e-8)));
+  EXPECT_NE(complaint([&] { (void)proposed_model(state(), proposal); }).find("is another model"),
+            std::string::npos);
+}
+
+TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
+  const Model a = model_with(1e-8), b = model_with(2e-8);
+  const auto change = [](const char* what, const ModelName& model, const ModelName& replaced) {
+    return ModelChange{what, "2026-01-31T08:00:00Z", model, replaced, "why", {}, ""};
+  };
+  {
+    History history(state(), "nose");
+    EXPECT_EQ(history.in_force(), nullptr);
+    history.add(change("adopt", name_of(a), {}), std::nullopt);
+    history.add(change("adopt", name_of(b), name_of(a)), a);
+    history.set_outcome("the promise came true");
+  }
+  History history(state(), "nose");
+  ASSERT_EQ(history.changes().size(), 2U);
+  EXPECT_EQ(history.changes().back().outcome, "the promise came true");
+  ASSERT_NE(history.in_force(), nullptr);
+  EXPECT_EQ(history.in_force()->model, name_of(b));
+  EXPECT_EQ(name_of(*history.kept(name_of(a))), name_of(a));
+  EXPECT_FALSE(history.kept({}));
+  history.add(change("revert", name_of(a), name_of(b)), b);
+  ASSERT_NE(history.in_force(), nullptr);
+  EXPECT_EQ(history.in_force()->model, name_of(a));
+  history.add(change("revert", {}, name_of(a)), a);
+  EXPECT_EQ(history.in_force(), nullptr);
+  history.take_back();
+  EXPECT_EQ(history.in_force()->model, name_of(a));
+  EXPECT_EQ(History(state(), "nose").changes().size(), 3U);
+}
+
+TEST_F(StateFolder, BookmarksComeBack) {
+  EXPECT_FALSE(read_bookmark(state(), "nose"));
+  write_bookmark(state(), "nose", {17, "2026-01-31T02:30:00Z", "nothing found"});
+  EXPECT_EQ(read_bookmark(state(), "nose")->until, 17U);
+  EXPECT_EQ(read_bookmark(state(), "nose")->said, "nothing found");
+}
+
+TEST_F(StateFolder, OneCommandAtATime) {
+  const StateInHand mine(state());
+  EXPECT_NE(complaint([&] { const StateInHand other(state()); }).find("another command works in it"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint([&] { const StateInHand other(path("none")); }).find("expected the daemon's state folder"),
+      std::string::npos);
+}
+
+TEST_F(StateFolder, TheMarkIsThereAsLongAsItsProcess) {
+  EXPECT_FALSE(running_daemon(state()));
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    static RunningMark mark;
+    (void)!::write(ready[1], mark.set(state()).empty() ? "y" : "n", 1);
+    pause();
+    _exit(0);
+  }
+  char said = 0;
+  ASSERT_EQ(::read(ready[0], &said, 1), 1);
+  EXPECT_EQ(said, 'y');
+  EXPECT_EQ(running_daemon(state()), child);
+  RunningMark second;
+  EXPECT_NE(second.set(state()).find("process " + std::to_string(child)), std::string::npos);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_FALSE(running_daemon(state()));
+  close(ready[0]);
+  close(ready[1]);
+}
+
+TEST_F(StateFolder, ASensorWithoutAModelHasTheAdoptedOne) {
+  const std::string sensors =
+      "[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = \"file\"\npath = \"a\"\n"
+      "[[sensor]]\nname = \"tail\"\nmodel = \"own.toml\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = "
+      "\"file\"\npath = \"a\"\n";
+  write("ifogd.toml", "[daemon]\nstate_folder = \"" + state() + "\"\n" + sensors);
+  EXPECT_EQ(read_config(path("ifogd.toml")).sensors[0].model, "");
+  write("nose.model.toml", model_text(model_with(4e-8)));
+  write("tail.model.toml", model_text(model_with(4e-8)));
+  const Config config = read_config(path("ifogd.toml"));
+  EXPECT_EQ(config.sensors[0].model, path("nose.model.toml"));
+  EXPECT_EQ(config.sensors[1].model, path("own.toml"));
+  // As a flight recording has it.
+  const Config alone = parse_config(config.sensors[0].text, path("ifogd.toml"));
+  EXPECT_EQ(alone.sensors[0].model, path("nose.model.toml"));
+}
+
+}  // namespace
+}  // namespace ifog::tools

@@ -1,0 +1,118 @@
+// Oracles: ordinary least squares in closed form where the noise is white, and how often the intervals hold
+// the truth that was put in.
+#include "filters/promise/promise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+constexpr double kPeriod_s = 0.1;
+
+struct Made {
+  std::vector<double> time_s, before, after;
+  std::vector<Stretch> at_rest;
+  [[nodiscard]] CorrectionTrial trial() const { return {time_s, before, after, at_rest}; }
+};
+
+// before = bias + share * d + noise, d a slow swing of `swing`.
+Made made(std::size_t n, double share, double swing, double walk, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Made out;
+  double level = 7.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) * kPeriod_s;
+    const double d = swing * std::sin(2.0 * std::numbers::pi * t / 400.0);
+    level += walk * normal(random);
+    const double e = level + share * d + normal(random);
+    out.time_s.push_back(t);
+    out.before.push_back(e);
+    out.after.push_back(e - d);
+  }
+  out.at_rest = {{0, n}};
+  return out;
+}
+
+TEST(Promise, InWhiteNoiseItIsLeastSquares) {
+  const Made data = made(20000, 0.9, 0.3, 0.0, 1);
+  double d_mean = 0.0, e_mean = 0.0, dd = 0.0, de = 0.0;
+  const auto n = static_cast<double>(data.before.size());
+  for (std::size_t i = 0; i < data.before.size(); ++i) {
+    d_mean += (data.before[i] - data.after[i]) / n;
+    e_mean += data.before[i] / n;
+  }
+  for (std::size_t i = 0; i < data.before.size(); ++i) {
+    const double d = data.before[i] - data.after[i] - d_mean;
+    dd += d * d;
+    de += d * (data.before[i] - e_mean);
+  }
+  const PromiseKept kept = weigh_promise(data.trial());
+  EXPECT_EQ(kept.walk_ratio, 0.0);
+  EXPECT_NEAR(kept.share, de / dd, 1e-9);
+  EXPECT_NEAR(kept.share_error, 1.0 / std::sqrt(dd), 0.35 / std::sqrt(dd));
+  EXPECT_DOUBLE_EQ(kept.seconds, 2000.0);
+}
+
+TEST(Promise, ItsIntervalsHoldTheTruthInSlowNoise) {
+  int held = 0;
+  double squares = 0.0;
+  constexpr int kTrials = 300;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const PromiseKept kept =
+        weigh_promise(made(6000, 1.0, 0.5, 0.01, 100 + static_cast<unsigned>(trial)).trial());
+    const double off = (kept.share - 1.0) / kept.share_error;
+    squares += off * off / kTrials;
+    if (std::abs(off) < 1.96) ++held;
+  }
+  // 95 % of 300 is 285 +- 4; an error of the share that is a little large is no fault.
+  EXPECT_GE(held, 273);
+  EXPECT_GT(squares, 0.5);
+  EXPECT_LT(squares, 1.3);
+}
+
+TEST(Promise, VerdictsAreThoseOfWhatWasPutIn) {
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 1.0, 0.5, 0.001, 2).trial())), Verdict::kept);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 0.75, 0.5, 0.001, 3).trial())), Verdict::in_part);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 0.0, 0.5, 0.001, 4).trial())), Verdict::broken);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 1.0, 0.002, 0.001, 5).trial())), Verdict::open);
+}
+
+TEST(Promise, ACorrectionThatDoesNotMoveIsLeftOpen) {
+  Made data = made(1000, 1.0, 0.5, 0.0, 6);
+  for (std::size_t i = 0; i < data.after.size(); ++i) data.after[i] = data.before[i] - 0.25;
+  const PromiseKept kept = weigh_promise(data.trial());
+  EXPECT_TRUE(std::isinf(kept.share_error));
+  EXPECT_EQ(verdict(kept), Verdict::open);
+}
+
+TEST(Promise, WhatMovesAndWhatIsMissingDoesNotCount) {
+  Made data = made(20000, 1.0, 0.5, 0.001, 7);
+  for (std::size_t i = 5000; i < 9000; ++i) data.before[i] = data.after[i] = 1e3;  // turned
+  for (std::size_t i = 12000; i < 12100; ++i) data.before[i] = data.after[i] = std::nan("");
+  data.at_rest = {{0, 5000}, {9000, 20000}};
+  const PromiseKept kept = weigh_promise(data.trial());
+  EXPECT_NEAR(kept.seconds, 1590.0, 1e-6);
+  EXPECT_EQ(verdict(kept), Verdict::kept);
+  ASSERT_EQ(kept.errors.size(), 3U);
+  // A sine of 0.5 has a root mean square of 0.354; white noise of 1 leaves 0.1 of ten-second means.
+  EXPECT_NEAR(kept.errors[1].before_radps, std::sqrt(0.125 + 0.01), 0.03);
+  EXPECT_LT(kept.errors[1].after_radps, 0.2);
+}
+
+TEST(Promise, TooLittleIsRefused) {
+  EXPECT_THROW(weigh_promise(made(99, 1.0, 0.5, 0.0, 8).trial()), std::invalid_argument);
+  Made moving = made(1000, 1.0, 0.5, 0.0, 9);
+  moving.at_rest = {{0, 50}};
+  EXPECT_THROW(weigh_promise(moving.trial()), std::invalid_argument);
+  moving.after.pop_back();
+  EXPECT_THROW(weigh_promise(moving.trial()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,185 @@
+#include "tools/ifog/diagnose/sensor_diagnosis.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/utc_now.h"
+#include "filters/effects/compensate_series.h"
+#include "filters/model_file/sha256.h"
+#include "filters/units/field_units.h"
+#include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/progress.h"
+#include "tools/report/diagnosis_page.h"
+
+namespace ifog::tools {
+namespace {
+
+Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
+  Record record;
+  record.name = name;
+  record.time_s = capture.time_s;
+  record.rate_radps = capture.rate_radps[axis];
+  if (!capture.reference_rate_radps[axis].empty())
+    record.reference_radps = capture.reference_rate_radps[axis];
+  record.reference_name =
+      capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
+  for (const CaptureColumn& column : capture.channels)
+    record.channels.push_back({column.name, column.values});
+  for (std::size_t other = 0; other < capture.axes.size(); ++other)
+    if (other != axis) record.other_axes.emplace_back(capture.rate_radps[other]);
+  return record;
+}
+
+// What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
+// the Earth's rate, whatever the mounting. Empty unless there are three gyros and three accelerometers.
+std::string vertical_rate(const Capture& capture) {
+  if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
+  std::array<double, 3> rate{};
+  std::array<double, 3> force{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto mean = [](const std::vector<double>& values) {
+      double sum = 0.0;
+      double n = 0.0;
+      for (const double v : values) {
+        if (!std::isfinite(v)) continue;
+        sum += v;
+        n += 1.0;
+      }
+      return n > 0.0 ? sum / n : 0.0;
+    };
+    rate[a] = mean(capture.rate_radps[a]);
+    const CaptureColumn* accel = nullptr;
+    for (const CaptureColumn& column : capture.channels) {
+      if (column.name == "accel_" + capture.axes[a] + "_mps2") accel = &column;
+    }
+    if (!accel) return "";
+    force[a] = mean(accel->values);
+  }
+  const double g = std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  if (g < 9.0 || g > 10.5) return "";
+  constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
+  const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
+  if (std::abs(up) > kEarth) return "";
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(),
+                "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
+                "Earth's rate "
+                "at latitude %.2f°",
+                up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
+  return text.data();
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model) {
+  Compensator compensator(model, capture.axes);
+  SeriesToCompensate series{capture.time_s, {capture.rate_radps.begin(), capture.rate_radps.end()}, {}};
+  for (const std::string& name : compensator.channels()) {
+    const CaptureColumn* found = nullptr;
+    for (const CaptureColumn& column : capture.channels) {
+      if (column.name == name) found = &column;
+    }
+    if (!found)
+      throw std::runtime_error("the model wants channel " + in_quotes(name) +
+                               ", which the capture does not have");
+    series.channels.emplace_back(found->values);
+  }
+  std::vector<std::vector<double>> out(capture.axes.size(), std::vector<double>(capture.size()));
+  compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& step) {
+    for (std::size_t a = 0; a < out.size(); ++a) out[a][i] = step.compensated_radps[a];
+  });
+  return out;
+}
+
+void compensate(Capture& capture, const Model& model) {
+  capture.rate_radps = compensated_rates(capture, model);
+}
+
+std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
+                                         const std::vector<std::string>& names,
+                                         const AxesToDiagnose& wanted) {
+  std::vector<AxisDiagnosis> found;
+  const std::vector<std::string>& axes = captures.front().axes;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!wanted.axes.empty() &&
+        std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) == wanted.axes.end()) {
+      continue;
+    }
+    std::vector<Record> records;
+    for (std::size_t c = 0; c < captures.size(); ++c) {
+      if (captures[c].axes != axes) {
+        throw std::runtime_error(names[c] + ": has other axes than " + names[0]);
+      }
+      records.push_back(record_of(captures[c], names[c], axis));
+    }
+    DiagnoseOptions options;
+    options.significance = wanted.significance;
+    options.axis = axes[axis];
+    options.fit_from = wanted.fit_from;
+    options.fit_to = wanted.fit_to;
+    auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
+                                               options.most_effects + 1);
+    options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
+    Diagnosis diagnosis;
+    try {
+      diagnosis = diagnose(records, options);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(names.front() + ": " + error.what());
+    }
+    progress.reset();
+    found.push_back({axes[axis], std::move(diagnosis)});
+  }
+  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
+  if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
+  if (found.empty()) throw std::runtime_error("no such axis in " + names[0]);
+  return found;
+}
+
+Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
+                 const std::vector<std::string>& hashes) {
+  for (const AxisDiagnosis& each : found) {
+    add_to_model(each.diagnosis, each.axis, model);
+    const std::string prefix = each.axis.empty() ? "" : each.axis + ".";
+    for (const auto& [name, value] : each.diagnosis.before) model.source.before[prefix + name] = value;
+    for (const auto& [name, value] : each.diagnosis.after) model.source.after[prefix + name] = value;
+  }
+  model.source.capture.clear();
+  for (const std::string& path : names)
+    model.source.capture += (model.source.capture.empty() ? "" : ", ") + printable(path, kLongestMessage);
+  std::string all;
+  for (const std::string& hash : hashes) all += hash;
+  model.source.sha256 = hashes.size() == 1 ? all : sha256_hex(all);
+  model.source.date = utc_now();
+  return model;
+}
+
+std::string diagnosis_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
+                             const std::vector<std::string>& names, const std::vector<std::string>& hashes,
+                             const std::string& model_path) {
+  report::Page page;
+  page.captures = names;
+  page.sensor = std::filesystem::path(names.front()).filename().string();
+  page.model_path = model_path;
+  page.made = utc_now() + " by ifog " IFOG_VERSION;
+  page.command = typed_command();
+  for (std::size_t c = 0; c < captures.size(); ++c)
+    page.inputs.push_back({names[c], hashes[c], captures[c].comments});
+  const std::vector<std::string>& axes = captures.front().axes;
+  for (const AxisDiagnosis& each : found) {
+    report::PageAxis axis{each.axis, &each.diagnosis, {}};
+    const auto index =
+        static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
+    for (std::size_t c = 0; c < captures.size(); ++c)
+      axis.records.push_back(record_of(captures[c], names[c], index));
+    page.axes.push_back(std::move(axis));
+  }
+  return report::diagnosis_page(page);
+}
+
+}  // namespace ifog::tools

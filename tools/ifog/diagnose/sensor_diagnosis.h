@@ -1,0 +1,41 @@
+// From the captures of one sensor to what is wrong with it and the model that corrects it: what `ifog
+// diagnose` does between reading and writing, for whoever reads and writes otherwise.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/capture/capture.h"
+#include "filters/diagnosis/diagnose.h"
+#include "filters/model_file/model.h"
+#include "tools/ifog/diagnose/diagnosis_json.h"
+
+namespace ifog::tools {
+
+struct AxesToDiagnose {
+  std::vector<std::string> axes;  // empty: all
+  double significance = 0.01;
+  double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions
+};
+
+// The rates less the model's effects, by axis, by the code that subtracts them online. Throws
+// std::runtime_error with one line: a channel that the capture does not have.
+[[nodiscard]] std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model);
+// In place.
+void compensate(Capture& capture, const Model& model);
+
+// names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with
+// different axes, too short, none of the axes wanted.
+std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
+                                         const std::vector<std::string>& names, const AxesToDiagnose& wanted);
+
+// `model` with what was found beside its own. hashes: SHA-256 of the captures.
+Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
+                 const std::vector<std::string>& hashes);
+
+// The HTML page. hashes: as above. model_path: where the model is, "" for nowhere.
+std::string diagnosis_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
+                             const std::vector<std::string>& names, const std::vector<std::string>& hashes,
+                             const std::string& model_path);
+
+}  // namespace ifog::tools

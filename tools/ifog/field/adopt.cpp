@@ -1,0 +1,199 @@
+// ifog adopt and ifog revert: a proposed model into use, watched, and the one before back.
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <stdexcept>
+
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/utc_now.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/field/exchange.h"
+#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/watch.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Arguments {
+  FieldOptions field;
+  std::string sensor, json;
+  double watch_s = 600.0;
+};
+
+const char* or_none(const std::string& identity) { return identity.empty() ? "none" : identity.c_str(); }
+
+Proposal waiting(const std::string& state, const std::string& sensor, const ModelName& in_use) {
+  std::optional<Proposal> found = read_proposal(state, sensor);
+  if (!found) throw std::runtime_error("no proposal waits for sensor " + in_quotes(sensor) + " in " + state);
+  if (found->against != in_use)
+    throw std::runtime_error("the proposal of " + printable(found->made) + " for sensor " +
+                             in_quotes(sensor) + " was made against model " +
+                             or_none(found->against.identity) + ", in use is " + or_none(in_use.identity) +
+                             ": expected a new one, which the next night brings");
+  return std::move(*found);
+}
+
+// Of the watch, into the history: who looks later finds what came of it.
+void keep_outcome(const Field& field, const std::string& sensor, const ModelName& model,
+                  const std::string& text) {
+  const StateInHand hand(field.state());
+  History history(field.state(), sensor);
+  if (!history.changes().empty() && history.changes().back().model == model) history.set_outcome(text);
+}
+
+// The last recording that there is; 0: none, or they cannot be seen, which the watch will say.
+std::uint64_t last_recording(const SensorConfig& sensor) {
+  try {
+    const std::vector<RecordedFile> files = recorded_files(sensor);
+    return files.empty() ? 0 : files.back().number;
+  } catch (const std::exception&) {
+    return 0;
+  }
+}
+
+nlohmann::ordered_json as_json(const Proposal& proposal, const Watched& watched, const std::string& text) {
+  constexpr std::array kNames{"kept", "in_part", "broken", "open"};
+  return {{"schema", "ifog.adoption/1"},
+          {"sensor", proposal.sensor},
+          {"model", proposal.model.identity},
+          {"replaced", proposal.against.identity},
+          {"promised", gain_json(proposal.gain)},
+          {"watched_s", watched.seconds},
+          {"found", gain_json(watched.gain)},
+          {"verdict", kNames[static_cast<std::size_t>(verdict_of(watched.gain))]},
+          {"nis_mean", watched.nis},
+          {"whiteness", watched.whiteness},
+          {"divergences", watched.divergences},
+          {"noticed", watched.noticed},
+          {"outcome", text}};
+}
+
+void tell_innovations(const Watched& watched) {
+  if (watched.statuses == 0) {
+    say("  innovations: the daemon said nothing in this time\n");
+    return;
+  }
+  std::string text;
+  for (std::size_t a = 0; a < watched.nis.size(); ++a) {
+    char figures[80];
+    std::snprintf(figures, sizeof figures, "%sNIS %.3f, whiteness %+.3f", a == 0 ? "" : "; ", watched.nis[a],
+                  watched.whiteness[a]);
+    text += figures;
+  }
+  say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds, text.c_str(),
+      static_cast<long long>(watched.gated), static_cast<long long>(watched.divergences));
+  if (!watched.noticed.empty()) say("  noticed: %s\n", printable(watched.noticed, kLongestMessage).c_str());
+}
+
+void adopt(const Arguments& arguments) {
+  will_write("--json", arguments.json);
+  share_with_the_group();
+  catch_interrupts();
+  const Field field(arguments.field);
+  const SensorConfig& sensor = field.sensor(arguments.sensor);
+  std::unique_ptr<ModelExchange> exchange;
+  Proposal proposal;
+  Model model;
+  ModelInUse before;
+  const std::uint64_t recorded_before = last_recording(sensor);
+  {
+    const StateInHand hand(field.state());
+    before = model_at(field.model_path(sensor));
+    proposal = waiting(field.state(), sensor.name, before.name);
+    model = proposed_model(field.state(), proposal);
+    require_that_it_fits(field, sensor, model);
+    exchange = std::make_unique<ModelExchange>(field, sensor, before.name);
+    History history(field.state(), sensor.name);
+    // First what undoes it, then it, and the proposal goes last: wherever this ends, nothing is lost.
+    history.add({"adopt", utc_now(), proposal.model, before.name, proposal.why, proposal.gain, ""},
+                before.model);
+    try {
+      exchange->exchange(model, before.model);
+    } catch (...) {
+      history.take_back();
+      throw;
+    }
+    remove_proposal(field.state(), sensor.name);
+  }
+  say("%s: model %s in place of %s: %s\n", sensor.name.c_str(), proposal.model.identity.c_str(),
+      or_none(before.name.identity), printable(proposal.why, kLongestMessage).c_str());
+  if (!exchange->daemon_runs()) {
+    say("  the daemon does not run: it begins with this model, and nothing was watched\n");
+    return;
+  }
+  say("  the daemon has taken it; promised: %s\n", gain_text(proposal.gain).c_str());
+  if (arguments.watch_s <= 0.0) return;
+  const Watched watched = watch(exchange->live(), field, sensor, before.model.value_or(Model{}), model,
+                                recorded_before, arguments.watch_s);
+  tell_innovations(watched);
+  std::string text = outcome(watched);
+  if (!watched.whole)
+    text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
+  say("  %s\n", text.c_str());
+  keep_outcome(field, sensor.name, proposal.model, text);
+  if (!arguments.json.empty()) write_json(arguments.json, as_json(proposal, watched, text));
+  if (verdict_of(watched.gain) == Verdict::broken) {
+    warn("ifog adopt: back with: ifog revert %s\n", sensor.name.c_str());
+    throw Failed("the promise was broken");
+  }
+}
+
+void revert(const Arguments& arguments) {
+  share_with_the_group();
+  const Field field(arguments.field);
+  const SensorConfig& sensor = field.sensor(arguments.sensor);
+  const StateInHand hand(field.state());
+  History history(field.state(), sensor.name);
+  const ModelChange* const in_force = history.in_force();
+  if (in_force == nullptr)
+    throw std::runtime_error("nothing was adopted for sensor " + in_quotes(sensor.name) +
+                             " that could be taken back");
+  const ModelInUse now = model_at(field.model_path(sensor));
+  if (now.name != in_force->model)
+    throw std::runtime_error("sensor " + in_quotes(sensor.name) + " uses model " +
+                             or_none(now.name.identity) + ", last adopted was " +
+                             printable(in_force->model.identity) +
+                             ": expected that one, it was changed by other means");
+  const std::optional<Model> back = history.kept(in_force->replaced);
+  if (back) require_that_it_fits(field, sensor, *back);
+  ModelExchange exchange(field, sensor, now.name);
+  const ModelName name = in_force->replaced;
+  history.add({"revert", utc_now(), name, now.name, "", {}, ""}, now.model);
+  try {
+    exchange.exchange(back, now.model);
+  } catch (...) {
+    history.take_back();
+    throw;
+  }
+  say("%s: model %s is in place again, %s is kept\n", sensor.name.c_str(), or_none(name.identity),
+      now.name.identity.c_str());
+  if (!exchange.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
+}
+
+}  // namespace
+
+void add_adopt(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("adopt", "Put a proposed model into use, and say whether its promise comes true");
+  command->add_option("sensor", arguments->sensor, "name in the daemon's configuration")->required();
+  arguments->field.add_to(*command, true);
+  command->add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  command->add_option("--json", arguments->json, "write what was promised and found as JSON");
+  command->callback([arguments] { adopt(*arguments); });
+}
+
+void add_revert(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("revert", "Take the last adoption back");
+  command->add_option("sensor", arguments->sensor, "name in the daemon's configuration")->required();
+  arguments->field.add_to(*command, true);
+  command->callback([arguments] { revert(*arguments); });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,42 @@
+// What came in and where it went, as status_t's identities have it, in words.
+#pragma once
+
+#include <ifog/status_t.hpp>
+#include <string>
+#include <vector>
+
+namespace ifog::tools {
+
+// In parts, between which a line may end.
+inline std::vector<std::string> books_parts(const status_t& status) {
+  const auto n = [](std::int64_t count) { return std::to_string(count); };
+  std::vector<std::string> out;
+  if (status.frames_read > 0)
+    out = {"books: " + n(status.frames_read) + " CAN frames = " + n(status.frames_good) + " decoded",
+           "+ " + n(status.frames_format) + " refused", "+ " + n(status.frames_other) + " not the sensor's;"};
+  else
+    out = {"books: " + n(status.bytes_read) + " bytes = " + n(status.bytes_framed) + " in frames",
+           "+ " + n(status.bytes_skipped) + " skipped", "+ " + n(status.bytes_pending) + " pending;"};
+  out.insert(out.end(),
+             {n(status.samples_in) + " samples = " + n(status.samples_published) + " published",
+              "+ " + n(status.samples_merged) + " merged", "+ " + n(status.lcm_failures) + " not sent",
+              "+ " + n(status.samples_waiting) + " waiting,", n(status.samples_repeated) + " came twice"});
+  return out;
+}
+
+inline std::string books_text(const status_t& status) {
+  std::string out;
+  for (const std::string& part : books_parts(status)) out += (out.empty() ? "" : " ") + part;
+  return out;
+}
+
+// Whether they balance in this message.
+inline bool books_balance(const status_t& s) {
+  const bool of_can = s.frames_read > 0 || s.frames_other > 0;
+  return s.bytes_read == s.bytes_framed + s.bytes_skipped + s.bytes_pending &&
+         (!of_can || s.frames_read == s.frames_good + s.frames_format + s.frames_other) &&
+         s.samples_decoded == s.samples_in + s.samples_repeated &&
+         s.samples_in == s.samples_published + s.samples_merged + s.lcm_failures + s.samples_waiting;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,107 @@
+#include "tools/ifog/field/exchange.h"
+
+#include <signal.h>
+
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "daemon/sensor/sensor_parts.h"
+#include "daemon/state/running_mark.h"
+#include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
+#include "msgs/state_name.h"
+
+namespace ifog::tools {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kHeardWithin = 5s;   // a status comes every second
+constexpr auto kTakenWithin = 15s;  // the daemon reloads at most once a second
+
+std::string process(pid_t id) { return "the daemon (process " + std::to_string(id) + ")"; }
+
+std::string in_words(const std::string& identity) { return identity.empty() ? "none" : identity; }
+
+}  // namespace
+
+void require_that_it_fits(const Field& field, const SensorConfig& sensor, const Model& model) {
+  try {
+    const DriverInstance driver = make_sensor_driver(sensor, field.required_config().plugin_folders);
+    const ChainParts parts(
+        sensor_chain_settings(sensor, driver.description(), std::make_shared<const Model>(model)));
+  } catch (const std::exception& error) {
+    throw std::runtime_error("sensor " + in_quotes(sensor.name) + " cannot run with the model " +
+                             model.identity() + ": " + error.what());
+  }
+}
+
+ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use)
+    : field_(field),
+      sensor_(sensor.name),
+      path_(field.model_path(sensor)),
+      daemon_(running_daemon(field.state())) {
+  if (!daemon_) return;
+  if (::kill(*daemon_, 0) != 0)
+    throw std::runtime_error(process(*daemon_) + " cannot be asked to reload: " +
+                             std::generic_category().message(errno) + ", expected its own user or root");
+  live_ = std::make_unique<LiveStatus>(field.lcm_url());
+  if (!live_->listen(kHeardWithin, [&] { return live_->of(sensor_) != nullptr; }))
+    throw std::runtime_error(process(*daemon_) + " says nothing of sensor " + in_quotes(sensor_) + " on " +
+                             field.lcm_url() +
+                             ", expected its status: nobody would see whether it takes a model");
+  const status_t& status = *live_->of(sensor_);
+  if (status.state != status_t::STATE_RUNNING)
+    throw std::runtime_error("sensor " + in_quotes(sensor_) + " is in state \"" + state_name(status.state) +
+                             "\", expected it to run: a model is taken with the next sample");
+  if (status.model != in_use.identity)
+    throw std::runtime_error("sensor " + in_quotes(sensor_) + " runs with model " +
+                             printable(in_words(status.model)) + ", " + path_ + " holds " +
+                             in_words(in_use.identity) + ", expected the same: let the daemon reload first");
+}
+
+void ModelExchange::put(const std::optional<Model>& model) const {
+  if (model) {
+    write_file(path_, model_text(*model));
+    return;
+  }
+  std::error_code error;
+  std::filesystem::remove(path_, error);
+  if (error) throw std::runtime_error(path_ + ": cannot remove: " + error.message());
+}
+
+void ModelExchange::ask_for_reload() const {
+  if (::kill(*daemon_, SIGHUP) != 0)
+    throw std::runtime_error(process(*daemon_) +
+                             " cannot be asked to reload: " + std::generic_category().message(errno));
+}
+
+bool ModelExchange::taken(const std::string& identity) {
+  return live_->listen(kTakenWithin, [&] {
+    const status_t* const status = live_->of(sensor_);
+    return status != nullptr && status->model == identity && status->model_since != 0;
+  });
+}
+
+void ModelExchange::exchange(const std::optional<Model>& model, const std::optional<Model>& before) {
+  put(model);
+  if (!daemon_) return;
+  std::string why;
+  try {
+    ask_for_reload();
+    if (taken(model ? model->identity() : "")) return;
+    why = process(*daemon_) + " did not take model " + in_words(model ? model->identity() : "") + " within " +
+          std::to_string(std::chrono::seconds(kTakenWithin).count()) + " s, its log says why";
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  put(before);
+  // Whatever has become of the first question: with what is in place now it must go on.
+  ::kill(*daemon_, SIGHUP);
+  throw std::runtime_error(why + "; the model before is in place again");
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,88 @@
+#include "tools/ifog/field/field.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "daemon/state/state_folder.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog::tools {
+namespace {
+
+// As the service has them.
+constexpr const char* kConfig = "/etc/ifogd/ifogd.toml";
+constexpr const char* kState = "/var/lib/ifogd";
+
+}  // namespace
+
+void FieldOptions::add_to(CLI::App& command, bool listens) {
+  command.add_option("--config", config, std::string("the daemon's configuration; default: ") + kConfig)
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--state", state,
+          std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
+              kState)
+      ->type_name("FOLDER");
+  if (listens)
+    command.add_option("--lcm-url", lcm_url, "where the daemon publishes; default: as configured")
+        ->type_name("URL");
+}
+
+Field::Field(const FieldOptions& options) {
+  config_path_ = options.config.empty() ? kConfig : options.config;
+  std::error_code none;
+  if (!options.config.empty() || std::filesystem::exists(config_path_, none))
+    config_ = read_config(config_path_);
+  state_ = options.state.empty() ? state_folder(config_ ? config_->state_folder : "") : options.state;
+  if (state_.empty()) state_ = kState;
+  if (config_) use_adopted_models(*config_, state_);
+  lcm_url_ = options.lcm_url;
+  if (lcm_url_.empty()) lcm_url_ = config_ ? config_->lcm_url : Config{}.lcm_url;
+}
+
+const Config& Field::required_config() const {
+  if (!config_)
+    throw std::runtime_error(config_path_ + ": is not there, expected the daemon's configuration (--config)");
+  return *config_;
+}
+
+const SensorConfig& Field::sensor(const std::string& name) const {
+  std::string known;
+  for (const SensorConfig& sensor : required_config().sensors) {
+    if (sensor.name == name) return sensor;
+    known += (known.empty() ? "" : ", ") + sensor.name;
+  }
+  throw std::runtime_error(config_path_ + ": no sensor " + in_quotes(name) + ", expected one of " + known);
+}
+
+std::string Field::model_path(const SensorConfig& sensor) const {
+  return sensor.model.empty() ? adopted_model_path(state_, sensor.name) : sensor.model;
+}
+
+void share_with_the_group() { ::umask(S_IWOTH); }
+
+StateInHand::StateInHand(const std::string& folder)
+    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (fd_ < 0)
+    throw std::runtime_error(folder + ": cannot open: " + std::generic_category().message(errno) +
+                             ", expected the daemon's state folder (--state)");
+  if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  ::close(fd_);
+  throw std::runtime_error(folder + (error == EWOULDBLOCK
+                                         ? ": another command works in it just now, try again when it is done"
+                                         : ": cannot lock: " + std::generic_category().message(error)));
+}
+
+StateInHand::~StateInHand() { ::close(fd_); }
+
+}  // namespace ifog::tools

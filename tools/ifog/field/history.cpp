@@ -1,0 +1,103 @@
+#include "tools/ifog/field/history.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "drivers/capture/output_file.h"
+#include "tools/ifog/field/state_json.h"
+
+namespace ifog::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* kSchema = "ifog.history/1";
+constexpr const char* kAdopt = "adopt";
+
+ordered_json name_json(const ModelName& name) {
+  return {{"identity", name.identity}, {"sha256", name.sha256}};
+}
+
+ModelName name_from(const json& from) {
+  return {from.at("identity").get<std::string>(), from.at("sha256").get<std::string>()};
+}
+
+}  // namespace
+
+History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
+  const std::optional<json> file = read_state_json(path(), kSchema);
+  if (!file) return;
+  with_keys(path(), [&] {
+    for (const json& each : file->at("changes"))
+      changes_.push_back({each.at("what").get<std::string>(), each.at("when").get<std::string>(),
+                          name_from(each.at("model")), name_from(each.at("replaced")),
+                          each.at("why").get<std::string>(), gain_of(each.at("gain")),
+                          each.at("outcome").get<std::string>()});
+  });
+}
+
+// A revert takes back the latest adoption that was not taken back before, as brackets close.
+const ModelChange* History::in_force() const {
+  std::size_t reverts = 0;
+  for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) {
+    if (change->what != kAdopt) {
+      ++reverts;
+    } else if (reverts == 0) {
+      return &*change;
+    } else {
+      --reverts;
+    }
+  }
+  return nullptr;
+}
+
+void History::add(ModelChange change, const std::optional<Model>& replaced) {
+  if (replaced) write_file(kept_path(change.replaced), model_text(*replaced));
+  changes_.push_back(std::move(change));
+  write();
+}
+
+void History::set_outcome(const std::string& outcome) {
+  if (changes_.empty()) return;
+  changes_.back().outcome = outcome;
+  write();
+}
+
+void History::take_back() {
+  if (changes_.empty()) return;
+  changes_.pop_back();
+  write();
+}
+
+std::optional<Model> History::kept(const ModelName& name) const {
+  if (name.sha256.empty()) return std::nullopt;
+  Model model = read_model(kept_path(name));
+  if (name_of(model) != name)
+    throw std::runtime_error(kept_path(name) + ": is another model than " + name.identity);
+  return model;
+}
+
+void History::write() const {
+  ordered_json changes = ordered_json::array();
+  for (const ModelChange& each : changes_)
+    changes.push_back({{"what", each.what},
+                       {"when", each.when},
+                       {"model", name_json(each.model)},
+                       {"replaced", name_json(each.replaced)},
+                       {"why", each.why},
+                       {"gain", gain_json(each.gain)},
+                       {"outcome", each.outcome}});
+  const ordered_json file = {{"schema", kSchema}, {"sensor", sensor_}, {"changes", changes}};
+  write_file(path(), file.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+std::string History::path() const { return (fs::path(state_) / (sensor_ + ".history.json")).string(); }
+
+std::string History::kept_path(const ModelName& name) const {
+  return (fs::path(state_) / (sensor_ + ".kept-" + fs::path(name.identity).filename().string() + ".toml"))
+      .string();
+}
+
+}  // namespace ifog::tools

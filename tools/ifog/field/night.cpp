@@ -1,0 +1,271 @@
+// ifog night: what the flight recorder kept since the last time is diagnosed, and where that would pay, a new
+// model is proposed. Nothing is put into use, no device is touched, and the daemon is not asked for anything.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/utc_now.h"
+#include "filters/model_file/sha256.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/diagnose/sensor_diagnosis.h"
+#include "tools/ifog/field/bookmark.h"
+#include "tools/ifog/field/exchange.h"
+#include "tools/ifog/field/field.h"
+#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/recorded.h"
+#include "tools/ifog/field/watch.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Arguments {
+  FieldOptions field;
+  std::vector<std::string> sensors;
+  double least_rest_s = 1800.0;
+  double most_bytes = 400e6;
+};
+
+// What is found is fitted on the first part of the time and judged on the rest.
+constexpr double kFitTo = 0.7;
+// At some averaging time the error falls by this much at least, and at none does it grow by more than that.
+constexpr double kLeastGain = 0.05;
+constexpr double kMostLoss = 0.02;
+
+// The newest of them that together are no more than so many bytes, or the newest.
+std::vector<RecordedFile> newest(std::vector<RecordedFile> files, double most_bytes) {
+  std::size_t from = files.size() - 1;
+  double bytes = static_cast<double>(files[from].bytes);
+  while (from > 0 && (bytes += static_cast<double>(files[from - 1].bytes)) <= most_bytes) --from;
+  files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(from));
+  return files;
+}
+
+bool pays(const AxisGain& gain) {
+  const Verdict found = verdict(gain.kept);
+  if (found != Verdict::kept && found != Verdict::in_part) return false;
+  bool gains = false;
+  for (const ErrorOfMeans& error : gain.kept.errors) {
+    if (error.after_radps > (1.0 + kMostLoss) * error.before_radps) return false;
+    gains = gains || error.after_radps < (1.0 - kLeastGain) * error.before_radps;
+  }
+  return gains;
+}
+
+std::string in_hours(double seconds) {
+  std::array<char, 40> text{};
+  if (seconds < 7200.0)
+    std::snprintf(text.data(), text.size(), "%.0f min", seconds / 60.0);
+  else
+    std::snprintf(text.data(), text.size(), "%.1f h", seconds / 3600.0);
+  return text.data();
+}
+
+std::string effects_text(const std::vector<AxisDiagnosis>& found) {
+  std::string out;
+  for (const AxisDiagnosis& axis : found)
+    for (const FoundEffect& each : axis.diagnosis.effects) {
+      out += (out.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") + each.effect.form;
+      if (!each.effect.channel.empty()) out += " in " + each.effect.channel;
+      if (!each.effect.with_channel.empty())
+        out += " by " + each.effect.with_form + " in " + each.effect.with_channel;
+      if (!each.effect.meaning.empty()) out += " (" + each.effect.meaning + ")";
+    }
+  return out;
+}
+
+// The night of one sensor. What is said of it is one line.
+class Night {
+ public:
+  Night(const Arguments& arguments, const Field& field, const SensorConfig& sensor)
+      : arguments_(arguments), field_(field), sensor_(sensor) {}
+
+  std::string run();
+
+ private:
+  std::string judge(const std::vector<RecordedFile>& files);
+  std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
+                       const ModelInUse& in_use);
+  void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
+  [[nodiscard]] std::string recordings_name(const std::vector<RecordedFile>& files) const;
+  void propose(Proposal proposal, const Model& model, const Recorded& recorded,
+               const std::vector<AxisDiagnosis>& found, const std::string& name);
+
+  const Arguments& arguments_;
+  const Field& field_;
+  const SensorConfig& sensor_;
+  bool gone_through_ = false;  // not to be looked at again
+};
+
+std::string Night::run() {
+  if (sensor_.record.folder.empty()) return "nothing is recorded ([sensor.record])";
+  std::vector<RecordedFile> files = recorded_files(sensor_);
+  std::erase_if(files, [](const RecordedFile& file) { return file.open; });
+  const std::optional<Bookmark> bookmark = read_bookmark(field_.state(), sensor_.name);
+  // Numbers that begin anew are those of a new folder.
+  const bool same_folder = bookmark && !files.empty() && files.back().number >= bookmark->until;
+  if (same_folder)
+    std::erase_if(files, [&](const RecordedFile& file) { return file.number <= bookmark->until; });
+  if (files.empty()) return "no recording has been closed since last time";
+  const std::uint64_t until = files.back().number;
+  std::string said;
+  try {
+    said = judge(newest(std::move(files), arguments_.most_bytes));
+  } catch (const std::exception& error) {
+    said = error.what();
+  }
+  if (gone_through_) {
+    const StateInHand hand(field_.state());
+    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), said});
+  }
+  return said;
+}
+
+std::string Night::judge(const std::vector<RecordedFile>& files) {
+  const ModelInUse in_use = model_at(field_.model_path(sensor_));
+  // A recording that cannot be used today cannot be tomorrow.
+  gone_through_ = true;
+  const Recorded recorded = read_recorded(sensor_, files, field_.required_config().plugin_folders);
+  const double rest_s = static_cast<double>(recorded.rest.resting()) * recorded.period_s;
+  if (rest_s < arguments_.least_rest_s) {
+    gone_through_ = false;
+    return "at rest for " + in_hours(rest_s) + " of " +
+           in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
+           in_hours(arguments_.least_rest_s) + " at least: waits for more";
+  }
+  judge_last_adoption(files, in_use);
+  return diagnose(recorded, files, in_use);
+}
+
+// What was adopted proves itself on all that was recorded since.
+void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use) {
+  const History history(field_.state(), sensor_.name);
+  if (history.changes().empty() || history.changes().back().what != "adopt") return;
+  const ModelChange last = history.changes().back();
+  if (in_use.name != last.model) return;
+  std::vector<RecordedFile> since = files;
+  std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
+  if (since.empty()) return;
+  try {
+    const Recorded recorded = read_recorded(sensor_, since, field_.required_config().plugin_folders);
+    Watched watched;
+    watched.gain = weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
+    if (watched.gain.empty()) return;
+    const std::string text = "night of " + utc_now() + ": " + outcome(watched);
+    say("%s: %s\n", sensor_.name.c_str(), text.c_str());
+    const StateInHand hand(field_.state());
+    if (History fresh(field_.state(), sensor_.name);
+        !fresh.changes().empty() && fresh.changes().back().when == last.when)
+      fresh.set_outcome(text);
+  } catch (const std::exception& error) {
+    warn("%s: the last adoption cannot be judged: %s\n", sensor_.name.c_str(), error.what());
+  }
+}
+
+std::string Night::recordings_name(const std::vector<RecordedFile>& files) const {
+  const std::string first = std::filesystem::path(files.front().path).filename().string();
+  const std::string last = std::filesystem::path(files.back().path).filename().string();
+  return sensor_.name + " " + first + (files.size() > 1 ? " to " + last : "");
+}
+
+std::string Night::diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
+                            const ModelInUse& in_use) {
+  const Model before = in_use.model.value_or(Model{});
+  Capture corrected = recorded.capture;
+  compensate(corrected, before);
+  AxesToDiagnose wanted;
+  wanted.fit_to = kFitTo;
+  const std::string name = recordings_name(files);
+  std::vector<AxisDiagnosis> found = diagnose_axes({corrected}, {name}, wanted);
+  std::erase_if(found, [](const AxisDiagnosis& axis) { return axis.diagnosis.effects.empty(); });
+  if (found.empty()) return "nothing found that the model in use leaves";
+
+  std::string all;
+  for (const RecordedFile& file : files) all += sha256_hex(read_bytes_file(file.path));
+  const std::vector<std::string> hashes{sha256_hex(all)};
+  const std::vector<double>& time_s = recorded.capture.time_s;
+  const double fitted_to = time_s.front() + kFitTo * (time_s.back() - time_s.front());
+  const auto held_out =
+      static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), fitted_to) - time_s.begin());
+  const std::string traced = effects_text(found);
+  const auto with = [&] { return model_with(before, found, {name}, hashes); };
+  const std::vector<AxisGain> tried = weigh_models(recorded, before, with(), held_out);
+  const auto gains = [&](const AxisDiagnosis& axis) {
+    return std::any_of(tried.begin(), tried.end(),
+                       [&](const AxisGain& gain) { return gain.axis == axis.axis && pays(gain); });
+  };
+  std::erase_if(found, [&](const AxisDiagnosis& axis) { return !gains(axis); });
+  if (found.empty())
+    return "found " + traced + ", without a gain on held-out data" +
+           (tried.empty() ? "" : ": " + gain_text(tried));
+  const Model model = with();
+  require_that_it_fits(field_, sensor_, model);
+  Proposal proposal;
+  proposal.against = in_use.name;
+  proposal.gain = weigh_models(recorded, before, model, held_out);
+  proposal.why = effects_text(found) + ": " + gain_text(proposal.gain) + " on " +
+                 in_hours(proposal.gain.front().kept.seconds) + " held out";
+  const std::string why = proposal.why;
+  propose(std::move(proposal), model, recorded, found, name);
+  return "proposes model " + model.identity() + " against " +
+         (in_use.name.identity.empty() ? "none" : in_use.name.identity) + ": " + why;
+}
+
+void Night::propose(Proposal proposal, const Model& model, const Recorded& recorded,
+                    const std::vector<AxisDiagnosis>& found, const std::string& name) {
+  proposal.sensor = sensor_.name;
+  proposal.made = utc_now();
+  proposal.model = name_of(model);
+  const std::string file = sensor_.name + ".proposal-" + proposal.model.identity;
+  proposal.model_file = file + ".toml";
+  proposal.report_file = file + ".html";
+  const std::string report = diagnosis_report({recorded.capture}, found, {name}, proposal.model_file);
+  const StateInHand hand(field_.state());
+  write_proposal(field_.state(), proposal, model, report);
+}
+
+void run(const Arguments& arguments) {
+  share_with_the_group();
+  const Field field(arguments.field);
+  for (const std::string& name : arguments.sensors) (void)field.sensor(name);
+  for (const SensorConfig& sensor : field.required_config().sensors) {
+    if (!arguments.sensors.empty() &&
+        std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
+      continue;
+    std::string said;
+    try {
+      said = Night(arguments, field, sensor).run();
+    } catch (const std::exception& error) {
+      said = error.what();
+    }
+    say("%s: %s\n", sensor.name.c_str(), printable(said, kLongestMessage).c_str());
+  }
+}
+
+}  // namespace
+
+void add_night(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
+  arguments->field.add_to(*command, false);
+  command->add_option("--sensor", arguments->sensors, "only these sensors")->type_name("NAME");
+  command->add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
+      ->check(CLI::Range(60.0, 1e7))
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  command
+      ->add_option("--most-bytes", arguments->most_bytes,
+                   "of recordings, the newest; a byte takes some four of memory")
+      ->check(CLI::Range(1e5, 1e12))
+      ->capture_default_str();
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,75 @@
+// ifog proposals: what the nights have found and nobody has adopted yet.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "drivers/ifog/quoted.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/field/field.h"
+#include "tools/ifog/field/proposal.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Arguments {
+  FieldOptions field;
+  std::string json;
+};
+
+// Whether adopting it would be refused: the model is no longer the one it was made against.
+bool is_stale(const Field& field, const Proposal& proposal) {
+  if (field.config() == nullptr) return false;
+  for (const SensorConfig& sensor : field.config()->sensors)
+    if (sensor.name == proposal.sensor) return model_at(field.model_path(sensor)).name != proposal.against;
+  return true;
+}
+
+void run(const Arguments& arguments) {
+  will_write("--json", arguments.json);
+  const Field field(arguments.field);
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  bool damaged = false, any = false;
+  for (const std::string& name : sensors_with_proposal(field.state())) {
+    try {
+      const std::optional<Proposal> found = read_proposal(field.state(), name);
+      if (!found) continue;  // adopted meanwhile
+      any = true;
+      const bool stale = is_stale(field, *found);
+      const std::string report = (std::filesystem::path(field.state()) / found->report_file).string();
+      say("%s  of %s against model %s%s\n  %s\n  report %s\n", name.c_str(), printable(found->made).c_str(),
+          found->against.identity.empty() ? "none" : printable(found->against.identity).c_str(),
+          stale ? ", which is no longer in use: not to be adopted" : "",
+          printable(found->why, kLongestMessage).c_str(), report.c_str());
+      if (!stale) say("  adopt with: ifog adopt %s\n", name.c_str());
+      all.push_back({{"sensor", name},
+                     {"made", found->made},
+                     {"why", found->why},
+                     {"against", found->against.identity},
+                     {"model", found->model.identity},
+                     {"stale", stale},
+                     {"report", report},
+                     {"gain", gain_json(found->gain)}});
+    } catch (const std::exception& error) {
+      warn("%s\n", error.what());
+      damaged = true;
+    }
+  }
+  if (!any && !damaged) say("no proposal waits in %s\n", field.state().c_str());
+  if (!arguments.json.empty())
+    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
+  if (damaged) throw Failed("damaged");
+}
+
+}  // namespace
+
+void add_proposals(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("proposals", "List the models that the nights have proposed");
+  arguments->field.add_to(*command, false);
+  command->add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,115 @@
+#include "tools/ifog/field/recorded.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+#include "drivers/capture/input_file.h"
+#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/diagnose/sensor_diagnosis.h"
+
+namespace ifog::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of NUMBER-20260131T130509Z.ifr: 2026-01-31T13:05:09Z; "" of another name.
+std::string opened_at(std::string_view name) {
+  const std::size_t dash = name.find('-');
+  if (dash == std::string_view::npos || name.size() < dash + 17) return "";
+  const std::string date(name.substr(dash + 1, 16));
+  return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 5) + ":" + date.substr(11, 2) +
+         ":" + date.substr(13, 3);
+}
+
+// Rows begin … end − 1 of the stretches.
+std::vector<Stretch> from_row(const std::vector<Stretch>& all, std::size_t begin) {
+  std::vector<Stretch> out;
+  for (const Stretch& each : all)
+    if (each.end > begin) out.push_back({std::max(each.begin, begin), each.end});
+  return out;
+}
+
+}  // namespace
+
+std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
+  std::vector<RecordedFile> out;
+  std::error_code error;
+  const fs::path folder = fs::path(sensor.record.folder) / sensor.name;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    RecordedFile file;
+    file.open = name.ends_with(".ifr.open");
+    if (!file.open && !name.ends_with(".ifr")) continue;
+    const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), file.number);
+    if (wrong != std::errc() || *end != '-') continue;
+    file.opened = opened_at(name);
+    std::error_code gone;  // removed or renamed meanwhile
+    file.bytes = entry.file_size(gone);
+    if (gone) continue;
+    file.path = entry.path().string();
+    out.push_back(std::move(file));
+  }
+  if (error && error != std::errc::no_such_file_or_directory)
+    throw std::runtime_error(folder.string() + ": cannot read: " + error.message());
+  std::sort(out.begin(), out.end(),
+            [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
+  return out;
+}
+
+Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFile>& files,
+                       const std::vector<std::string>& plugin_folders) {
+  const std::string folder = (fs::path(sensor.record.folder) / sensor.name).string();
+  if (files.empty()) throw std::runtime_error(folder + ": no recordings");
+  std::deque<std::string> paths;
+  for (const RecordedFile& file : files) paths.push_back(file.path);
+  InputFile input(folder, std::move(paths));
+  FlightInput flight(input);
+  DriverInstance driver = flight.make_driver("", {}, plugin_folders);
+  Recorded out;
+  out.capture = flight.capture(driver);
+  if (out.capture.size() < 2) throw std::runtime_error(folder + ": fewer than two samples recorded");
+  out.period_s = sample_clock(out.capture.time_s).period_s;
+  const std::vector<std::span<const double>> axes(out.capture.rate_radps.begin(),
+                                                  out.capture.rate_radps.end());
+  out.rest = find_rest(axes, out.period_s);
+  return out;
+}
+
+std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before, const Model& after,
+                                   std::size_t begin) {
+  const Capture& capture = recorded.capture;
+  const std::vector<std::vector<double>> old_rate = compensated_rates(capture, before);
+  const std::vector<std::vector<double>> new_rate = compensated_rates(capture, after);
+  const std::vector<Stretch> at_rest = from_row(recorded.rest.at_rest, begin);
+  std::vector<AxisGain> out;
+  for (std::size_t axis = 0; axis < old_rate.size(); ++axis) {
+    const bool changes = [&] {
+      for (std::size_t i = begin; i < old_rate[axis].size(); ++i)
+        if (old_rate[axis][i] != new_rate[axis][i] && std::isfinite(old_rate[axis][i])) return true;
+      return false;
+    }();
+    if (!changes) continue;
+    out.push_back(
+        {capture.axes[axis], weigh_promise({capture.time_s, old_rate[axis], new_rate[axis], at_rest})});
+  }
+  return out;
+}
+
+Verdict verdict_of(const std::vector<AxisGain>& gain) {
+  constexpr std::array kWorstFirst{Verdict::broken, Verdict::open, Verdict::in_part};
+  for (const Verdict each : kWorstFirst)
+    if (gain.empty() ? each == Verdict::open
+                     : std::any_of(gain.begin(), gain.end(),
+                                   [&](const AxisGain& axis) { return verdict(axis.kept) == each; }))
+      return each;
+  return Verdict::kept;
+}
+
+}  // namespace ifog::tools

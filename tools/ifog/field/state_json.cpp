@@ -1,0 +1,35 @@
+#include "tools/ifog/field/state_json.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog::tools {
+
+std::optional<nlohmann::json> read_state_json(const std::string& path, const std::string& schema) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return std::nullopt;
+  // A FIFO would hold up who reads it.
+  if (!std::filesystem::is_regular_file(path, none))
+    throw std::runtime_error(path + ": is no regular file, expected JSON of schema " + schema);
+  const nlohmann::json json = nlohmann::json::parse(read_text_file(path), nullptr, false);
+  if (json.is_discarded() || !json.is_object())
+    throw std::runtime_error(path + ": is no JSON object, expected schema " + schema);
+  const auto found = json.find("schema");
+  if (found == json.end() || *found != schema)
+    throw std::runtime_error(
+        path + ": schema = " +
+        (found == json.end()
+             ? "(missing)"
+             : printable(found->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))) +
+        ", expected " + schema);
+  return json;
+}
+
+void refuse_keys(const std::string& path, const nlohmann::json::exception& error) {
+  throw std::runtime_error(path + ": damaged: " + printable(error.what()));
+}
+
+}  // namespace ifog::tools

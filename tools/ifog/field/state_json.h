@@ -1,0 +1,26 @@
+// JSON files of the state folder: read strictly, written whole.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace ifog::tools {
+
+// Nothing: no such file. Throws std::runtime_error with one line: unreadable, no JSON, another schema.
+[[nodiscard]] std::optional<nlohmann::json> read_state_json(const std::string& path,
+                                                            const std::string& schema);
+
+[[noreturn]] void refuse_keys(const std::string& path, const nlohmann::json::exception& error);
+
+// `read` of what a file says, a wrong or missing key as one line with the file's name.
+template <typename Read>
+auto with_keys(const std::string& path, Read&& read) {
+  try {
+    return read();
+  } catch (const nlohmann::json::exception& error) {
+    refuse_keys(path, error);
+  }
+}
+
+}  // namespace ifog::tools

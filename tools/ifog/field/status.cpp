@@ -1,0 +1,259 @@
+// ifog status: all sensors of this computer's daemon on one screen.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "daemon/state/running_mark.h"
+#include "drivers/ifog/quoted.h"
+#include "msgs/state_name.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/field/books.h"
+#include "tools/ifog/field/field.h"
+#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/live_status.h"
+
+namespace ifog::tools {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Arguments {
+  FieldOptions field;
+  std::string json;
+  double wait_s = 2.5;  // a status comes every second
+};
+
+struct Loss {
+  const char* name;
+  std::int64_t status_t::*count;
+};
+constexpr std::array kLosses{Loss{"frames_crc", &status_t::frames_crc},
+                             Loss{"frames_format", &status_t::frames_format},
+                             Loss{"log_faults", &status_t::log_faults},
+                             Loss{"bytes_skipped", &status_t::bytes_skipped},
+                             Loss{"samples_incomplete", &status_t::samples_incomplete},
+                             Loss{"sequence_missing", &status_t::sequence_missing},
+                             Loss{"kernel_drops", &status_t::kernel_drops},
+                             Loss{"can_error_frames", &status_t::can_error_frames},
+                             Loss{"lcm_failures", &status_t::lcm_failures},
+                             Loss{"imu_failures", &status_t::imu_failures},
+                             Loss{"invalid_samples", &status_t::invalid_samples},
+                             Loss{"channel_drops", &status_t::channel_drops},
+                             Loss{"channel_implausible", &status_t::channel_implausible},
+                             Loss{"corrections_refused", &status_t::corrections_refused},
+                             Loss{"events_lost", &status_t::events_lost},
+                             Loss{"record_lost", &status_t::record_lost}};
+
+std::string utc(std::int64_t utime) {
+  const std::time_t seconds = utime / 1'000'000;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+// What the state folder knows of a sensor.
+struct Kept {
+  ModelName model;
+  std::optional<Proposal> proposal;
+  std::optional<ModelChange> last;  // of its model
+  std::string damaged;              // "" or one line
+};
+
+Kept kept_of(const Field& field, const std::string& name) {
+  Kept out;
+  const auto look = [&](auto&& what) {
+    try {
+      what();
+    } catch (const std::exception& error) {
+      out.damaged += (out.damaged.empty() ? "" : "; ") + std::string(error.what());
+    }
+  };
+  look([&] {
+    if (field.config() == nullptr) return;
+    for (const SensorConfig& sensor : field.config()->sensors)
+      if (sensor.name == name) out.model = model_at(field.model_path(sensor)).name;
+  });
+  look([&] { out.proposal = read_proposal(field.state(), name); });
+  look([&] {
+    const History history(field.state(), name);
+    if (!history.changes().empty()) out.last = history.changes().back();
+  });
+  return out;
+}
+
+std::string losses_text(const status_t& status) {
+  std::string out;
+  for (const Loss& loss : kLosses)
+    if (const std::int64_t count = status.*loss.count; count != 0)
+      out += (out.empty() ? "" : ", ") + std::string(loss.name) + " " + std::to_string(count);
+  return out.empty() ? "none" : out;
+}
+
+void say_live(const status_t& status) {
+  say("  losses: %s\n  %s%s\n", losses_text(status).c_str(), books_text(status).c_str(),
+      books_balance(status) ? ": balanced" : ": DO NOT BALANCE");
+  std::string health;
+  for (std::size_t a = 0; a < status.nis_mean.size(); ++a) {
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), "%sNIS %.2f, whiteness %+.2f", a == 0 ? "" : "; ",
+                  status.nis_mean[a], status.whiteness[a]);
+    health += text.data();
+  }
+  say("  health: %s; %lld manoeuvres, %lld divergences, %lld samples out of the model's range\n",
+      health.c_str(), static_cast<long long>(status.manoeuvres), static_cast<long long>(status.divergences),
+      static_cast<long long>(status.out_of_range));
+  if (!status.notice.empty()) say("  noticed: %s\n", printable(status.notice, kLongestMessage).c_str());
+}
+
+void say_sensor(const std::string& name, const status_t* live, const Kept& kept) {
+  if (live != nullptr) {
+    say("%s  %s%s%s  %.1f Hz in, %.1f Hz published\n", printable(name).c_str(), state_name(live->state),
+        live->fault.empty() ? "" : ": ", printable(live->fault).c_str(), live->input_rate_hz,
+        live->output_rate_hz);
+    say_live(*live);
+  } else {
+    say("%s  nothing heard\n", printable(name).c_str());
+  }
+  const std::string model = live != nullptr ? live->model : kept.model.identity;
+  say("  model: %s%s%s%s\n", model.empty() ? "none" : printable(model).c_str(),
+      live == nullptr ? " when the daemon starts" : "",
+      live != nullptr && live->model_since != 0 ? " since " : "",
+      live != nullptr && live->model_since != 0 ? utc(live->model_since).c_str() : "");
+  if (live != nullptr && live->model != kept.model.identity)
+    say("  its file holds %s: let the daemon reload\n",
+        kept.model.identity.empty() ? "none" : kept.model.identity.c_str());
+  if (kept.last)
+    say("  %s %s%s%s\n", kept.last->what == "adopt" ? "adopted" : "reverted",
+        printable(kept.last->when).c_str(), kept.last->outcome.empty() ? "" : ": ",
+        printable(kept.last->outcome, kLongestMessage).c_str());
+  if (kept.proposal)
+    say("  proposal of %s: %s\n  %s\n", printable(kept.proposal->made).c_str(),
+        printable(kept.proposal->why, kLongestMessage).c_str(),
+        kept.proposal->against == kept.model ? ("adopt with: ifog adopt " + name).c_str()
+                                             : "it was made against another model: not to be adopted");
+  if (!kept.damaged.empty()) say("  %s\n", kept.damaged.c_str());
+}
+
+ordered_json as_json(const std::string& name, const status_t* live, const Kept& kept) {
+  ordered_json out{{"sensor", name}, {"heard", live != nullptr}};
+  if (live != nullptr) {
+    ordered_json losses;
+    for (const Loss& loss : kLosses) losses[loss.name] = live->*loss.count;
+    out["state"] = state_name(live->state);
+    out["fault"] = live->fault;
+    out["input_rate_hz"] = live->input_rate_hz;
+    out["output_rate_hz"] = live->output_rate_hz;
+    out["losses"] = losses;
+    out["books"] = {{"bytes_read", live->bytes_read},
+                    {"bytes_framed", live->bytes_framed},
+                    {"bytes_skipped", live->bytes_skipped},
+                    {"bytes_pending", live->bytes_pending},
+                    {"frames_read", live->frames_read},
+                    {"samples_decoded", live->samples_decoded},
+                    {"samples_in", live->samples_in},
+                    {"samples_repeated", live->samples_repeated},
+                    {"samples_published", live->samples_published},
+                    {"samples_merged", live->samples_merged},
+                    {"samples_waiting", live->samples_waiting},
+                    {"balanced", books_balance(*live)}};
+    out["model"] = live->model;
+    out["model_since"] =
+        live->model_since != 0 ? ordered_json(utc(live->model_since)) : ordered_json(nullptr);
+    out["health"] = {{"nis_mean", live->nis_mean},         {"whiteness", live->whiteness},
+                     {"manoeuvres", live->manoeuvres},     {"divergences", live->divergences},
+                     {"out_of_range", live->out_of_range}, {"noticed", live->notice}};
+  }
+  out["model_file"] = kept.model.identity;
+  out["proposal"] = nullptr;
+  if (kept.proposal)
+    out["proposal"] = {{"made", kept.proposal->made},
+                       {"why", kept.proposal->why},
+                       {"model", kept.proposal->model.identity},
+                       {"stale", kept.proposal->against != kept.model}};
+  out["last_change"] = nullptr;
+  if (kept.last)
+    out["last_change"] = {
+        {"what", kept.last->what}, {"when", kept.last->when}, {"outcome", kept.last->outcome}};
+  out["damaged"] = kept.damaged;
+  return out;
+}
+
+// Names in the order of the configuration, then those heard besides.
+std::vector<std::string> names_of(const Field& field, const LiveStatus& live) {
+  std::vector<std::string> out;
+  std::set<std::string> known;
+  const auto add = [&](const std::string& name) {
+    if (known.insert(name).second) out.push_back(name);
+  };
+  if (field.config() != nullptr)
+    for (const SensorConfig& sensor : field.config()->sensors) add(sensor.name);
+  for (const auto& [name, status] : live.all()) add(name);
+  for (const std::string& name : sensors_with_proposal(field.state())) add(name);
+  return out;
+}
+
+// The process; 0: none. What cannot be seen is said.
+pid_t daemon_of(const Field& field) {
+  try {
+    return running_daemon(field.state()).value_or(0);
+  } catch (const std::exception& error) {
+    warn("%s\n", error.what());
+    return 0;
+  }
+}
+
+void run(const Arguments& arguments) {
+  will_write("--json", arguments.json);
+  const Field field(arguments.field);
+  const pid_t daemon = daemon_of(field);
+  LiveStatus live(field.lcm_url());
+  const std::size_t expected = field.config() != nullptr ? field.config()->sensors.size() : 0;
+  live.listen(std::chrono::milliseconds(static_cast<std::int64_t>(arguments.wait_s * 1e3)),
+              [&] { return expected != 0 && live.all().size() >= expected; });
+  const std::string where = "state folder " + field.state();
+  if (daemon != 0)
+    say("ifogd runs, process %d, %s\n", static_cast<int>(daemon), where.c_str());
+  else if (!live.all().empty())
+    say("a daemon is heard on %s; none works with %s\n", field.lcm_url().c_str(), where.c_str());
+  else
+    say("ifogd does not run; this is what %s knows\n", where.c_str());
+  ordered_json sensors = ordered_json::array();
+  for (const std::string& name : names_of(field, live)) {
+    const Kept kept = kept_of(field, name);
+    say_sensor(name, live.of(name), kept);
+    sensors.push_back(as_json(name, live.of(name), kept));
+  }
+  if (!arguments.json.empty())
+    write_json(arguments.json,
+               ordered_json{{"schema", "ifog.status/1"},
+                            {"running", daemon != 0},
+                            {"process", daemon != 0 ? ordered_json(daemon) : ordered_json(nullptr)},
+                            {"state_folder", field.state()},
+                            {"sensors", sensors}});
+}
+
+}  // namespace
+
+void add_status(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("status", "All sensors of this computer's daemon: state, losses, model, proposal");
+  arguments->field.add_to(*command, true);
+  command->add_option("--wait", arguments->wait_s, "listen at most so long, s")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  command->add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ifog::tools
