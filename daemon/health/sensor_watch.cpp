@@ -56,11 +56,9 @@ void SensorWatch::renew() {
 }
 
 void SensorWatch::take(const RestSums& sums, std::uint64_t samples, std::uint64_t out_of_range) {
-  if (samples < samples_ + static_cast<std::uint64_t>(kRange_s / period_s_)) {
-    // The ten minutes go on.
-  } else {
-    range_ = static_cast<double>(out_of_range - out_of_range_) >
-             kRangeShare * static_cast<double>(samples - samples_);
+  const auto during = static_cast<double>(samples - samples_);
+  if (during * period_s_ >= kRange_s) {
+    range_ = static_cast<double>(out_of_range - out_of_range_) > kRangeShare * during;
     samples_ = samples;
     out_of_range_ = out_of_range;
   }
@@ -100,16 +98,17 @@ void SensorWatch::take_block(Axis& axis, const RestSums::Axis& sums) {
   axis.skipped += std::max(1.0, std::round((resting + moved) / block_samples_));
   axis.at_block = sums;
   if (resting < kMostlyAtRest * (resting + moved) || !(pairs > 0.0) || !(square > 0.0)) return;
-  test_noise(axis, square, correlation, pairs);
+  // A louder mean goes further by itself, which is no step.
+  if (test_noise(axis, square, correlation, pairs)) return;
   test_level(axis, mean);
   axis.skipped = 0.0;
 }
 
-void SensorWatch::test_noise(Axis& axis, double square, double correlation, double pairs) {
-  bool odd = false;
+bool SensorWatch::test_noise(Axis& axis, double square, double correlation, double pairs) {
+  bool loud = false, odd = false;
   if (axis.blocks >= kLearned) {
     const double louder = square / axis.square;
-    const bool loud = louder > kLoud;
+    loud = louder > kLoud;
     if (loud) axis.louder += (louder - axis.louder) * (axis.louder == 0.0 ? 1.0 : kLatest);
     const bool strange =
         std::abs(correlation - axis.correlation) > std::max(kOddCorrelation, kOddErrors / std::sqrt(pairs));
@@ -118,11 +117,12 @@ void SensorWatch::test_noise(Axis& axis, double square, double correlation, doub
     odd = loud || strange;
   }
   // What is odd teaches nothing of what is usual.
-  if (odd) return;
+  if (odd) return loud;
   if (!axis.loud.alarmed()) axis.louder = 0.0;
   axis.blocks += 1.0;
   axis.square += (square - axis.square) / axis.blocks;
   axis.correlation += (correlation - axis.correlation) / axis.blocks;
+  return false;
 }
 
 void SensorWatch::test_level(Axis& axis, double mean) {

@@ -77,7 +77,8 @@ class SensorWatch {
     double bias_for = 0.0;  // blocks that a step is still told of
   };
   void take_block(Axis& axis, const RestSums::Axis& sums);
-  void test_noise(Axis& axis, double square, double correlation, double pairs);
+  // True: a loud block.
+  bool test_noise(Axis& axis, double square, double correlation, double pairs);
   void test_level(Axis& axis, double mean);
   void follow_motion(Axis& axis, const RestSums::Axis& now, const RestSums::Axis& before) const;
 
