@@ -187,7 +187,7 @@ file_s = 3
         self.await_(lambda: self.published() >= ROWS, "the first day to be published")
         self.await_(lambda: not glob.glob(self.path("record/nose/*.open")), "the recordings to be closed")
         sensor = self.sensor()
-        self.check(sensor["books"]["balanced"] and sensor["state"] == "running" or sensor["state"] == "no data", "status of the first day")
+        self.check(sensor["books"]["balanced"] and sensor["state"] in ("running", "no data"), "status of the first day")
         self.check("waits for more" in self.run("night", "--config", self.config, "--least-rest", "1e6"), "too little rest is one line")
 
     def first_night(self):
