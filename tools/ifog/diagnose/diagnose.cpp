@@ -1,9 +1,11 @@
 // ifog diagnose: what the error is made of, what to correct, and what stays.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
+#include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
@@ -22,6 +24,7 @@ struct Arguments {
   std::vector<std::string> captures;
   std::string model, write_model, json, report;
   AxesToDiagnose wanted;
+  std::optional<double> since_power_up_s, latitude_deg;
   bool quiet = false;
 };
 
@@ -39,10 +42,12 @@ void run(const Arguments& arguments) {
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
-    for (Capture& capture : captures) compensate(capture, model);
+    for (Capture& capture : captures) compensate(capture, model, arguments.since_power_up_s);
   }
   for (std::size_t c = 0; c < captures.size(); ++c) arguments.part.cut(captures[c], arguments.captures[c]);
-  const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, arguments.wanted);
+  AxesToDiagnose wanted = arguments.wanted;
+  if (arguments.latitude_deg) wanted.latitude_rad = *arguments.latitude_deg * kDegree;
+  const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, wanted);
   if (!arguments.quiet) {
     for (const AxisDiagnosis& each : found)
       say("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
@@ -66,6 +71,10 @@ void add_diagnose(CLI::App& app) {
   arguments->part.add_to(*command);
   command->add_option("--axis", arguments->wanted.axes, "only these axes");
   command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
+  command
+      ->add_option("--since-power-up", arguments->since_power_up_s,
+                   "seconds from power-up to the captures' first sample: a warm_up of --model is corrected")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--write-model", arguments->write_model, "write the model with what was found");
   command->add_option("--json", arguments->json, "write the diagnosis as JSON");
   command->add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
@@ -82,6 +91,13 @@ void add_diagnose(CLI::App& app) {
       ->add_option("--fit-to", arguments->wanted.fit_to,
                    "fit up to this share of each capture's time; the rest judges")
       ->check(CLI::Range(0.1, 1.0));
+  command->add_flag(
+      "--earth", arguments->wanted.earth,
+      "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
+  command
+      ->add_option("--latitude", arguments->latitude_deg,
+                   "of the captures, degrees: bounds what can be the Earth's rate")
+      ->check(CLI::Range(-90.0, 90.0));
   command->add_flag("--quiet", arguments->quiet, "no report on the console");
   command->callback([arguments] { run(*arguments); });
 }

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <list>
 #include <memory>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
+#include "filters/diagnosis/record/derived_channels.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
@@ -32,7 +35,8 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
   for (const CaptureColumn& column : capture.channels)
     record.channels.push_back({column.name, column.values});
   for (std::size_t other = 0; other < capture.axes.size(); ++other)
-    if (other != axis) record.other_axes.emplace_back(capture.rate_radps[other]);
+    if (other != axis)
+      record.other_axes.push_back({rate_of_axis(capture.axes[other]), capture.rate_radps[other]});
   return record;
 }
 
@@ -77,8 +81,9 @@ std::string vertical_rate(const Capture& capture) {
 
 }  // namespace
 
-std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model) {
-  Compensator compensator(model, capture.axes);
+std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model,
+                                                   std::optional<double> since_power_up_s) {
+  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(), since_power_up_s);
   SeriesToCompensate series{capture.time_s, {capture.rate_radps.begin(), capture.rate_radps.end()}, {}};
   for (const std::string& name : compensator.channels()) {
     const CaptureColumn* found = nullptr;
@@ -97,8 +102,8 @@ std::vector<std::vector<double>> compensated_rates(const Capture& capture, const
   return out;
 }
 
-void compensate(Capture& capture, const Model& model) {
-  capture.rate_radps = compensated_rates(capture, model);
+void compensate(Capture& capture, const Model& model, std::optional<double> since_power_up_s) {
+  capture.rate_radps = compensated_rates(capture, model, since_power_up_s);
 }
 
 std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
@@ -123,6 +128,8 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
     options.axis = axes[axis];
     options.fit_from = wanted.fit_from;
     options.fit_to = wanted.fit_to;
+    options.subtract_earth_rate = wanted.earth;
+    options.latitude_rad = wanted.latitude_rad;
     auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
                                                options.most_effects + 1);
     options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
@@ -135,6 +142,11 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
     progress.reset();
     found.push_back({axes[axis], std::move(diagnosis)});
   }
+  if (!found.empty())
+    for (const Capture& capture : captures) {
+      auto& remarks = found.front().diagnosis.remarks;
+      remarks.insert(remarks.begin(), capture.faults.begin(), capture.faults.end());
+    }
   const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
   if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   if (found.empty()) throw std::runtime_error("no such axis in " + names[0]);
@@ -171,12 +183,16 @@ std::string diagnosis_report(const std::vector<Capture>& captures, const std::ve
   for (std::size_t c = 0; c < captures.size(); ++c)
     page.inputs.push_back({names[c], hashes[c], captures[c].comments});
   const std::vector<std::string>& axes = captures.front().axes;
+  std::list<DerivedRecords> derived;  // whose columns the page draws
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
     const auto index =
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
+    std::vector<Record> records;
     for (std::size_t c = 0; c < captures.size(); ++c)
-      axis.records.push_back(record_of(captures[c], names[c], index));
+      records.push_back(record_of(captures[c], names[c], index));
+    derived.push_back(with_derived_channels(records));
+    axis.records = derived.back().records;
     page.axes.push_back(std::move(axis));
   }
   return report::diagnosis_page(page);

@@ -2,6 +2,7 @@
 // diagnose` does between reading and writing, for whoever reads and writes otherwise.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,18 @@ namespace ifog::tools {
 struct AxesToDiagnose {
   std::vector<std::string> axes;  // empty: all
   double significance = 0.01;
-  double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions
+  double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions, as the rest
+  bool earth = false;
+  std::optional<double> latitude_rad;
 };
 
 // The rates less the model's effects, by axis, by the code that subtracts them online. Throws
-// std::runtime_error with one line: a channel that the capture does not have.
-[[nodiscard]] std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model);
+// std::runtime_error with one line: a channel that the capture does not have. since_power_up_s: of the first
+// sample, without it a warm-up stays.
+[[nodiscard]] std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model,
+                                                                 std::optional<double> since_power_up_s = {});
 // In place.
-void compensate(Capture& capture, const Model& model);
+void compensate(Capture& capture, const Model& model, std::optional<double> since_power_up_s = {});
 
 // names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with
 // different axes, too short, none of the axes wanted.

@@ -95,7 +95,8 @@ class Night {
   void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
   [[nodiscard]] std::string recordings_name(const std::vector<RecordedFile>& files) const;
   void propose(Proposal proposal, const Model& model, const Recorded& recorded,
-               const std::vector<AxisDiagnosis>& found, const std::string& name);
+               const std::vector<AxisDiagnosis>& found, const std::string& name,
+               const std::vector<std::string>& hashes);
 
   const Arguments& arguments_;
   const Field& field_;
@@ -212,20 +213,21 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   proposal.why = effects_text(found) + ": " + gain_text(proposal.gain) + " on " +
                  in_hours(proposal.gain.front().kept.seconds) + " held out";
   const std::string why = proposal.why;
-  propose(std::move(proposal), model, recorded, found, name);
+  propose(std::move(proposal), model, recorded, found, name, hashes);
   return "proposes model " + model.identity() + " against " +
          (in_use.name.identity.empty() ? "none" : in_use.name.identity) + ": " + why;
 }
 
 void Night::propose(Proposal proposal, const Model& model, const Recorded& recorded,
-                    const std::vector<AxisDiagnosis>& found, const std::string& name) {
+                    const std::vector<AxisDiagnosis>& found, const std::string& name,
+                    const std::vector<std::string>& hashes) {
   proposal.sensor = sensor_.name;
   proposal.made = utc_now();
   proposal.model = name_of(model);
   const std::string file = sensor_.name + ".proposal-" + proposal.model.identity;
   proposal.model_file = file + ".toml";
   proposal.report_file = file + ".html";
-  const std::string report = diagnosis_report({recorded.capture}, found, {name}, proposal.model_file);
+  const std::string report = diagnosis_report({recorded.capture}, found, {name}, hashes, proposal.model_file);
   const StateInHand hand(field_.state());
   write_proposal(field_.state(), proposal, model, report);
 }
