@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifogd: reads gyros, denoises, publishes. Exit 0 good, 1 failed, 2 usage or a configuration that cannot
 // work.
 #include <fcntl.h>

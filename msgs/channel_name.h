@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LCM channels of a sensor: rates on IFOG_<NAME>, health and increments on that with an ending. The one
 // home of this rule.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flags of rate_t in words, for whoever shows them.
 #pragma once
 

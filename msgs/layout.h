@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which bytes can be a message of a type at all: asked before LCM's generated decoder is let loose on them.
 // That decoder believes every count and length it finds, and allocates and indexes by them: a count of -1 or
 // 2^31-1, or a string of length 0, ends the program.

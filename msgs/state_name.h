@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The states of status_t in words, for whoever shows them: the daemon's log and `ifog monitor`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One signal of a DBC file as an environment channel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Listens to the sources of environment channels that do not come in a sensor's frames, and keeps the latest
 // value of each where the sensor's reader thread looks. One ordinary thread for all of them.
 #pragma once

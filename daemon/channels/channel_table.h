@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of environment channels that do not come in the sensor's own frames. Written by whoever listens to
 // their source, read by the sensor's reader thread at every sample.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which number of an LCM message an environment channel takes.
 #pragma once
 

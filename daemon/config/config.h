@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon's configuration, a TOML file. Every key, its unit, range and default is in
 // daemon/examples/reference.toml, which a test reads.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads one table of a TOML file strictly: every key is asked for by name, with its type and range; what was
 // never asked for is unknown, and an error. All errors are gathered, each one line: file:line: key = value:
 // what was expected.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The books of one pipeline: all that came in, and where each of it went. Nothing is lost in silence, so at
 // every moment
 //   bytes read      = bytes of frames + bytes skipped + bytes of a frame that is not complete yet

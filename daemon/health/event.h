@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the hot path has to say, without formatting it: plain data that housekeeping words later.
 #pragma once
 

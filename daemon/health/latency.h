@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distribution of latencies in constant memory: buckets of an eighth of an octave, so a percentile is right
 // within 9 %.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Of a sensor's samples at rest, what the tests of its noise and its bias are made on: sums that only grow,
 // kept by the filter's hot path. Whoever looks from time to time takes differences.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Notices when a sensor is no longer what it was: for people, in the status message and as one line in the
 // log. What is published does not change for it. Housekeeping's work, on sums that the hot path keeps.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests that look at a sensor for ever and may cry wolf once in a given time, on figures of blocks of its
 // samples at rest. Nothing here is a real-time thread's.
 //

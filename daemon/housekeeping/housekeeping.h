@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon around its pipelines: opens, starts, watches, reports, reloads and stops them. One ordinary
 // thread, which does everything that allocates, locks, formats or waits.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the log goes: to the journal with fields of its own when systemd runs us, else to the standard error.
 // Only housekeeping logs; the pipelines' threads report events.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 1 Hz health message of one sensor, and the counters whose movement is worth a line in the log.
 #pragma once
 

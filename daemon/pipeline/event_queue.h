@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events on their way out of the hot path, through a ring.
 #pragma once
 

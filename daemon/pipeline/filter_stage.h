@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filter's work: queue → signal chain → encoder → publisher. Stage 2 of a pipeline, done by whichever
 // thread is the queue's consumer at the time: the filter thread, or the reader thread in its place
 // (HandOver).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What becomes of the increments of a delivery: the filter thread takes them, or, when it sleeps, the reader
 // thread does its step itself.
 //

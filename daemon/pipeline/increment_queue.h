@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way from the reader thread to the filter thread: a ring that loses no angle.
 //
 // Overflow policy: merge. When the ring is full, further increments are added up in one that waits outside;

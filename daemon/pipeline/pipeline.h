@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One sensor: its reader thread, its filter thread and the queue between them. Pipelines share nothing.
 #pragma once
 

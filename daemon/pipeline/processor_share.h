@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of a processor the threads of a sensor may take. One that babbles sends without an end, and in
 // real time its threads would leave nothing to whatever shares their processor: the filters of other sensors
 // first, which under SCHED_FIFO get their turn only when those before them sleep. So a thread that comes to

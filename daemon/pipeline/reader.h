@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reader thread's work: transport → plugin → increments → queue. Stage 1 of a pipeline.
 #pragma once
 

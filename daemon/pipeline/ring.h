@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single producer, single consumer, wait-free, no allocation after construction.
 //
 // Slots are filled and read in place (claim/commit, front/pop): an increment is several hundred bytes, and

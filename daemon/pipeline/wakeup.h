@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wakes the one consumer of a ring, with a system call only when it sleeps; or lends the producer the
 // consumer's place while it sleeps, so that nobody need be woken at all.
 //

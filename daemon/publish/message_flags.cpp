@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "daemon/publish/message_flags.h"
 
 #include <ifog/rate_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flags of rate_t and imu_t, from what the chain found.
 #pragma once
 

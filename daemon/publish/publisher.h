@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where encoded messages go. An interface, so that tests need no network.
 #pragma once
 

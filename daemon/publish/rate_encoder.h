@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the chain's output to the bytes of an ifog.rate_t, in a buffer of its own, without allocation.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a real-time thread needs before its loop: memory that cannot be paged out, its scheduling class, its
 // processors. Nothing here is required to run; what could not be had comes back as a line for the log.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flight recorder of one sensor: a thread of ordinary priority that takes what the reader thread has put
 // on the tape to the disk. What the disk does, however slow or full, ends at the tape.
 #pragma once

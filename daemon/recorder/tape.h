@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the reader thread to the recorder thread: entries of a flight recording in a bounded queue of bytes
 // that is allocated once. The reader only copies; where there is no room the delivery is not recorded, which
 // is counted here and told in the recording itself.

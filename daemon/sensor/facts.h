@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a plugin's description and samples to the plain structs of filters/chain.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sensor's flight recordings say of it in their header, and back.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise of a sensor over restarts: read before its signal chain is built, written now and then while it
 // runs, in the state folder as NAME.noise.toml. One that cannot be read or written is a remark, never a
 // reason not to run.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a sensor's configuration to its driver, transport and signal chain: no threads, no LCM. The command
 // line goes the same way, so that it filters as the daemon does.
 #pragma once

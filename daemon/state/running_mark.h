@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How others find the daemon that works with a state folder, whoever started it: it holds a lock on a file
 // there for as long as it lives. A lock, unlike a number in a file, ends with its process however that ends.
 #pragma once

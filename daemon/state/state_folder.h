@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder in which the daemon keeps what outlives a run, and what is called how in it.
 #pragma once
 

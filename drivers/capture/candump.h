@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What can-utils' candump writes, one frame a line, in both its formats.
 //   candump -l, -L   "(1436509052.249713) can0 123#1122AABB". CAN FD: "123##5AABB", the digit being the flags
 //   (1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A capture: what a sensor recorded, as columns. CSV with optional `#` lines, a header whose first column is
 // time_s, then rate_radps or rate_x_radps … per axis, optionally reference_rate_radps per axis, and
 // environment channels NAME_UNIT. Empty or `nan` is missing. `.gz` is read and written through zlib.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the samples a driver delivers to a capture: rates in rad/s on a time axis in seconds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inverse of a recording: a capture as the frames that a device would have sent, by its driver's encoder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Columns that were chosen from a file of other names and units, on their way to those of a capture.
 #pragma once
 

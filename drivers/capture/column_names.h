@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The names of a capture's columns, and how their faults are told.
 #pragma once
 

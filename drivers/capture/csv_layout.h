@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a CSV file that is no capture by its header says under other names and in other units: which of its
 // columns are those of a capture.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A file read once, from its start, plain or gzip by its first bytes, whatever its name. Nothing is opened
 // twice and nothing rewound, so that standard input, a FIFO and a shell's <(command) do as well as a file. A
 // folder of flight recordings is read as one file: theirs, one behind the other.

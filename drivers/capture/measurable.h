@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a cell of a capture can mean. Beyond it there is no measurement, whatever wrote the number: one such
 // cell would be all that a fit sees. The one home of it for every command that reads a capture.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one way by which anything here is written. A regular file is never seen half-written: its bytes go into
 // a file without a name, are synced, and take the name at the end. Links are followed to the file they lead
 // to; devices, FIFOs and open descriptors (/dev/stdout) are written as they are, never replaced.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording of what a device sent, put through its driver: raw bytes, or a candump log. Plain or gzip.
 // Flight recordings have a way of their own (drivers/flight).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole files, plain or gzip by their first bytes. Reading gives the content; writing is all or nothing.
 #pragma once
 

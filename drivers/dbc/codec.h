@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A signal's value from a frame's bytes, and into them. No allocation; frames of up to 64 bytes.
 //
 // The signal must have passed check_fits, and the data hold at least bytes_needed(signal).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a Vector DBC file says about the frames on a CAN bus: messages and where their signals lie.
 //
 // Read are BO_, SG_ (multiplexing included), SIG_VALTYPE_, SG_MUL_VAL_ and, of the attributes (BA_), the long

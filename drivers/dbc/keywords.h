@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keywords of a DBC file whose statements end with ';' and are read, if at all, for names only.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reader behind parse_database: what it cannot read it names, marks and leaves behind.
 #include <algorithm>
 #include <map>

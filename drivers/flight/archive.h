@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps recordings in a folder: entries become blocks, blocks files, and the oldest files go when there are
 // too many. Whoever calls it waits for the disk, so no real-time thread does.
 //

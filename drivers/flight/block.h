@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flight recording is a row of blocks. Each says how long it is and carries a checksum over its content,
 // the file's own number and its place in the file: what is torn or changed is found, and nothing that merely
 // looks like a block (a recording within a recording) is taken for one.

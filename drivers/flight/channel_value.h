@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The latest value of an environment channel that does not come in the sensor's frames, and how old it is.
 #pragma once
 

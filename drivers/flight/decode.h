@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flight recording through a driver again: the samples come as the daemon had them, with the same channels
 // from elsewhere at the same times.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a flight recording holds, entry by entry: format.md has every byte. The same bytes go from the reader
 // thread to the recorder thread and into the file, so that recording is copying.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a flight recording, or several one after another, entry by entry, whatever happened to it: what is
 // torn or damaged is passed over, counted and never taken for data.
 #pragma once

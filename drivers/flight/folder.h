@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder that recordings are kept in, and what can go wrong with it, behind an interface: so that a year
 // of full disks can be gone through in a second.
 #pragma once

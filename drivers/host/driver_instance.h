@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One configured driver of one sensor: the C table of a plugin with its instance, owned.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a shared object may be loaded, asked before the dynamic linker is: that one maps what the file's
 // headers promise, and the first look at a page behind the file's end is SIGBUS.
 #pragma once

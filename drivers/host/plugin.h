@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finding and loading protocol plugins.
 //
 // The file of driver NAME is NAME.so, so that starting a sensor loads that one object and no other.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The C table of a plugin that decodes a stream of bytes, filled in from a C++ class. Header only.
 //
 // The class has

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* The plugin interface of ifogd, in C so that a plugin may be built with any compiler and language.
  *
  * A protocol plugin is a pure function from (bytes, arrival time) to samples: it opens nothing, waits for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading a plugin's settings, for plugins written in C++. Header only, so that a plugin needs nothing but
 // this folder.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Foreign text in a message to people: bounded, and nothing in it that a terminal or a log would act on. The
 // one home of this rule, header only, so that a plugin built out of tree quotes as the programs here do.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the time of reading is a time of arrival.
 //
 // A process that was held up (stopped, starved, asleep with its machine) finds all that came meanwhile at

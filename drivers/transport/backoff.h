@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When to try again to open a device that is gone: at once, then ever less often, but often enough that a
 // device that comes back is in use again well within a second.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of a file, a FIFO or the standard input in a fixed buffer: what is under the file transport.
 #pragma once
 

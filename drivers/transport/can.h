@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The CAN transport, on SocketCAN raw sockets. Opens the interface again whenever it goes down or away.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/can_socket.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SocketCAN raw sockets: opening, and the two forms of a frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The clocks of everything that arrives.
 //
 // Intervals come from a clock that nobody sets: what is integrated, counted or timed out must not move when

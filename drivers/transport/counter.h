@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A counter with one writer and any number of readers. Relaxed: it says how much happened and orders nothing,
 // so a reader may see one counter ahead of another that was raised before it, by what is under way.
 #pragma once

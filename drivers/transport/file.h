@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file transport: raw bytes or a candump log from a file, a FIFO or the standard input, as fast as the
 // reader takes them or at recorded times.
 #pragma once

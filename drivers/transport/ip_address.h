@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numeric IPv4 and IPv6 addresses. Names are never looked up: a name server that does not answer would hold
 // up a thread that has a sensor to read.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A UDP or TCP socket over IPv4 or IPv6, non-blocking.
 #pragma once
 

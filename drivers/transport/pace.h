@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recorded times replayed against absolute deadlines: each is computed from the first, so lateness never adds
 // up.
 #pragma once

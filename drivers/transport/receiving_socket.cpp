@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/receiving_socket.h"
 
 #include <linux/net_tstamp.h>

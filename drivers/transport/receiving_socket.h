@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a socket that receives is asked for (room, arrival times, a count of what was dropped), and what the
 // kernel then says beside each packet. For CAN, UDP and TCP alike.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The serial transport. Opens the line again whenever it goes away, within about a tenth of a second of
 // its return.
 #pragma once

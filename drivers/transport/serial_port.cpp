@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/serial_port.h"
 
 #include <libserialport.h>

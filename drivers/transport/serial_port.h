@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial line as libserialport opens it, set up and checked.
 #pragma once
 

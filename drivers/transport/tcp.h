@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The TCP transport: a sensor or a serial server that listens, to which this end connects. Connects again
 // whenever the connection goes.
 #pragma once

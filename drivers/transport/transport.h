@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sensor's reader thread reads from: a serial line, a CAN interface, the network or a file, behind one
 // interface.
 //

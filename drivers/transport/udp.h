@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The UDP transport: datagrams that a sensor or a serial server sends to a port of this computer, or to a
 // multicast group.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The date that models, pages and learned noise bear.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Unit texts as DBC files, configurations and the headers of CSV files write them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stretch at a coarser step: differences of the means of 2^level neighbouring angles.
 //
 // Averages of the rate would keep one angle in 2^level and so take quantisation, an error of the angle that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far a measured variance may be from the truth: the law that the estimator has under the noise found in
 // the record (estimate_law.h), where many averages fit χ² with equivalent degrees of freedom. The noise comes
 // from the fit of the whole record, not from the few averages at the τ in question, so it may change its type

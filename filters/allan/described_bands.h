@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How well the terms describe a spectrum, and which bands of it no sum of them comes near.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Overlapping Allan deviation of a rate, from one running sum.
 //
 // Riley, "Handbook of frequency stability analysis", NIST Special Publication 1065 (2008), equations 10, 15

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distribution of an overlapping estimate about its mean, under noise of given terms.
 #pragma once
 

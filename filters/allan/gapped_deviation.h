@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Overlapping Allan deviation of a series with missing samples, for comparing the errors of one record before
 // and after a correction: averages of at least half of their samples count.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The five noise coefficients of IEEE Std 952 from one record at rest, each with its error bar, and none that
 // the record does not show:
 //   σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Likelihood of the noise terms given a record's spectrum (noise_spectrum.h), and its maximum over variances
 // that are not negative.
 //

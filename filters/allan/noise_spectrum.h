@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a record says about its noise terms, in numbers whose distribution under any mixture of them is known:
 //   - bins of spectra of the record at steps of 1, 2, 4, … samples (angle_means.h): sine-windowed segments
 //   that overlap by

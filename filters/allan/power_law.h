@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the noise terms of IEEE Std 952 do to a difference variance: its mean, and how far an estimate of it
 // scatters, for any mixture of the terms.
 //

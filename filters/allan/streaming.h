@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Allan deviation while the data arrive: averaging times of 1, 2, 4, … samples in constant memory, for the
 // daemon's status.
 //

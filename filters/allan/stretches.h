@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a capture's time column says before any variance is taken: the true sample time, and where samples are
 // missing. An Allan variance over a hole would compare averages that do not touch, so holes end a stretch.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Thêo1: a variance that looks up to three quarters of a record ahead, where the Allan variance ends at half
 // of it with a single difference (Howe and Peppler, "Very long-term frequency stability", IEEE Int. Frequency
 // Control Symposium 2003; NIST SP 1065, section 5.2.18). It is biased for everything but white rate noise;

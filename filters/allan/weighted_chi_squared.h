@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distribution of a quadratic form of Gaussian variables: a sum of independent χ² variables, each with a
 // weight of its own. The overlapping variances are such sums; where few averages fit into the record, a
 // single χ² with their mean and variance has too heavy a tail near zero, and its 68 % interval would hold in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/chain/fitted_clock.h"
 
 #include <algorithm>

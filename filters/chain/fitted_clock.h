@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of a sample from its number: a line through arrival times against the sequence counter. Arrival times
 // jitter by scheduling, the device's counter does not, and its quartz differs from the computer's by a slowly
 // moving factor.

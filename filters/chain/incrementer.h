@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From samples to angle increments: unwraps counters and angles, finds gaps, fits the time.
 //
 // Step time, in this order: the device's clock; the nominal period times the difference of the device's

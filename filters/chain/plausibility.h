@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a value from outside can be a measurement at all: the door that keeps one impossible number, well
 // formed as its frame may be, out of the angle, the filter and the corrections.
 #pragma once

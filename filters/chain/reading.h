@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sensor delivers, as plain structs: the same facts as the plugin interface's, so that filters know no
 // devices.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From an angle increment to everything that is published of it: effects removed, rate estimated, angle
 // summed. The daemon and `ifog denoise` run this very code, so the same frames and settings give the same
 // bits in both.

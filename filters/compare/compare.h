@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All adaptation rules on one record, with the same settings: what each does at rest, in motion, to the
 // heading, and after a change of rate. The figures are of the causal Estimator the daemon runs, not of a
 // copy.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single figures of a comparison, each a function of plain series. NaN entries are passed over.
 #pragma once
 

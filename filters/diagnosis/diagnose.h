@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The diagnosis of one axis of one sensor: what in its error is explained by an effect, what that effect is,
 // how large the error is before and after, what cannot be told apart, and what stays.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a diagnosis says: the effects it found, how large the error is before and after, what cannot be told
 // apart, what stays, and what the record leaves open. Data, which every room of the diagnosis may know.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The correction of a whole series, sample by sample as the daemon makes it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The correction that runs before the filter: subtracts a model's effects from the measured rate, for all
 // axes of one sensor. step() is the daemon's hot path: no allocation, no lock, no exception; the same code
 // serves `ifog denoise`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The forms an effect can take: how a channel, or time alone, turns into an error of the rate.
 //
 // With c the channel less its reference, tau time constants, LP the first-order low-pass:

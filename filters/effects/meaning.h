@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an effect means physically, from the kind of channel it was traced to. The kind is read off the
 // column's name (NAME_UNIT); an unknown name is no obstacle to the diagnosis, it only goes without a name for
 // the physics.

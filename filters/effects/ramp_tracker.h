@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A feedback ramp that nobody logs, rebuilt from the measured rate. A closed loop resets its ramp every 2 pi,
 // so the ramp's phase is k times the angle turned, and the ramp's nonlinearity is an error of the angle,
 // f(phase): of the rate f(phase now) - f(phase before) over the time between. f and k come from a model; the

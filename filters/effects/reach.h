@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far a model goes on outside the range it was fitted on.
 //
 // Holding a well-known linear effect at the edge leaves the whole of what the channel does beyond it, so

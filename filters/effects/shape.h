@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One form applied to one channel, as causal code: the value per unit of the effect's coefficient, sample by
 // sample. The regressors of the diagnosis and the corrections of the daemon both come from here, so that what
 // was fitted is what is subtracted.

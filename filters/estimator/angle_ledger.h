@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the angle: what the published rate has fallen short of the measured one, integrated, is paid back.
 //
 // Two accounts. A settled filter of gain K owes tau (y - y0), tau = T (1-K)/K, and gets it back by itself

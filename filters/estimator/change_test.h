@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the rate changes: does a tracker predict the measurements so much better than the filter at rest
 // that noise cannot be the reason?
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the estimator does at each step: screen the measurement, let the filter at rest or the mix of a
 // manoeuvre have it, book the angle, publish.
 #pragma once

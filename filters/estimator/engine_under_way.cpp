@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The engine under way: from a change of rate that was found to the end of the motion.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filter of one sensor: all its axes, one state model, one adaptation rule, one gain for all axes.
 //
 // step() is the daemon's hot path: no allocation, no lock, no log, no exception. Everything it does depends

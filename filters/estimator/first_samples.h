@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variance of a raw rate while nothing is known of its noise yet: of the first samples all that they say,
 // from the fourth on what neighbours differ by, with what so few differences leave open.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a running filter has learned of its sensor's noise, and what another one may begin with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is published while the rate changes: the trackers' mean, each with the weight it has earned, and the
 // filter at rest among them when it has.
 //

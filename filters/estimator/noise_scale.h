@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How loud an axis is, whatever moves: from third differences, which hardly see motion, from the innovations
 // at rest, and from the last digit.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A measurement far from where the filter at rest expects it: an outlier, or the first of a jump. The next
 // ones tell, and how many it takes depends on how rare outliers are.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State model, Kalman core and rule put together: the filter at rest. The core is of fixed size, one
 // instantiation for each number of states; this is what they have in common, so that nothing else has to be
 // compiled eight times.

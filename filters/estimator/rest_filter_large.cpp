@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/estimator/sized_rest_filter.h"
 
 namespace ifog {

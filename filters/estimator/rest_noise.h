@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Noise of a sensor learned while it rests, for a filter that was told none.
 //
 // What start_up.h does with a record this does with a stream: second differences of block means over octaves,

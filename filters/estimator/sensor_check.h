@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fault that a rate alone can show: the sensor repeats its last value.
 #pragma once
 

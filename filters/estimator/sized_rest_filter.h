@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filter at rest for one number of states. One core for most rules; for a rule with several hypotheses
 // about the noise, one core each and their weighted mean.
 #pragma once

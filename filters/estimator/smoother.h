@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording smoothed: the rate at each sample from all measurements, the later ones too.
 //
 // Fixed-interval smoothing (Rauch, Tung and Striebel, AIAA Journal 3(8), 1965) of a random walk in white

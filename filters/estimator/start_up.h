@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Noise of a sensor from its first seconds, for a filter that was told none.
 #pragma once
 

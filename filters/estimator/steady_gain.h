@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A rule whose opinion of R moves slowly: the gain is that of the average of what the rule has believed, not
 // of what it believes at this sample.
 //

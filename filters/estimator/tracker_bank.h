@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trackers of rate, slope and curvature that forget at different speeds: from the last three samples to as
 // long as the filter at rest, half a power of ten apart.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Kalman filter of up to three axes that share model, noise and gain: one covariance, one gain vector, a
 // state vector per axis. One gain for all axes because different gains turn coning into drift: the axes would
 // see the same cone with different lags.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The prediction covariance of a time-invariant Kalman filter many samples ahead: doubling algorithm of
 // Anderson and Moore, "Optimal Filtering", section 6.7. Measurements at every sample, missing ones in between
 // are the caller's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gaussian likelihood of a record under a state model and white measurement noise, by the prediction error
 // decomposition: Harvey, "Forecasting, Structural Time Series Models and the Kalman Filter", section 3.4.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a filter whose gain stays as it is does to a slow signal: x(k) = F x(k-1) + K z(k), F = (I - K h')A.
 #pragma once
 

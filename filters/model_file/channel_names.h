@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an effect's channel is: a column, or the difference of two, "A - B". Column names have no blanks.
 #pragma once
 

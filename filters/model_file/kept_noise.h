@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise that the daemon has learned of a sensor, as a file that the next start begins with. Written by
 // the daemon alone; a model's figures stand over it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model of one sensor: its noise, its filter, its effects, the range they were fitted on, and where all
 // that came from. Written by `ifog tune` and `ifog diagnose`, read by ifogd, `ifog denoise` and `ifog
 // diagnose`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TOML files as all programs here read them: a complaint is one line, whatever the file holds.
 #pragma once
 

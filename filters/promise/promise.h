@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a change of a sensor's correction keeps what was promised of it, on data that it was not fitted on.
 //
 // The old model's error e holds what the new one corrects, d (old corrected rate less new corrected rate),

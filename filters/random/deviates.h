@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exponential and uniform deviates by counter: value number i of a stream is a function of (seed, stream, i)
 // alone.
 //

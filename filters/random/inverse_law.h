@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exponential law by inversion: e = -ln u for u = (bits + 1/2) 2^-32, two at a time and without a
 // division or a branch, so that fifty of them at every step take little time and always the same. (A ziggurat
 // is slower here: one rejection in a hundred costs the processor what it had begun of the next draws.)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Natural logarithm and exponential of our own. The C library's may differ in the last bit from one version
 // to the next, and a replay promises the same bits on every machine; these use only operations that IEEE 754
 // fixes.

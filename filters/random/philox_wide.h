@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Philox4x64-10: the 64-bit form of the generator in philox.h, from the same paper. It gives twice the bits
 // for the same number of multiplications, which is what drawing fifty weights at every step asks for.
 #pragma once

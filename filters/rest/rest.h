@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which part of a record a sensor was at rest in. Noise figures, a heading forecast or a filter's tuning
 // taken from a sensor that was being turned or shaken say nothing about the sensor.
 //

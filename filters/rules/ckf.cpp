@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The conventional Kalman filter: C = h'P h + R, whatever the innovations say.
 #include "filters/rules/rule.h"
 

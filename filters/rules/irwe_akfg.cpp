@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Innovation-based random weighting estimation with adaptive Kalman filter gain correction: C is the average
 // of the last N squared innovations, the current one included, under random weights. Narasimhappa et al.,
 // section 3.2; the form of the gain follows Yang et al., Sensors 2015 15(10):26940 and Song et al., Appl.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Multiple-model adaptive estimation: a bank of filters over factors on Q and R, their outputs averaged under
 // their posterior probabilities. Magill, IEEE Trans. AC 10(4), 1965. The probabilities have a lower bound, so
 // that a model that has been wrong for long can become right (Maybeck, Stochastic Models, Estimation and

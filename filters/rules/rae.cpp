@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Residual-based adaptive estimation: R = mean of the last N squared residuals z - h'x+ plus h'P+h, which is
 // positive by construction. Mohamed and Schwarz, J. Geodesy 73, 1999. The estimate serves the next
 // measurement: the residual of this one is not known before its own gain.

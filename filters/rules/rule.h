@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An adaptation rule: from innovations, the innovation covariance that sets the gain. It sees scalars only,
 // so it works with every state model. To add one: a file with a class derived from Rule and a line in
 // list.cpp.

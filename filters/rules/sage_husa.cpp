@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sage-Husa with fading memory: R(k) = (1 - d) R(k-1) + d (nu^2 - h'P-h), d = (1 - b) / (1 - b^(k+1)). Sage
 // and Husa, Proc. Joint Automatic Control Conf., 1969, in the usual fading form. R only and zero-mean noise:
 // estimating q, Q and R together is known to diverge. The difference can turn negative; then the floor holds.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Variational Bayes: R is inverse-gamma with parameters alpha, beta that fade by rho between steps; state and
 // R are fitted to each measurement in turns. Sarkka and Nummenmaa, IEEE Trans. AC 54(3), 2009.
 #include "filters/rules/rule.h"

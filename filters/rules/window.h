@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mean of the last N values in O(1) a step. The running sum is taken afresh once a window, so that rounding
 // cannot gather in it.
 #pragma once

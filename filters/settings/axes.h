@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many axes a sensor has at most, and a figure for each of them.
 #pragma once
 

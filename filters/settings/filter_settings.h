@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sensor's filter is told: state model, noise, adaptation rule. Read from [sensor.filter] of the
 // daemon's configuration, from [filter] of a model file and from the command line by one table,
 // filter_table.h, which also says what each of these may be.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/state_models/arma.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ARMA(p,q) in Harvey's state-space form with max(p, q+1) states: Harvey, "Forecasting, Structural Time
 // Series Models and the Kalman Filter", section 3.3. An autoregression fitted to noisy output and then given
 // a separate R counts the white noise twice; here R stays outside and the coefficients belong to the process

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // First-order Gauss-Markov process: exponentially correlated, stationary.
 #pragma once
 

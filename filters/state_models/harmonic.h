@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line whose amplitude and phase wander: in-phase and quadrature state, turned by 2 pi f dt, both driven
 // alike.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random walk and its integral: the rate, or its slope, takes independent steps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Independent processes added up: block-diagonal transition, measurements side by side.
 #pragma once
 

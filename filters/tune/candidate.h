@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A state model whose noise and parameters are open: the map between what an optimiser moves freely and what
 // a filter is told.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strongest sinusoid of a record, found and taken out.
 #pragma once
 

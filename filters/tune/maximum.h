@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The maximum of the likelihood of the whole record, from where the spectrum says it should be; and the
 // curvature there.
 #pragma once

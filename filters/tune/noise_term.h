@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a candidate adds to the wandering level: one process whose parameters are open.
 #pragma once
 

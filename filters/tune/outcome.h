@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the estimator makes of a record with given settings: the published rate against the measured one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a record's spectrum shows, before any likelihood of the whole record is asked: cosine transform of
 // each axis, squared, averaged over axes and over bins that widen with frequency.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q, R and the state model of a sensor at rest by maximum likelihood. The likelihood is that of the record
 // (Kalman innovations), the order is chosen by Schwarz' criterion (Annals of Statistics 6, 1978), the errors
 // come from the curvature at the optimum.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A candidate fitted to the record's spectrum alone: Whittle's likelihood (Arkiv för Matematik 2, 1953), each
 // square of the cosine transform an independent one of its expected density. It costs thousands of bins where
 // the likelihood of the record costs hundreds of thousands of filter steps, so it can be asked from many

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The field's units in SI: people read angles in degrees and rates in °/h, everything inside is rad and
 // rad/s. Divide by one to show, multiply to read: kDegreePerHour is the rate that a person calls 1 °/h, in
 // rad/s.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints what ifogd publishes of one sensor: the number of each sample, and of each axis the angle increment
 // in rad and the denoised rate in rad/s.
 //

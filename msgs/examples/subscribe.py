@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Prints of one sensor, as ifogd publishes it: number; of each axis angle increment (rad), denoised rate (rad/s)
 
   subscribe.py CHANNEL COUNT [GROUP:PORT]       IFOG_NOSE 100 239.255.76.67:7667

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks the blind generator and its judge by closed forms, without the program that they score."""
 import sys
 import unittest

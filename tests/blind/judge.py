@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a diagnosis is worth, by physics: does the model it wrote predict the hidden effect in a second capture, for
 the right channel?
 

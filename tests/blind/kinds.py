@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Kinds of effects, from the physics of the instrument. Each is a law (constants drawn once for a sensor) and a
 shape: the effect's rate in a capture for a size of one. `cover` says who could describe it:
   design   the forms that section "Effects" of the design names, on one channel or a product of two

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Kinds of effects that need rotation: scale factor, misalignment, dead zone, the feedback ramp; and lines."""
 import numpy as np
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well the effect in the second capture can be known from the first: the bound of Cramer and Rao for a fit that
 knows the noise and the law of each effect, and has its size and constants to find."""
 import numpy as np

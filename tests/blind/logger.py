@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How loggers fail. A fault acts on a column (name -> series, nan for an empty cell) or on the rows. What is a
 property of the wiring (late, early because the gyro's own data are buffered, polled, coarse) is the same in both
 captures; what befalls a record (holes, stuck stretches, sentinels, glitches) strikes each anew."""

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes two captures of a gyro with an effect that nobody declared, and what was hidden into a folder of its own.
 
 OUTPUT/capture1.csv is to be diagnosed, OUTPUT/next.csv to be corrected with the model found. TRUTH/truth.json names

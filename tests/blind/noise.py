@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Noise of a fibre-optic gyro after IEEE Std 952, motion of the structure it stands on, and the whitening filter
 that knows all of it.
 

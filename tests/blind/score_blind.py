@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Scores `ifog diagnose` as a stranger would: only by the command line, on sensors it knows nothing of.
 
 For each seed: two captures are made (make_blind.py), the first is diagnosed with --json and --write-model, both

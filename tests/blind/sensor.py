@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A sensor from its seed: noise, place, hidden effects, faults of the logger, two captures and the truth."""
 from dataclasses import dataclass
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shapes of physical quantities over time and the linear filters that act on them. Arrays have one value a sample;
 dt and every time constant are in seconds."""
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The counts over many sensors: a summary for programs, tables for people, a line for each sensor."""
 import numpy as np
 

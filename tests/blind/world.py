@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a sensor stands: the physical quantities of two captures, the second inside or outside the first one's
 ranges, and the columns a logger would take. A quantity is exact; its column has a thermometer's or a transducer's
 noise and resolution."""

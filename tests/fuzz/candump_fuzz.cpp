@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any line: no crash, and a frame that is read writes and reads as the same frame.
 #include <cstdlib>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any text as a capture, by its own header and with columns chosen: refused with one line, or read with
 // columns of one length and time that goes on.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any configuration of an environment channel, and any message on its LCM channel: the field is read or
 // refused in one line, and what goes on to the sensor is within the limits, has not jumped, or has jumped
 // twice alike.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any text as a daemon configuration: read, or refused with lines that each name the file.
 #include <cstdint>
 #include <cstdlib>

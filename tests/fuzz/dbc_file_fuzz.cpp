@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any text as a DBC file: refused with one line, or read with warnings of one printable line each; and then
 // every signal that fits its message decodes and encodes any frame without touching a byte that is not there.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any frames to the dbc driver's decoder, on a bus with multiplexed axes, long frames and several frames a
 // sample.
 #include <algorithm>

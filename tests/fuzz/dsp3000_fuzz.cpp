@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes: no crash, every byte accounted for, and what is read writes and reads as the same value.
 #include <cstdlib>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every finder of frames owes to any bytes: none is lost or counted twice, and the frames are the same
 // however the stream is cut into portions. For fuzzers: aborts where that does not hold.
 #pragma once

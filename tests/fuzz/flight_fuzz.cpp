@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as a flight recording, as the entries of a good block, and as the text of a good header: no
 // crash, no payload that reaches beyond what there is, and every byte of a file without blocks accounted for.
 #include <algorithm>

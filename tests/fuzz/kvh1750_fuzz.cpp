@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes: every one accounted for, and frames that pack to the bytes they came from.
 #include <array>
 

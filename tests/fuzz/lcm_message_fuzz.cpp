@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes as an LCM message of every type: a message, which the generated encoder gives back as it came, or
 // refused. The first byte says whether the type's hash is put before the rest, so that the fuzzer gets past
 // it.

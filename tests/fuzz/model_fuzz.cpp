@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any text as a model file: read, or refused with one line.
 #include <cstdint>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes: every one accounted for, and IMU_SHORT messages whose numbers survive being packed again.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes: every one accounted for, and telegrams whose blocks survive being packed again.
 #include <array>
 #include <bit>

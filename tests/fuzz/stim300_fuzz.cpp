@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes, the first choosing the termination: every one accounted for, and datagrams that pack to the
 // bytes they came from.
 #include <array>

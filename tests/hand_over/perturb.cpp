@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Disturbs the order of events between threads: preloaded into a program that was built with ThreadSanitizer,
 // it stands before every atomic operation, futex, sleep and pthread call of that program and now and then
 // lets another thread go first, or waits for up to a tenth of a millisecond.

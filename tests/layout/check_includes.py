@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Holds every #include to the map of the folders: who may use whom, and no circles between folders.
 
 usage: tests/layout/check_includes.py [TREE]     the tree's root; default: this one

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Every source file says its licence in its first lines, as SPDX has it.
 
 usage: tests/layout/check_licence.py          one line a file that does not; exit 1 when there is one
@@ -13,8 +14,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TAG = "SPDX-License-Identifier: Apache-2.0"
 SLASHES = {".cpp", ".h", ".c", ".java", ".lcm"}
 HASHES = {".py", ".cmake", ".yml"}
-# Not ours to label: what a version wrote, and the seeds of the fuzzers.
-LEFT_OUT = re.compile(r"^tests/(stable/[0-9]|fuzz/seeds/)")
+# Not to label: what a version wrote, the seeds of the fuzzers, and what others run the project with.
+LEFT_OUT = re.compile(r"^(tests/(stable/[0-9]|fuzz/seeds/)|\.ci/)")
 
 
 def sources():

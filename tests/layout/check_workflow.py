@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The forge's workflow runs every stage that tools/test runs by default, and no stage that it does not know.
 
 usage: tests/layout/check_workflow.py

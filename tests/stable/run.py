@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The programs of today on the files of the versions before: read as they were, meaning what they meant.
 
 usage: run.py PATH_OF_IFOG PATH_OF_IFOGD MESSAGES_FOR_PYTHON SOURCE_DIR
@@ -15,7 +16,7 @@ import tempfile
 IFOG, IFOGD, MESSAGES, SOURCE = sys.argv[1:]
 HERE = pathlib.Path(__file__).resolve().parent
 # The hash of each LCM type: programs elsewhere decode by it. Another hash is another message, and nobody hears it.
-FINGERPRINTS = {"rate_t": 0x03EB16B05E9D75D5, "status_t": 0x28DDF026BCA124A9, "imu_t": 0x85AA223FBF2C3588,
+FINGERPRINTS = {"rate_t": 0x03EB16B05E9D75D5, "status_t": 0x581F79C7F656635F, "imu_t": 0x85AA223FBF2C3588,
                 "channel_t": 0x0324F6FFDF9266FD}
 
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long a program takes to have a device open again after the kernel has it back.
 //   usage: device_return DEVICE PROGRAM
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A subscriber as an INS would be: counts what arrives on IFOG_<NAME> channels, and whether each message
 // follows the one before it.  usage: lcm_count SECONDS CHANNEL...
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records what is published into an LCM log, as lcm-logger does, and keeps every message: lcm-logger 1.3.1
 // leaves the library's queue at its 30 messages, so that it loses some whenever its thread is kept waiting
 // for longer than those take (20 ms at 1.5 kHz). The queue here has no limit.

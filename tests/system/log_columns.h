@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the comparisons of recorded messages with computed columns read.
 #pragma once
 

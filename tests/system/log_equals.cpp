@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares what the daemon published, as lcm-logger recorded it, with what `ifog denoise` computed of the
 // same frames: bit for bit, sample by sample.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A model exchanged while the daemon runs, from the messages recorded: every sample is there, the model
 // changes once, and on either side of that the compensated rate is, bit for bit, what `ifog denoise` computes
 // with that side's model. The published angle is, to 1e-12 rad, the sum of the published increments.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts heap allocations of the whole program, on all threads: malloc itself is replaced, so that those of
 // Eigen and of C libraries (glib in LCM) count, too. A program that links malloc_counter.cpp has it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commands of `ifog`. Each lives in a file of its own and adds itself to the command line.
 #pragma once
 

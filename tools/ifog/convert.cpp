@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog convert: a capture to what a device would have sent, and back.
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog drivers: which protocol plugins are found, where, with which options; which were refused and why.
 #include <CLI/CLI.hpp>
 #include <algorithm>

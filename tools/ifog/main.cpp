@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog: the command line. Exit 0 good, 1 failed, 2 usage.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog picture: what the daemon published, raw against denoised, as one picture: the rate over time and both
 // Allan curves.
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog record: what the daemon publishes, from LCM into flight recordings on this computer, which every
 // command reads.
 #include <poll.h>

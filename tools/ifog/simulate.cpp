@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog simulate: a capture from a scenario file, its truth apart.
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog tune: Q, R and the state model of a sensor at rest, into a model file.
 #include "filters/tune/tune.h"
 

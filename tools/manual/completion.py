@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What the shell completes of `ifog` and `ifogd`, from what they say of themselves.
 
 usage: completion.py OUTPUT_DIR COMMAND_LINE.json IFOGD_HELP

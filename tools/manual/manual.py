@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The manual pages, made from what the programs themselves say and from the pages of the tree.
 
 usage: manual.py SOURCE_DIR OUTPUT_DIR COMMAND_LINE.json DRIVERS.json 'DRIVER;DRIVER;...' IFOGD_HELP VERSION

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A commented TOML file that shows every key, as tables of terms: the reference configuration and the reference model.
 
 What is read:  [table] and [[table]];  key = value  # comment, with the comment going on in lines that are indented further;

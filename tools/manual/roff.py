@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Markdown, as far as this project's own pages use it, into man(7).
 
 Headings, paragraphs, lists, tables, fenced code; in a line `code`, **strong**, *emphasis*, [text](link). Two-column tables become

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One chart as SVG: crisp at any size, coloured by the style of the page or picture it stands in, readable by
 // a screen reader (title and description). Nothing is fetched.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise coefficients of a record in the words and units of the field, the same from every command.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of a diagnosis as one self-contained HTML page: inline SVG, CSS and a few lines of script
 // that show values and let one look closer; nothing fetched; light and dark, fit for a screen reader, a
 // telephone and paper.

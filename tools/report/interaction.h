@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a page does under the pointer: values at a place, a closer look at a stretch. A few lines of script in
 // the page itself; nothing is fetched, and without it the page shows the same pictures.
 #pragma once

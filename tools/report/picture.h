@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture of several charts as a file of its own, SVG or PNG: what `--plot` of every command writes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers of a chart for the script of a page, see interaction.cpp.
 #pragma once
 

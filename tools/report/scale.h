@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data to pixels along one axis of a chart, and the round numbers that stand at it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The look of the report and of its charts: one style sheet inside the page, one inside each picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and words for people: HTML escaping, significant digits, the field's units.
 #pragma once
 

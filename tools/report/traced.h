@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The picture that convinces: the error without one effect, against what it was traced to, with the fitted
 // effect.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random numbers for simulation, the same bits on every machine: philox for the integers, and the normal
 // distribution by its inverse (Wichura, "Algorithm AS 241: the percentage points of the normal distribution",
 // Applied Statistics 37(3), 1988, PPND16), which needs nothing but + − × ÷ and square roots here. The

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise of a gyro by its IEEE Std 952 coefficients, as a real integrating gyro delivers it: each sample
 // is the mean rate since the sample before. With that the Allan variances of the standard hold at every τ,
 // the sample time included:

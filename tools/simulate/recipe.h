@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of a scenario are recipes: a kind, numbers by name, lists by name, and the channel it works on.
 // Which keys a kind takes, their defaults and ranges are tables here, so that reading a file, drawing values,
 // the truth file and the error messages all go by one definition.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenario files: strict TOML, every complaint one line with file, line, key and what was expected.
 #include <algorithm>
 #include <cmath>

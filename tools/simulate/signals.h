@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time series of the parts of a scenario, one value a sample.
 #pragma once
 

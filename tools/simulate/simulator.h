@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A gyro in its surroundings: what it measures, what its channels log, and, apart from both, the truth.
 #pragma once
 

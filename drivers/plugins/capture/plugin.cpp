@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `capture`: a CSV capture as a sensor, each row a sample with the row's time as the device's. For
 // trying the daemon on a recording; it is fed by the file transport.
 #include <array>

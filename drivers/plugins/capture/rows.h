@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows of a CSV capture from its bytes in any portions: `#` lines, a header whose first column is time_s,
 // rows. Nothing is allocated after construction.
 #pragma once

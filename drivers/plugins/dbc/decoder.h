@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From CAN frames to samples by a DBC file's description. No allocation after construction.
 #pragma once
 

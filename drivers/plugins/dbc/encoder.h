@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inverse of the decoder: the frames a device described by the DBC file would have sent for a sample.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which signals of a DBC file the sensor is made of: the driver's options, resolved.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `dbc`: any gyro on a CAN bus that a Vector DBC file describes. The options pick the signals.
 #include <cstdio>
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "drivers/plugins/dsp3000/line.h"
 
 namespace ifog::dsp3000 {

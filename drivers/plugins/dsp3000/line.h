@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One line of a KVH DSP-3000 with the digital 100 Hz interface. Source: DSP-3000 technical manual 54-0215,
 // section 2.1.
 //

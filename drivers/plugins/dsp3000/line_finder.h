@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts a byte stream into the lines of line.h.
 #pragma once
 

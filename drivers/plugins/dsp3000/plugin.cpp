@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `dsp3000`: KVH DSP-3000 with the digital 100 Hz interface.
 //
 // Rate, incremental and integrated angle look alike on the line, so the configuration says which it is. The

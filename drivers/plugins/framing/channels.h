@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environment channels of a sample, held from the frames that bring them to those that do not; and
 // numbers on their way into a frame.
 #pragma once

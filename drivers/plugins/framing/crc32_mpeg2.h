@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CRC-32/MPEG-2: polynomial 0x04C11DB7, starts at 0xFFFFFFFF, most significant bit first, not inverted at the
 // end. Check value for "123456789": 0x0376E6E7 (catalogue of parametrised CRC algorithms).
 //

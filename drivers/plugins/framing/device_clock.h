@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A device's time stamp, carried on over its wraps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Walks through the fields of a frame, of either byte order; and numbers made to fit into one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the intact frames in a byte stream, whatever is between, before or inside them.
 //
 // At each position that holds a header the frame's bytes are awaited and its checksum is tried. A frame that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One message of a KVH 1725/1750/1775 IMU or DSP-1760, in the units it is sent in. Everything is big-endian.
 // Source: 1775 IMU technical manual 56-0298, tables 5-1 to 5-9.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frames of a KVH device in a byte stream: what the finder of intact frames has to know of them.
 #pragma once
 

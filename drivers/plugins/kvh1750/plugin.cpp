@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `kvh1750`: KVH 1725, 1750 and 1775 IMU and DSP-1760, message formats A, B and C.
 //
 // The bytes carry numbers without their meaning: radians or degrees, rate or delta angle, the temperature's

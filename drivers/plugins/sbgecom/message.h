@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The IMU messages of the SBG Systems sbgECom protocol. Everything is little-endian.
 // Source: SBG Systems, sbgECom binary protocol and binary messages (firmware reference manual), "Standard
 // Frame", "CRC Definition", SBG_ECOM_LOG_IMU_DATA (03), SBG_ECOM_LOG_IMU_SHORT (44).

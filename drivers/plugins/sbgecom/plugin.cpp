@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `sbgecom`: SBG Systems Ellipse, Apogee, Ekinox, Quanta, Pulse, IMU logs of the sbgECom protocol.
 //
 // Both messages give the mean rate and specific force over the interval between two of them, coning and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `stdbin`: iXblue (Exail) fibre-optic INS, AHRS and gyrocompasses (Octans, Quadrans, Hydrins,
 // Phins, Rovins, …), STDBIN telegrams of versions 2 to 5.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Navigation telegrams of the iXblue (Exail) STDBIN protocol, versions 2 to 5. Everything is big-endian.
 // Source: iXblue, INS interface library, STD BIN protocol: header, block masks and the lengths of the blocks.
 //

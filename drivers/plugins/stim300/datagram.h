@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Normal Mode datagram of the Sensonor STIM300, in counts. Everything is big-endian.
 // Source: STIM300 datasheet TS1524 rev. 31, tables 5-20 to 5-23, section 5.5.7; the identifiers with AUX,
 // which PPS has replaced, from its revisions up to 19.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `stim300`: Normal Mode datagrams of the Sensonor STIM300.
 //
 // The identifier says what a datagram holds; the units of the counts are set in the device and must be said

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver to copy. It is built and tested with everything else, so what stands here works.
 //
 // To make yours, in a folder of its own, out of this tree:

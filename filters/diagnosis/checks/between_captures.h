@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several captures of one sensor, compared coefficient by coefficient: an effect of the sensor's own is the
 // same in all of them, and what only ran beside a channel once is not.
 #pragma once

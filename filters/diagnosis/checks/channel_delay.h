@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A channel that was logged late: the effect is there before its cause. One that was logged early looks like
 // one that acts through a lag, and lags are tried anyway.
 #pragma once

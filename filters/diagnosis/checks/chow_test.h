@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether an effect is the same all along the record. What no form covers can look like a form for a while,
 // and then another coefficient fits every part of the record.
 #pragma once

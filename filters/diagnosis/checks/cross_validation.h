@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cross-validation: the effects subtracted from the errors, by coefficients of all blocks and by those that
 // were fitted without the block's own part of the record.
 #pragma once

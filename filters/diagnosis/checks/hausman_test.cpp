@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/checks/hausman_test.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether an effect is the same for what is quick and for what is slow. Innovations weigh quick changes;
 // where the noise is not what the model takes it for, a coefficient fitted to them can be far too large for
 // the slow part of the error, and the correction would make it larger.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether an effect lives on a few blocks. Knocks and jumps are no Gaussian noise: a few huge innovations let
 // any channel that moves at the right moments gain more likelihood than chance in Gaussian noise would.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an effect has to prove beyond its likelihood.
 #pragma once
 

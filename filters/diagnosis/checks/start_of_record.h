@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What settles at the start of a record, and a filter that does not know how the record began.
 #pragma once
 

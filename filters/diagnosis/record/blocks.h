@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records cut to means over blocks of equal length, a few thousand in all: slow effects are told from slow
 // noise just as well there, at a thousandth of the cost. Channels keep a finer grid, on which the causal
 // shapes run before they are averaged, so that lags and derivatives are not blurred by the block.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of logging: a thermometer that says 85 or -127 °C for some seconds (power-on and bus error of the
 // DS18B20), a glitch of the logger, a value that stands still while the sensor moves on.
 #pragma once

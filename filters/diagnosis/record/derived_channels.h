@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Channels that no logger writes and that physics asks for: the difference of two like channels (two
 // thermometers on one coil see its gradient), the rates of the sensor's other axes, and angles without their
 // wraps.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The error of every record on its nominal grid, and what of it is explained so far.
 #pragma once
 

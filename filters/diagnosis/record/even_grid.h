@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A record on its nominal grid: even steps, so that spectra and Allan deviations mean something.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The figures of an error series by which before and after are compared, and what the series looks like.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of each record that is fitted; what is left of it judges.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A series on an even grid, moved by a part of a step.
 #pragma once
 

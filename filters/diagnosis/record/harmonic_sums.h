@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What harmonics of an angle's error explain of a rate, for k cycles a radian close to one given: the rate is
 // summed against each harmonic over short pieces once, and another k costs the pieces only.
 #pragma once

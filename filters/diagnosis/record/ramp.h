@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The feedback ramp of a closed-loop sensor, if a channel is one: a counter that wraps and whose slope is the
 // closed loop's own measure of the rotation. Its nonlinearity is an error of the angle, f(ramp), so that of
 // the rate is the difference of f from sample to sample over dt. f is bounded: this correction cannot swallow

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nonlinearity of a rebuilt feedback ramp as a table over its cycle, fitted by harmonics over the angle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records without what their closed loops' feedback ramps make of them, logged or rebuilt.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/record/rebuilt_ramp.h"
 
 #include <algorithm>
@@ -22,6 +23,9 @@ constexpr double kQuickSensor_hz = 20.0;
 constexpr double kUsualCycles = 1e5;  // a coil of 10 cm at 1.55 um has 7e4
 constexpr double kSeenCycles = 20.0;
 constexpr double kCertain = 3.0;  // standard errors of the table
+// The ramp's phase is the angle's: it walks from the measured one by that one's noise at most, k N. A line
+// that walks more, a swaying structure's say, follows itself.
+constexpr double kMostWalk = 1.5;
 
 double rms(const std::vector<double>& angle) {
   double square = 0.0;
@@ -152,6 +156,7 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
     if (p_value > significance) continue;
     const std::optional<RampTable> table = fit_ramp_table(part, *comb);
     if (!table || rms(table->one_cycle()) < kCertain * table->angle_error) continue;
+    if (table->phase_walk > kMostWalk * table->cycles_per_rad * table->noise_density) continue;
     RampFit fit;
     fit.effect = effect_of(*table);
     fit.ratio = comb->ratio;

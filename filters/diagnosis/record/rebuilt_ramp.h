@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A feedback ramp that was not logged: its k found by the comb it leaves in the rate, its table fitted over
 // the angle that the sensor has measured, its correction made by the code that runs online.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a channel was, from what its sensor read. Readings come in steps and with noise of their own, and a
 // regressor made of them is wrong by just that: a derivative of whole degrees is a row of spikes, and what
 // such a regressor misses another form picks up. The search therefore looks at reconstructed channels; what

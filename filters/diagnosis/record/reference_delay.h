@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A reference that was logged late or early against the rate. The difference of the two is then the true
 // rate's change over the delay: no error of the gyro, but where it turns the largest thing in the record.
 #pragma once

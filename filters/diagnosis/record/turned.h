@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records of a sensor that was turned: without a reference its rotation is no error, and no effect, heading
 // forecast or noise figure may be made of it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A part of a record without a hole, with the angle that the sensor has measured in it.
 #pragma once
 

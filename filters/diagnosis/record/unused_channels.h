@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Columns that a diagnosis cannot use, so that nobody takes their silence for a finding.
 #pragma once
 

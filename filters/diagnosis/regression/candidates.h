@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the diagnosis tries: every form on every channel, with coarse grids of time constants that are refined
 // for those that do well.
 #pragma once

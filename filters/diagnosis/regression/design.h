@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The regression itself: which columns there are, which blocks stand together, and generalised least squares.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resonances and lines in the noise: damped harmonics, as many as the Bayesian information criterion asks
 // for, each sought where the innovations of the noise so far are not white, and fitted together with white
 // noise, flicker and walk by the likelihood of the innovations.

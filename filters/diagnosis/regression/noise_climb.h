@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way up the likelihood of the noise's parameters.
 #pragma once
 

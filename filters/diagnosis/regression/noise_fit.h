@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maximum likelihood of the noise model, given regressors: the likelihood of the filter's innovations with
 // the white variance and the coefficients of the regressors concentrated out.
 #pragma once

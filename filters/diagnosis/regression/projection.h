@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes columns out of others: what ordinary least squares on them leaves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the fit does not know. A coefficient's error depends on the slow noise, which the record itself has to
 // tell, and of which it holds few independent pieces: taking the likeliest noise for the true one makes
 // intervals too narrow, the more so where the likeliest walk is zero. So the coefficients are averaged over

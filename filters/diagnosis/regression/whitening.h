@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise model of block means and its Kalman filter, in steady state: white noise, a random walk,
 // flicker as a bank of Gauss-Markov processes of equal variance whose time constants are a factor apart, and
 // damped harmonics, which are what a structure that sways and lines that move leave in the rate. That is

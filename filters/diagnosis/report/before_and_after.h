@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The figures of the error before and after, pooled over the records.
 #pragma once
 

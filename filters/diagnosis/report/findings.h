@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The search's result as a report tells it: effects with parameters and their errors, the covariance, the
 // ranges they were fitted on, and what each cannot be told from.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of a report that are larger after the correction than before it. Over many means that is harm; over
 // a few, what the effect had hidden by chance may come to light, and the report says so beside the figure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/held_out_part.h"
 
 #include "filters/diagnosis/record/compensated_error.h"

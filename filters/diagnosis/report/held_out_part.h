@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Before and after on the part of the records that was kept out of the fit: the model's effects subtracted
 // causally, by the code the daemon runs.
 #pragma once

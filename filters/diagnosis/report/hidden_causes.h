@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What speaks for a cause that was not logged, in sentences.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops that this record cannot tell from the effects found: as long as a channel does not turn, a polynomial
 // or its rate describes a loop just as well, and fails on the next capture.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise terms of what the effects leave, as every command reports them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a model leaves of the heading of a capture not yet made: exact for the linear functional "angle after
 // alignment", from the state space that the diagnosis fitted and the regressors of the capture's own
 // channels.

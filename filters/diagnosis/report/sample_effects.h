@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Effects that were fitted to samples and not to block means, outside the joint fit: ramps and fast lines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which capture would tell two effects apart that this one cannot.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is written is judged: the daemon's own correction with the model that the findings make.
 #pragma once
 

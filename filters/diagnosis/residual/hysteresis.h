@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bias that depends on which way a channel came: the loop of the play operator, which no form of the model
 // file describes. It is told apart all the same, since for as long as the channel moves one way it looks like
 // the channel's rate, or like a polynomial of it, and fails as soon as the channel turns.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines in the spectrum of the error: frequency searched, amplitude against the noise around it, and whether
 // one amplitude and phase hold for the whole record. A resonance or a moving line is a peak too, but not a
 // line.

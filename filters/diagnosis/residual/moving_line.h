@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line whose frequency moves with the rate: of the closed loop's own making, like the harmonics of a
 // feedback ramp that was not logged. Its phase follows the angle turned, so that a carrier driven by the
 // integrated rate gathers more of it than any fixed frequency.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The coherent lines of the records' errors, slow ones as candidates for the fit of block means, fast ones as
 // they are.
 #pragma once

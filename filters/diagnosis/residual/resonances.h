@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Peaks of the spectrum that are too wide, or come and go too much, to be lines: what the mounting or the
 // structure does, which is motion and no error of the sensor.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stays, in words a person can act on.
 #pragma once
 

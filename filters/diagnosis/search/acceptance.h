@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a search chose, put to the proof by what it leaves of the error.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Earth's rate in a gyro that tilts: rotation, and the first reading of an effect of acceleration that is
 // not larger than it can be.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many independent tries a search over correlated candidates amounts to. Counting every column and every
 // position of a step would ask for far more than chance can do, and effects that are there would be missed.
 #pragma once

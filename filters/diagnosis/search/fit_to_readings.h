@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The search fits an effect to what a channel was; the daemon has only what its sensor reads. A derivative of
 // coarse readings with the effect's own bandwidth would be spikes, so the bandwidth, and the size with it,
 // become those whose correction comes closest to the effect that was found.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Searched time constants at their optimum.
 #pragma once
 

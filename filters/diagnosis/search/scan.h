@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scores of the whole library at once: for a spread of noise models around the present one every column is
 // whitened, the effects already chosen are projected out, and what is left of each column is regressed on
 // what is left of the measurement. The best noise model counts for each candidate separately: the noise

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/search/search.h"
 
 #include <algorithm>
@@ -5,6 +6,7 @@
 
 #include "filters/diagnosis/checks/proof.h"
 #include "filters/diagnosis/regression/harmonics.h"
+#include "filters/diagnosis/search/channels_first.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/diagnosis/search/refine.h"
@@ -13,12 +15,11 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kShortlist = 4;    // candidates of different shape that are refined at each step
-constexpr double kSwapGain = 3.0;        // twice the log-likelihood a swap or a pair has to gain
-constexpr double kSecondLag = 16.0;      // and a second time constant of a lag
-constexpr double kLikeness = 6.0;        // loss below which another effect cannot be told from the chosen one
-constexpr double kChannelsFirst = 10.0;  // twice the description that channels may be longer than a warm-up
-constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
+constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
+constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
+constexpr double kSecondLag = 16.0;    // and a second time constant of a lag
+constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
+constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
 // What a natural pair has to bring beyond its two effects' complexity: it has one more coefficient than a
 // form about a known point.
@@ -367,39 +368,13 @@ double score_of(const SearchResult& result) {
 
 namespace {
 
-// Twice the length in which the data are described: three channels that together happen to settle are dearer
-// than one that does.
-double description(const BlockGrid& grid, const SearchResult& result) {
-  double parameters = 0.0;
-  for (const Chosen& each : result.chosen)
-    parameters += static_cast<double>(each.candidate.width()) + (each.candidate.searched() ? 1.0 : 0.0) +
-                  (each.candidate.second_time_constant_s > 0.0 ? 1.0 : 0.0);
-  return parameters * std::log(static_cast<double>(grid.used())) - score_of(result);
-}
-
-bool has_warm_up(const SearchResult& result) {
-  return std::any_of(result.chosen.begin(), result.chosen.end(),
-                     [](const Chosen& each) { return each.candidate.form == Form::kWarmUp; });
-}
-
-// Whether a channel explains what another search had left to something else.
-bool explains_by_channel(const SearchResult& result, const SearchResult& other) {
-  return std::any_of(result.chosen.begin(), result.chosen.end(), [&](const Chosen& each) {
-    return each.candidate.channel != Candidate::kNone &&
-           std::none_of(other.chosen.begin(), other.chosen.end(),
-                        [&](const Chosen& also) { return also.candidate.same_shape(each.candidate); });
-  });
-}
-
 SearchResult searched(const BlockData& reconstructed, const SearchOptions& options) {
   std::vector<Candidate> candidates = library(reconstructed);
   SearchResult found = EffectSearch(reconstructed, options, candidates).run();
   if (!has_warm_up(found)) return found;
   std::erase_if(candidates, [](const Candidate& each) { return each.form == Form::kWarmUp; });
   SearchResult by_channels = EffectSearch(reconstructed, options, std::move(candidates)).run();
-  const BlockGrid& grid = reconstructed.grid;
-  if (!explains_by_channel(by_channels, found)) return found;
-  return description(grid, by_channels) < description(grid, found) + kChannelsFirst ? by_channels : found;
+  return channels_explain_it(reconstructed.grid, by_channels, found) ? by_channels : found;
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The search of the diagnosis: score every candidate in the innovations of the noise model, take the one that
 // also predicts held-out blocks, fit everything anew, until nothing passes.
 #pragma once

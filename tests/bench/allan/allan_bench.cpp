@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Overlapping Allan deviation of a file of doubles (rad/s, native byte order) at the averaging times of a
 // second file (whole numbers as text). Prints processor seconds of the analysis alone, user's
 // and all, bytes of the samples and peak bytes of the process, then one deviation a line.

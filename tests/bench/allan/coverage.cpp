@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How often what is said about a record's noise is true: intervals of the deviations, presence of terms,
 // their error bars and bounds, over simulated records with known coefficients, one term alone or two that
 // cross somewhere along τ.

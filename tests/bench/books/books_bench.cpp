@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs of a pipeline with random faults, one a seed: do the books balance, is the angle that of the intact
 // frames, and does anything stay behind?
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time and memory of one diagnosis: by default an hour at 1 kHz with eight channels, three effects hidden in
 // it. The capture is made in memory, so that no parsing is in the figures. Prints processor and elapsed time
 // and the process's peak memory as a multiple of the capture's own doubles; exits 1 when a target of 10 s of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Heading over a day, accelerated: three gyros of 5 kHz through the daemon's own pipelines (driver, ring,
 // filter, LCM encoding), with reloads and overload all the way. What is published, decoded from the encoded
 // messages, is compared with what was sent, which is known exactly: every rate is a whole multiple of 2^-20

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Kills the daemon at random moments while it records, and holds the recording to the bytes that were sent.
 
 usage: tests/bench/kills/run.py [--kills 1000] [--jobs 4] [--seed 1] [BUILD_FOLDER]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a frame's last byte to the end of its LCM send, and processor time a sample: the daemon's pipeline
 // beside a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
 // ring, plugin or filter. With --record a third time, with the flight recorder on. Interleaved rounds in one

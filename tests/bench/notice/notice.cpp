@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the daemon notices of a gyro, and how often wrongly: many months in blocks, and the whole chain at its
 // sample rate. One line a case; results.md has them.
 //

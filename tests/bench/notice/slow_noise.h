@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise of a gyro as it is seen in means over some seconds, and below.
 #pragma once
 

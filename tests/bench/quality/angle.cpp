@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ways of keeping the angle, side by side: what each loses over a turn and makes of coning and of a sea, and
 // what it costs at rest.
 //

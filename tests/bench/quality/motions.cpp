@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/quality/motions.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // True rates of the regimes, in σ of the measurement noise and in samples; zero before sample `from`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measurement noise of the regimes, in units of its standard deviation at rest, σ = 1. Each is white with
 // variance 1 and mean 0 unless it says otherwise.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The quality study: every rule on every motion, told Q and R rightly and wrongly. Figures are RMSE over the
 // samples after the first thousand, as a multiple of a Kalman filter told the true Q and R of the noise, mean
 // over seeds with the standard deviation between seeds; on moving scenarios that filter lags, so figures far

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The denoised rate in every regime against the conventional Kalman filter told the true Q and R at rest.
 //
 //   regime_bench [--seed FIRST] [--seeds N] [--qr Q/R]... [--regime NAME]... [--filter NAME] [--json F]

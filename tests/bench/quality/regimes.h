@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The regimes in which the denoised rate is judged: a true rate that walks at random with variance Q a
 // sample, a motion on top, and measurement noise of variance R = 1 at rest, sampled at 200 Hz. In units of σ
 // = √R.

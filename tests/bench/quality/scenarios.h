@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The motions of the quality study, in units of the measurement noise and in samples.
 #pragma once
 

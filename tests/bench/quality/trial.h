@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One record through one filter, and what came of it.
 #pragma once
 

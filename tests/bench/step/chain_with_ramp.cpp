@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of a sample through the whole chain with a rebuilt feedback ramp in the model, as a multiple of the
 // same chain without a model: once the phase is known, and while it is being acquired (a record that has no
 // ramp, so that it never is).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of one filter step as a multiple of a hand-written scalar Kalman step, and of plain Eigen of the same
 // size.
 //

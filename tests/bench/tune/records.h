@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records of a gyro at rest made from the definition of each process, with none of the filter's code.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does `tune` find the maximum? On simulated records, the likelihood it ends with against the best of fifty
 // searches from starts that know nothing of the spectrum; and whether BIC then picks the model that made the
 // record. Usage: tune_bench [RECORDS [SAMPLES [SEED]]], 200 of 3000 from seed 1.

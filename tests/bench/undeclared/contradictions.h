@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a report says against itself, or against what the model it writes does to the capture it was made of.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws of the scenario maker: a stream is a function of (seed, stream), so that a sensor can be made again
 // from its seed alone and its noise does not change when its environment is drawn differently.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What surrounds a sensor during one capture: every channel as the physics sees it and as it was recorded.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What loggers do to a capture: the sensor and its effects are as they were, the record of them is not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes captures of a sensor with undeclared effects, and what was hidden into a folder of its own, so that
 // whoever reads the captures cannot see it.
 #include <CLI/CLI.hpp>

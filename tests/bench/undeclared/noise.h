@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sensor's own noise with its exact state space, so that what an effect is worth against it can be
 // computed by an oracle that knows the truth and shares no code with the diagnosis.
 #pragma once

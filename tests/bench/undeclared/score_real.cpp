@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real noise instead of simulated: negative controls, with channels borrowed from other captures, where every
 // effect traced to a channel is a false alarm; and effects implanted in it, which are to be found.
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a diagnosis said against what was hidden, by names first and by an oracle second.
 //
 // A true effect is found *exactly* when form and channel (and the partner of a product) are named as hidden.

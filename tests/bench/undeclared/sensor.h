@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A simulated gyro with hidden effects: drawn from its seed, sized in GLS sigma against its own true noise,
 // and recorded as often as wanted, each time in another environment and with another switch-on bias.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a sensor stands on: motion, which is in the rate and is no error of the sensor.
 #pragma once
 

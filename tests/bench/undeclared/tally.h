@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scores of many sensors as tables, by kind and by size, with the promises they are held to.
 #pragma once
 

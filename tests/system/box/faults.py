@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What befalls a navigation computer at sea: clocks that are set, interfaces and cables that go, sensors that babble, a full
 disk, a process that is stuck. Checks of the box (run.py), after those that set it up."""
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames as the makers describe them, packed here by hand: nothing of the project's own encoders is used."""
 import math
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An emulated navigation computer: Debian's kernel and systemd under QEMU, driven from the host.
 
 The host runs commands through a virtio port, holds the other end of the serial lines as unix sockets, and pulls and

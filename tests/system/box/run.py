@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The Debian package under its real unit in an emulated navigation computer: kernel, systemd, SocketCAN, serial lines.
 
 usage: run.py BUILD PACKAGES WORK [--pulls N] [--kills N] [--seconds S] [--only WORD]...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The error of the next capture before and after the model, beside what the sensor's own noise leaves.
 
 usage: judge.py KIND FOLDER

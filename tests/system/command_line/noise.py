@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What the command line says of a sensor's noise: the same from every command, of the parts at rest, up to the τ there is.
 
 usage: noise.py PATH_OF_IFOG SOURCE_DIR

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The commands of a README, run as printed: every `sh` block in its order, in one shell, from the project's root.
 
 usage: readme.py README SOURCE_DIR BUILD_DIR

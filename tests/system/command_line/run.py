@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The command line as other programs use it: JSON and CSV as promised, exit codes, one clear line for bad input.
 
 usage: run.py PATH_OF_IFOG SOURCE_DIR

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the commands write as JSON, held to the schemas that are installed for others.
 
 A schema lets others add keys, as later versions may; here it does not, so that a key that no schema knows fails.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Every --json against its schema, with captures that make it say all that it can: several axes, holes, a reference, a model.
 
 usage: schemas.py PATH_OF_IFOG SOURCE_DIR       Exit 77 without python3-jsonschema.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What `ifog` reads and writes, attacked: pipes and standard streams in place of files, devices, links, full disks, closed
 pipes, interrupts, and names that a shell, a terminal or a picture could take for more than a name.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A second decoder, in another language and by the definitions, against `ifog convert`.
 
 Packs CAN frames here, one bit at a time, from a DBC file as people write it by hand, in both formats of candump, and

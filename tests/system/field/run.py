@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The loop in the field, with the real programs: a gyro whose temperature effect nobody declared runs for two accelerated
 days. The first night proposes a model, a person adopts it while the second day runs, and that day's error is smaller by
 what was promised; the published angle is exact over the adoption.
@@ -20,12 +21,24 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "command_line"))
+import schema  # noqa: E402
+
 HZ = 10
 ROWS = 2 << 16  # of a day, 3.6 h: the frames' counter, of 16 bits, goes on from one to the next
 DAY_S = ROWS / HZ
 SPEED = 300
 URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4000000"
 PER_HOUR = 180 / math.pi * 3600
+
+
+def document(path):
+    """JSON of the programs, as its schema has it."""
+    with open(path) as file:
+        out = json.load(file)
+    schema.check(out)
+    return out
+
 
 SCENARIO = f"""
 name = "undeclared"
@@ -103,8 +116,7 @@ class Field:
         said = self.run(command, *arguments, "--config", self.config, "--json", out, **more)
         if not os.path.exists(out):
             return said, None
-        with open(out) as file:
-            return said, json.load(file)
+        return said, document(out)
 
     def sensor(self):
         return self.of("status")[1]["sensors"][0]
@@ -198,8 +210,8 @@ file_s = 3
         self.check(len(listed) == 1 and not listed[0]["stale"] and listed[0]["against"] == "", "it waits, made against no model")
         self.check(self.sensor()["model"] == "", "nothing was adopted by itself")
         self.check("no recording has been closed since" in self.run("night", "--config", self.config), "the next night begins where this one ended")
-        with open(self.path("state/nose.proposal.json")) as file:
-            self.proposal = json.load(file)
+        self.proposal = document(self.path("state/nose.proposal.json"))
+        document(self.path("state/nose.night.json"))
         shutil.copytree(self.state, self.path("as-proposed"))
 
     def second_day(self):
@@ -270,8 +282,7 @@ file_s = 3
         said = self.run("adopt", "nose", "--config", self.config)
         self.check("the daemon does not run" in said, "adopted again, without a daemon")
         self.check(self.of("status")[1]["sensors"][0]["model_file"] == self.proposal["model"]["identity"], "its next start will have it")
-        with open(self.path("state/nose.history.json")) as file:
-            changes = json.load(file)["changes"]
+        changes = document(self.path("state/nose.history.json"))["changes"]
         self.check([c["what"] for c in changes] == ["adopt", "revert", "adopt"], "the history has it all")
 
 

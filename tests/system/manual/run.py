@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The manual against the programs, and read by the programs that read manuals; and the shell's completion, typed at.
 
 usage: run.py PATH_OF_IFOG PATH_OF_IFOGD SOURCE_DIR MANUAL_DIR

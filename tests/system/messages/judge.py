@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What the subscribers printed: the same of the same message, and what was sent.   usage: judge.py COUNT FILE..."""
 import pathlib
 import sys

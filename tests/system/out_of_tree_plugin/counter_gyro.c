@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A gyro that sends one byte a sample: its rate as signed whole degrees per second. Written in C and against the
  * installed headers only, as the interface promises is possible. */
 #include <ifog/driver.h>

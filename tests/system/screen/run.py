@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """`ifog monitor` at a terminal, as a person sees it: pyte, a terminal emulator that is not ours, keeps the screen that the
 program draws, while the real daemon plays a recording of three axes in a network namespace.
 

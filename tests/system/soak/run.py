@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The daemon for many hours of a gyro's time, as fast as this machine carries them: a day at 1 kHz is some minutes.
 
 usage: run.py BUILD [--hours H] [--hertz R]      24 hours at 1000 Hz unless said

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The daemon on a virtual CAN bus at full speed, in a real kernel that runs as a process (user-mode Linux).
 
 usage: run.py BUILD WORK [FOLDER_WITH_REAL_CAPTURES]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lets Debian's user-mode Linux run on processors with AMX. That kernel keeps a process's floating-point
 // registers in a buffer of fixed size; the state of such a processor is longer (tiles), and the host's kernel
 // refuses to write part of it (EFAULT, xstateregs_set). This shim, preloaded, puts the short state over the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Seeded simulations with known coefficients: the error bars are kept as often as they promise, terms that
 // are absent are reported absent, and a ramp is not a random walk.
 #include "filters/allan/noise_coefficients.h"

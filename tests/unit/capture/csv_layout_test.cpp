@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CSV files of other makers: their columns, units, separators, and what a header that is nearly right is
 // told.
 #include "drivers/capture/csv_layout.h"

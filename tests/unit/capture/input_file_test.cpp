@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Read once, from the start: the same text from a file, a packed file, a pipe, and a packed file in a pipe.
 #include "drivers/capture/input_file.h"
 

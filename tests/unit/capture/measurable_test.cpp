@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One cell that no sensor can have measured is missing; it neither refuses the capture nor stays in it.
 #include "drivers/capture/measurable.h"
 

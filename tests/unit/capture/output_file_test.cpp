@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is written is there whole or not at all, and nothing that is not a regular file is ever replaced.
 #include "drivers/capture/output_file.h"
 

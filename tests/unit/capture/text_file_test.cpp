@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
 // short line.
 #include "drivers/capture/text_file.h"

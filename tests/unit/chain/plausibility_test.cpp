@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One impossible number must stay without consequence, and be counted.
 #include "filters/chain/plausibility.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Heap allocations between the first and the last sample of a running pipeline, the send on LCM's UDP
 // included.
 //

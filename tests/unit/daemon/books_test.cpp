@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever happens, the books balance at every look, and the published angle is what the intact frames say.
 #include "daemon/health/books.h"
 

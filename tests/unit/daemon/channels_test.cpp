@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Environment channels from outside a sensor's own frames: a file, an LCM message, another CAN frame.
 #include "daemon/channels/channel_sources.h"
 

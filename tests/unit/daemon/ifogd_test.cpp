@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon as a user starts it: what it says and how it ends where something is wrong, and a run with
 // channels from outside.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values out of LCM messages, and messages that lie.
 #include "daemon/channels/lcm_field.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a running pipeline says of itself.
 #include "daemon/housekeeping/status_report.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole pipelines, from bytes to encoded messages.
 #include "daemon/pipeline/pipeline.h"
 

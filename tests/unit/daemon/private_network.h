@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LCM is multicast: a test that uses it moves into a network namespace of its own, so that nothing leaves the
 // machine.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon as it runs, its flight recorder on: what the command line makes of the recording is what the
 // daemon published and what the device sent.
 #include <fcntl.h>

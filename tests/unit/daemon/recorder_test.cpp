@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flight recorder in the daemon: what the reader thread puts on the tape, and what the recorder makes of
 // it.
 #include "daemon/recorder/recorder.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole pipelines, from bytes to encoded messages: two real threads, the real plugin, a publisher that keeps
 // all.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon while it runs: what reloading, silence and a lost log do to it.
 #include <fcntl.h>
 #include <gtest/gtest.h>

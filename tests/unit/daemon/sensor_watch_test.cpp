@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the daemon notices of a sensor. Oracles: the law that a test's threshold is derived from, and what was
 // put into the samples. Months of them at full rate are in tests/bench/notice.
 #include "daemon/health/sensor_watch.h"

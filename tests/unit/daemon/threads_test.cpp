@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A system that has no thread left. This program's pthread_create stands before the system's.
 #include <dlfcn.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Block data for tests of one room at a time, made without cut_to_blocks().
 #pragma once
 

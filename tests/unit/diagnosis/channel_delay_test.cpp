@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A channel that was logged late is told by how much, and its effect is found all the same.
 #include "filters/diagnosis/checks/channel_delay.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What loggers do to a channel is undone, and what only looks like it is left alone.
 #include "filters/diagnosis/record/channel_faults.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The room `checks`: what an effect has to prove beyond its likelihood.
 #include <gtest/gtest.h>
 

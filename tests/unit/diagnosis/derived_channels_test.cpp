@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/record/derived_channels.h"
 
 #include <gtest/gtest.h>

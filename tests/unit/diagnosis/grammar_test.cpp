@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinds of effects from the physics of the instrument, made here by their laws and found by the diagnosis:
 // other axes, differences, switches, turns, and the Earth's rate, which is none.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Damped harmonics in the noise: the filter against dense covariances, the fit against what was drawn, and
 // effects found beside a structure that sways.
 #include "filters/diagnosis/regression/harmonics.h"

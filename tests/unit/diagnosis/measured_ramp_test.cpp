@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measured ramp: an IFOG at rest whose feedback ramp was recorded with it (blueseis_bs1_ramp). Fitted on
 // the first half of the record, judged on the second, by the code the daemon runs. Skipped, with the reason,
 // where the capture is not there.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measured rate table: a FOG on a heated table with its reference rate (fog_rate_table), nothing told but
 // the columns. Skipped, with the reason, where the capture is not there.
 #include <gtest/gtest.h>

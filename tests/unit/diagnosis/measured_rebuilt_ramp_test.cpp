@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measured ramp without its channel: blueseis_bs1_ramp as if nobody had logged ramp_counts. Fitted on the
 // first half of the record; judged on the second as the daemon would meet it, its phase unknown. The counts
 // are the oracle for k. Skipped, with the reason, where the capture is not there.

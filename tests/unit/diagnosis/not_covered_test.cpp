@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What no form describes must not pass for what one does: a loop in the temperature, a coefficient that is
 // another one in every part of the record.
 #include <gtest/gtest.h>

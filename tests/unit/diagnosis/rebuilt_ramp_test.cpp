@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A feedback ramp that was not logged, found in the rate. The oracle is the formula that made the rate.
 #include "filters/diagnosis/record/rebuilt_ramp.h"
 

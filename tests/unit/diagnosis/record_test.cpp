@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The room `record`: what a capture is before anything is fitted to it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A reference that was logged late is told by how much, to a part of a sample, and is put right.
 #include "filters/diagnosis/record/reference_delay.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The room `regression`: regressors and least squares, against closed forms and normal equations.
 #include <gtest/gtest.h>
 

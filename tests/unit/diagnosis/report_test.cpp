@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The room `report`: what was found, as a person and a model file are told.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The room `residual`: what effects leave, as lines, as lines that move, and in words.
 #include <gtest/gtest.h>
 

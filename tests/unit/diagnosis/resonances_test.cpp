@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Peaks of a structure are named, noise is not taken for one.
 #include "filters/diagnosis/residual/resonances.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of the search that have an answer of their own: what a channel was, how many tries there are,
 // and whether slow and quick agree about an effect.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The room `search`: scores, refinement, the choice of effects and what is dropped again.
 #include <gtest/gtest.h>
 

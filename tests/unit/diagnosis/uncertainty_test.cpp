@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The promises of a fit, kept in repeated trials: how often intervals hold the truth, and how large the
 // heading error of another capture is beside what was predicted for it.
 #include "filters/diagnosis/regression/uncertainty.h"

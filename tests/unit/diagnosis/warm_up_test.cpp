@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A warm-up is what no channel explains, and what the start of the filter does not make by itself.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plugin interface as plugins built elsewhere know it: where every field lies. A change here breaks them,
 // so IFOG_DRIVER_ABI must grow with it, and this table with that.
 #include <gtest/gtest.h>

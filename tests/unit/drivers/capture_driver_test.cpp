@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver that takes a CSV capture for a sensor: the same numbers as read_capture gives, from bytes in any
 // portions.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stream of frames of which some are damaged in every way a line can, and the proof that a finder of frames
 // takes every intact one out of it, with its own last byte, however the stream is cut into portions.
 #pragma once

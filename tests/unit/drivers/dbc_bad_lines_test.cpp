@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // DBC files as they are found: what others read is read, a line that cannot be read costs what stands on it
 // and is named.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `dbc`: signals picked by options, samples gathered from several frames, nothing made of two
 // samples.
 #include <gtest/gtest.h>

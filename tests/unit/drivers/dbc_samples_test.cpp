@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver `dbc`: frames that come twice, samples that stay unfinished, files with bad lines; every loss is
 // counted.
 #include <gtest/gtest.h>

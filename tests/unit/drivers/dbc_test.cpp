@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The DBC reader and the bit layouts: against vectors worked out by hand, and against a second method that
 // follows the format's definition one bit at a time.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines written by hand from the maker's description of the 100 Hz interface.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes as manuals print them: "FE81 FF55", capital hexadecimal digits, spaces anywhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finding, loading and refusing plugins, and refusing options.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame layout against bytes that our encoder did not make: the standard's check value and frames packed
 // by hand from the maker's description, the CRC by the bit-serial definition.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The name that may have been meant. Distances by hand.
 #include "drivers/ifog/nearest.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Foreign text in messages: bounded, and nothing a terminal acts on.
 #include "drivers/ifog/quoted.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Captures to what a device would have sent, and back, through the real plugins.
 #include "drivers/capture/recording.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sbgECom frames packed by hand from SBG Systems' description of the protocol; the CRCs at their ends come
 // from the bit-serial definition, outside this program.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // STDBIN telegrams packed by hand from iXblue's description of the protocol, their sums added up outside this
 // program.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // STIM300 datagrams packed by hand from the tables of the maker's datasheet (TS1524 rev. 31); the CRCs at
 // their ends come from long division done outside this program.
 #include <gtest/gtest.h>

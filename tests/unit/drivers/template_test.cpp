@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver to copy does what its comment promises: frames by hand, split and damaged streams, encode and
 // decode.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Units as DBC files spell them, against factors worked out by hand.
 #include "drivers/units/units.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Heap allocations of Compensator::step() with a rebuilt ramp: none, while its phase is sought, found, lost
 // in gaps and turns, and taken over at a reload.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A feedback ramp with a closed form, rebuilt online: the oracle is the formula that made the rate.
 #include "filters/effects/ramp_tracker.h"
 

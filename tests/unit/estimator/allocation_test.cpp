@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Heap allocations of Estimator::step(): none, whatever the rule, the weights and the model, through rest,
 // outliers, gaps, missing samples, a manoeuvre and a divergence.
 #include <gtest/gtest.h>

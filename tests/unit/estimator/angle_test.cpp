@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The angle: integral of (denoised - measured) back at zero after manoeuvres, and coning not rectified.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bank of filters at rest: whatever its weights do, nothing comes out that did not go in.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What changes and is no change of rate, and what creeps: noise that becomes louder, drift under a step, slow
 // motion beside a long lag, an axis that is missing.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Noise that is not white, as every measured record's: lines, a colour, tails. The test for manoeuvres must
 // not find any in it, and must still find a real one.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records for the estimator's tests: a random walk in white noise with a motion on top, in units of the
 // noise.
 #pragma once

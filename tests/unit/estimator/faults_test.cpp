@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Missing and bad measurements, uneven time, a stuck sensor, a covariance that breaks.
 #include <gtest/gtest.h>
 

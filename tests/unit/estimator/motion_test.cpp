@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // At rest as good as a Kalman filter told the truth; after a change of rate quick; not led astray by an
 // outlier.
 #include <gtest/gtest.h>

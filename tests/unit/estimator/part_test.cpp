@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A part of a recording that carries the whole's sequence gives the whole's bits, once what came before the
 // part is forgotten to the last bit; without the sequence it never does, as other random weights are drawn.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is published of a model with a colour or a line: the level alone. The rest of the model is the noise
 // it was tuned on.
 #include <gtest/gtest.h>

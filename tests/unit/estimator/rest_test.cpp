@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rest detector, and the noise that is learned while it says so.
 #include <gtest/gtest.h>
 

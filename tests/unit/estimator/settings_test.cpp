@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings that cannot work are refused by name, with the value and what was expected.
 #include <gtest/gtest.h>
 

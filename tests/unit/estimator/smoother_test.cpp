@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The smoother against the least squares it stands for, and over steps and gaps.
 #include "filters/estimator/smoother.h"
 

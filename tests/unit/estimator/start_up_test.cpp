@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Noise from start-up data against the noise it was made with.
 #include "filters/estimator/start_up.h"
 

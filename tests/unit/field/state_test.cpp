@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state folder: proposals, the history of what was adopted, and the mark of a running daemon.
 #include <gtest/gtest.h>
 #include <signal.h>

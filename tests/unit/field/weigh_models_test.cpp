@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a model gains on a recording: the effect that was put in, and the error it leaves.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that begin, end and go; a disk that is full, damaged, or shared with others; a year of it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording that is torn or changed: every loss is counted, and nothing false comes out of it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recording through its driver: the samples that the driver gave when it was recorded.
 #include "drivers/flight/decode.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The format to the byte, by hand, against its description (drivers/flight/format.md).
 #include <gtest/gtest.h>
 

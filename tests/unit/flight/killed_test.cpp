@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process that records and is killed at any moment: what it had written is there, to the bit, and the files
 // are whole.
 #include <gtest/gtest.h>

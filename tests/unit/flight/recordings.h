@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings for tests, in memory, and what reading them gives.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The likelihood against the multivariate normal density of the whole record with its dense covariance
 // matrix. The autocovariances come from the process's own definition, not from the state-space form under
 // test.

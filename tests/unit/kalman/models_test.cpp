@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State models against closed forms: matrices against their definition, the likelihood of a line and of sums
 // against the normal density of the whole record with its dense covariance.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steady-state gains against closed forms of the algebraic Riccati equation.
 #include <gtest/gtest.h>
 

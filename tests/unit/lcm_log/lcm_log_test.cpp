@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Logs of lcm-logger as captures: written here with LCM's own library, read by ours.
 #include "tools/ifog/captures/lcm_log.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Learned noise as a file: what is written reads back to the bit, and what is none is refused by line.
 #include "filters/model_file/kept_noise.h"
 

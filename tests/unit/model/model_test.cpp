@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "filters/model_file/model.h"
 
 #include <gtest/gtest.h>

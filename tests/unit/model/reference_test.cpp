@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reference model and the table of forms, which the manual is made of: all that the program writes, reads
 // and knows.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `ifog monitor` shows what anybody on the network may send: names are shown, never obeyed, and a message
 // that is no message of ours is counted.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `ifog monitor` shows of a sensor, at any width; and messages as JSON.
 #include <gtest/gtest.h>
 

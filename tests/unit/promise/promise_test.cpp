@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Oracles: ordinary least squares in closed form where the noise is white, and how often the intervals hold
 // the truth that was put in.
 #include "filters/promise/promise.h"

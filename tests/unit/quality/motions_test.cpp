@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The motions of the regimes against what they are said to be: slopes, sizes, areas, amplitudes by
 // projection, and the spectrum of random motion against the closed form of the Butterworth filter.
 #include "tests/bench/quality/motions.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise of the regimes against the closed forms of its distribution, its moments and its correlation.
 // Every tolerance is five standard errors of what is compared.
 #include "tests/bench/quality/noise_kinds.h"

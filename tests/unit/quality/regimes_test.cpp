@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The records of the regime bench as a whole, its conventional filter against closed forms, and the bench's
 // own zero: a filter measured against itself.
 #include "tests/bench/quality/regimes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our logarithm and exponential against the C library's in extended precision; the deviates against the
 // moments of their laws.
 #include "filters/random/deviates.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Known answers of Random123's own test file (kat_vectors, philox4x32 and philox4x64, 10 rounds).
 #include "filters/random/philox.h"
 

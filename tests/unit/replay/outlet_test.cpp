@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `ifog replay` does when the system has no room: the system is a stand-in that answers as told.
 #include "tools/ifog/replay/outlet.h"
 

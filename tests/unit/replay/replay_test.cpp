@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `ifog replay` as a user runs it, and the two small parts it is made of. How late it is, is measured beside
 // canplayer in tests/bench/replay; here nothing may come early or be lost.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A diagnosis to make a page of: a gyro whose bias follows its temperature and, through a table of angle, its
 // feedback ramp; filled in by hand, so that the page is tested without the search.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion that was put into a record is found where it is, and noise of every kind is not taken for it.
 #include "filters/rest/rest.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rules against a straight transcription, for a scalar random walk, of the equations they were published
 // with.
 #include <gtest/gtest.h>

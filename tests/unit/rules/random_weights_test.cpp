@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The random weights against the moments of the Dirichlet law, and the variance of the covariance they
 // estimate against what follows from it: for independent innovations whose square has variance t^2, a plain
 // window of n has t^2 / n, one Dirichlet draw t^2 E(sum w^2) = 2 t^2 / (n + 1), B draws t^2 (1/n + (2/(n+1) -

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of filter settings, and that what reads by it agrees: the configuration, the model file, the
 // example.
 #include "filters/settings/filter_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each noise term against the closed form of its Allan variance (IEEE Std 952), with the variance estimated
 // here by the definition, not by our own Allan code.
 #include "tools/simulate/noise.h"

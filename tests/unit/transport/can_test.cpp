@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of the CAN transport can be seen without a kernel that has CAN: the two forms of a frame, what the
 // kernel says beside it, and the refusals. The rest runs on vcan in tests/system.
 #include "drivers/transport/can.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sensor's end of a network line, on this computer's loopback.
 #pragma once
 

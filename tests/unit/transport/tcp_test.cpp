@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The TCP transport on the loopback, with a sensor that listens, closes, is taken and is not there.
 #include "drivers/transport/tcp.h"
 #include "drivers/transport/clock.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The CAN transport on a virtual CAN interface, vcan0, which the tests take down and away: they need root and
 // a kernel that has it (under user-mode Linux: tests/system).
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fixed handful of the bench's sensors: enough to notice when the diagnosis breaks, not to measure it. What
 // it is worth is measured by score_undeclared.
 #include <gtest/gtest.h>

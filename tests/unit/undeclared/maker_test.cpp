@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The maker and its oracle measure the diagnosis, so they are themselves measured: against dense linear
 // algebra, the closed form of the spectrum, and an estimator that is told the truth.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog allan: overlapping Allan deviation and noise coefficients of captures.
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Allan deviation as a picture: both axes logarithmic, with confidence bands and the fitted noise terms.
 #pragma once
 

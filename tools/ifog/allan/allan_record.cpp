@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/allan/allan_record.h"
 #include "filters/units/field_units.h"
 

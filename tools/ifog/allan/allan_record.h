@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `ifog allan` knows of one rate: where it came from, its points, its noise terms. Made from a column of
 // a capture, then told in three ways: table, JSON, picture.
 #pragma once

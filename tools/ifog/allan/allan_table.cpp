@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several records side by side: one line each, in the field's units.
 #include <algorithm>
 #include <array>

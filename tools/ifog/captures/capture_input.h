@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A capture of any kind as the commands take it: CSV as it is; raw bytes and candump logs through a driver;
 // flight recordings through the driver that they name, or another; LCM logs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/capture_output.h"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A capture as the recording that a device would have left, by its driver's encoder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flight recording as the commands read it: what its header says becomes the driver and the sensor.
 #pragma once
 

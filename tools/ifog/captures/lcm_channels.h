@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Environment channels out of LCM messages, as columns beside a sensor's rates: what the sensor's own status
 // says of its channels once a second, and ifog.channel_t of other names.
 #pragma once

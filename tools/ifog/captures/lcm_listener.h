@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages of LCM as they come, for commands that show or keep what the daemon publishes.
 #pragma once
 

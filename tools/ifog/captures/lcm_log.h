@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages of a log made by lcm-logger or of a flight recording made by `ifog record`, as a capture of
 // what the sensor measured.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What LCM, which promises nothing, lost on the way from the daemon to here, by the numbers of the messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --from and --to: a part of a capture, by its own time.
 #pragma once
 

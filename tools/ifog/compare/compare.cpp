@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog compare: every adaptation rule on one capture, with the same settings.
 #include "filters/compare/compare.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Picture of a comparison of rules.
 #pragma once
 

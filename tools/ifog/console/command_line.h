@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame around the commands: arguments, help, what an error becomes on the way out.
 #pragma once
 

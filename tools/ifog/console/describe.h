@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line as data: what --help tells people, for programs. The manual pages and the completion of
 // the shell are made from it.
 #pragma once

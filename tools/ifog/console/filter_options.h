@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options that say which filter: the same names in `denoise`, `compare` and `tune`, read into the same
 // structure the daemon's configuration is read into.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SIGINT and SIGTERM as a question that a command asks between two steps, so that it ends with its report.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The --json of every command.
 #pragma once
 

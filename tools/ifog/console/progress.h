@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A progress bar for anything that lasts over a second, on a terminal only; silent elsewhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text for people. Everything that a command tells goes through here, so that no name or value that came from
 // a file, a device or the network reaches the terminal as a command to it, and so that it stands on standard
 // error when standard output is where the data goes.

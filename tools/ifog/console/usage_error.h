@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What to say of a command line that cannot be understood.
 #pragma once
 

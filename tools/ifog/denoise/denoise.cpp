@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog denoise: the daemon's signal chain over a capture or a recording.
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/denoise/offline_chain.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The daemon's signal chain over a recording: the same parts, fed from a file, so that each sample comes out
 // with the bits the daemon publishes for the same frames and settings.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog diagnose: what the error is made of, what to correct, and what stays.
 #include <CLI/CLI.hpp>
 #include <memory>

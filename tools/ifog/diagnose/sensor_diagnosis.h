@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the captures of one sensor to what is wrong with it and the model that corrects it: what `ifog
 // diagnose` does between reading and writing, for whoever reads and writes otherwise.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog adopt and ifog revert: a proposed model into use, watched, and the one before back.
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the nights have read a sensor's recordings, and what the last one said: NAME.night.json in the
 // state folder, schema ifog.night/1.
 #pragma once

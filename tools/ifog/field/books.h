@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What came in and where it went, as status_t's identities have it, in words.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Puts a sensor's model in place of another, and sees that the daemon takes it: all of it or nothing.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the daemon of this computer has its configuration and its state, for the commands that look after it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What was adopted for a sensor and what it took the place of, oldest first: NAME.history.json in the state
 // folder, schema ifog.history/1. A model that was replaced is kept beside it as NAME.kept-IDENTITY.toml.
 #pragma once

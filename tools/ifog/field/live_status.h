@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the daemon says of its sensors while somebody listens.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog night: what the flight recorder kept since the last time is diagnosed, and where that would pay, a new
 // model is proposed. Nothing is put into use, no device is touched, and the daemon is not asked for anything.
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A new model that was found at night and that nobody has adopted yet. Of each sensor at most one waits, in
 // the state folder:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog proposals: what the nights have found and nobody has adopted yet.
 #include <CLI/CLI.hpp>
 #include <filesystem>

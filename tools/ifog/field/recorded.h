@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the daemon's flight recorder has kept of a sensor, for the commands that judge a model by it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON files of the state folder: read strictly, written whole.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog status: all sensors of this computer's daemon on one screen.
 #include <CLI/CLI.hpp>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Looks on after a model was exchanged: what the daemon notices meanwhile, and whether the promise comes
 // true.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A message of the daemon as JSON on one line, schema "ifog.monitor/1", with the names that its type gives
 // the fields. What is no number is null.
 #pragma once

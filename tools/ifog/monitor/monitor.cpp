@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog monitor: what the daemon publishes, live, as an engineer wants to see it: a screen with keys where
 // people sit at a terminal, lines elsewhere, JSON for programs.
 #include <poll.h>

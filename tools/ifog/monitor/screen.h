@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A terminal as a whole, on ncurses: lines that can be scrolled, a line at its foot, keys. As long as it
 // lives nothing else may write there.
 #pragma once

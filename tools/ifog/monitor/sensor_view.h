@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a person is shown of one sensor: figures of the last interval, what was lost, where the rate went.
 #pragma once
 

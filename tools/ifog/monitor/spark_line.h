@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line of eight heights, one a value, from the least to the greatest of them.
 #pragma once
 

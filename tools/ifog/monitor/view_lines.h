@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sensor as lines of text, for a screen of any width and for a file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A histogram of durations in fixed memory: 32 buckets an octave, so that a percentile is right to 3 %. For
 // runs of any length that must not allocate.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A descriptor that `ifog replay` writes to. Where the system has no room at the moment it tries again; an
 // interrupt by the user ends that.
 #pragma once

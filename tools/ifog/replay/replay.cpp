@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ifog replay: a recording onto a CAN interface, a serial device, a file or a FIFO, at the times it was
 // recorded.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where `ifog replay` sends to.
 #pragma once
 

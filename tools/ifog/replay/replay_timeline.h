@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `ifog replay` sends: blocks of bytes or CAN frames, each with its recorded time, all in memory so that
 // nothing but the sending happens between two deadlines.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ends of a pipeline that are beset with faults: the line, the bus of a channel, the network.
 #pragma once
 

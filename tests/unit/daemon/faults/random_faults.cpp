@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/daemon/faults/random_faults.h"
 
 #include <fcntl.h>

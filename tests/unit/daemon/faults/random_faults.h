@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One short run of a whole pipeline with its channels, its status and its log, beset with faults drawn from a
 // seed: damaged, doubled, lost, short and impossible frames, a device that goes within a frame and is slow to
 // come back, drops of the kernel, a full ring, a network that does not take messages, reloads, stops, the

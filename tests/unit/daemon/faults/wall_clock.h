@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The wall clock of this program, set as `date -s` does it, for this program alone. The program must be
 // linked with --wrap=clock_gettime.
 #pragma once

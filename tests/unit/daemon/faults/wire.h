@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a gyro's line carries in a run with random faults, and what of it is intact: the oracle of the books.
 // It is put together from the frames that went in, and knows nothing of how they are found again.
 #pragma once

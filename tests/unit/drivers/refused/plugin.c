@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Plugins that the host must refuse, one by a macro each. */
 #include <ifog/driver.h>
 #include <stddef.h>
