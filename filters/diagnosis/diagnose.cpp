@@ -98,6 +98,7 @@ class Run {
     separate_lines();
     separate_hysteresis();
     drop_what_changes_sign();
+    drop_what_stands_twice();
     drop_what_is_not_proven();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
@@ -184,6 +185,13 @@ class Run {
     reconstructed_.grid.error = data_.grid.error;
     search(lines_.slow);
     subtract_found(data_, found_, errors_);
+  }
+
+  void drop_what_stands_twice() {
+    while (const std::optional<std::size_t> twice = standing_twice(found_.chosen)) {
+      found_ = without_effect(data_, reconstructed_, std::move(found_), *twice);
+      subtract_found(data_, found_, errors_);
+    }
   }
 
   void drop_what_is_not_proven() {

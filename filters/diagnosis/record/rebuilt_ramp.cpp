@@ -23,9 +23,9 @@ constexpr double kQuickSensor_hz = 20.0;
 constexpr double kUsualCycles = 1e5;  // a coil of 10 cm at 1.55 um has 7e4
 constexpr double kSeenCycles = 20.0;
 constexpr double kCertain = 3.0;  // standard errors of the table
-// The ramp's phase is the angle's: it walks from the measured one by that one's noise at most, k N. A line
-// that walks more, a swaying structure's say, follows itself.
-constexpr double kMostWalk = 1.5;
+// The ramp's phase is the angle's, and stays it: a tenth of a cycle in 40 min is more than the one that was
+// measured walks. A line that walks more, of a swaying structure or a machine, follows itself.
+constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
 
 double rms(const std::vector<double>& angle) {
   double square = 0.0;
@@ -156,7 +156,7 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
     if (p_value > significance) continue;
     const std::optional<RampTable> table = fit_ramp_table(part, *comb);
     if (!table || rms(table->one_cycle()) < kCertain * table->angle_error) continue;
-    if (table->phase_walk > kMostWalk * table->cycles_per_rad * table->noise_density) continue;
+    if (table->phase_walk > kMostWalk) continue;
     RampFit fit;
     fit.effect = effect_of(*table);
     fit.ratio = comb->ratio;

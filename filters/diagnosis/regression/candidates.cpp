@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "filters/effects/meaning.h"
 
@@ -286,14 +287,17 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
         case Form::kStep:
           columns(row, 0) = r == candidate.record && grid.time_s[b] > candidate.time_s ? 1.0 : 0.0;
           break;
-        default: {
+        case Form::kLine: {
           if (r != candidate.record) break;
           const double phase = 2.0 * std::numbers::pi * candidate.frequency_hz * grid.time_s[b];
           const double half = std::numbers::pi * candidate.frequency_hz * grid.block_s;
           const double kept = half < 1e-9 ? 1.0 : std::sin(half) / half;  // of a line, averaged over a block
           columns(row, 0) = kept * std::cos(phase);
           columns(row, 1) = kept * std::sin(phase);
+          break;
         }
+        default:
+          throw std::logic_error("no column is made of " + std::string(name_of(candidate.form)));
       }
     }
   }

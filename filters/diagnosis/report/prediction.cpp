@@ -55,7 +55,8 @@ double along(const Weights& weights, const Eigen::VectorXd& column) {
 // Nothing when the capture lacks a channel of it.
 std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
-  if (!form || *form == Form::kLookup || describes_noise(*form)) return std::nullopt;
+  if (!form || *form == Form::kLookup || *form == Form::kRebuiltRamp || describes_noise(*form))
+    return std::nullopt;
   Candidate candidate;
   candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
   const auto index = [&](const std::string& name) {

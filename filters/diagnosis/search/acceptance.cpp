@@ -64,6 +64,21 @@ std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen) {
   return least;
 }
 
+std::optional<std::size_t> standing_twice(const std::vector<Chosen>& chosen) {
+  constexpr double kNear = 1.1;
+  const auto near = [](double a, double b) {
+    return a == b || (a > 0.0 && b > 0.0 && std::max(a, b) < kNear * std::min(a, b));
+  };
+  for (std::size_t j = 1; j < chosen.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      const Candidate &a = chosen[i].candidate, &b = chosen[j].candidate;
+      if (a.searched() && a.same_shape(b) && near(a.time_constant_s, b.time_constant_s) &&
+          near(a.second_time_constant_s, b.second_time_constant_s))
+        return chosen[i].likelihood_ratio < chosen[j].likelihood_ratio ? i : j;
+    }
+  return std::nullopt;
+}
+
 void subtract_found(const BlockData& data, const SearchResult& found, std::vector<EvenError>& errors) {
   subtract_effects(data, candidates_of(found.chosen), found.noise.shape, found.coefficients, errors);
 }

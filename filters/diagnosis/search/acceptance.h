@@ -29,6 +29,11 @@ bool holds(const BlockData& reconstructed, const SearchResult& found, const std:
 // Index of the least certain effect that is corrected online; none when there is no such effect.
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 
+// Of two effects of one shape whose time constants came to lie within a tenth of each other the less certain
+// one; none when there are no such two. They are one, and their coefficients would grow against each other
+// without bound.
+std::optional<std::size_t> standing_twice(const std::vector<Chosen>& chosen);
+
 // Takes out of `found` every effect of a channel that does not stand and every step that does not persist,
 // then, while the error on held-out data does not hold, the least certain of those that are corrected online:
 // effects that make it larger are no model, whatever their p-values. `errors` follow. The effects dropped, in

@@ -57,6 +57,31 @@ TEST(Scan, ScoresAreLikelihoodRatios) {
   EXPECT_EQ(best_of(scored).candidate.channel, 1U);
 }
 
+// Their coefficients would be the difference of two large numbers, and their covariance no matrix.
+TEST(Acceptance, TwoOfOneShapeAtOneTimeConstantAreOne) {
+  const Chosen quick{of(0, Form::kBandPower, 1.0), 50.0, 0.0}, near{of(0, Form::kBandPower, 1.05), 40.0, 0.0},
+      slow{of(0, Form::kBandPower, 2.0), 30.0, 0.0}, other{of(1, Form::kBandPower, 1.0), 20.0, 0.0};
+  EXPECT_EQ(standing_twice({quick, slow, other}), std::nullopt);
+  EXPECT_EQ(standing_twice({quick, slow, near}), 2U);
+  EXPECT_EQ(standing_twice({near, quick}), 0U);
+  const Chosen level{of(0, Form::kLinear), 50.0, 0.0};
+  EXPECT_EQ(standing_twice({level, level}), std::nullopt);  // has no time constant to come near
+}
+
+// A form that no column is made of is refused; one was once written past its matrix.
+TEST(Candidates, WhatHasNoColumnIsRefused) {
+  const BlockData data = with_supply(1);
+  for (const Form form : {Form::kRebuiltRamp, Form::kOutliers, Form::kGaussMarkov}) {
+    Candidate none = candidate_of(form, 1.0);
+    none.channel = Candidate::kNone;
+    EXPECT_THROW(regressors(data, none), std::logic_error);
+  }
+  Candidate line = candidate_of(Form::kLine, 0.0);
+  line.channel = Candidate::kNone;
+  line.frequency_hz = 0.1;
+  EXPECT_EQ(regressors(data, line).cols(), 2);
+}
+
 TEST(Scan, FindsTheStepAndTheTwoThatHideEachOther) {
   BlockData step = with_supply(2);
   step.grid.error.tail(600).array() += 4.0;
