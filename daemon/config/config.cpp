@@ -370,7 +370,11 @@ Config parse_config(const std::string& text, const std::string& path) {
       if (const std::string channel = read.lcm_channel() + std::string(ending);
           !channels.insert(channel).second && taken.empty())
         taken = channel;
-    if (!read.name.empty() && !taken.empty())
+    if (!read.name.empty() && channel_name(read.lcm_channel()).content != ChannelContent::rate)
+      TableReader(*sensor, "sensor", path, context.errors)
+          .complain("name", " = " + in_quotes(read.name) +
+                                ": expected one that does not end in _status or _imu, as other channels do");
+    else if (!read.name.empty() && !taken.empty())
       TableReader(*sensor, "sensor", path, context.errors)
           .complain("name",
                     " = " + in_quotes(read.name) + ": another sensor publishes on " + taken + " already");

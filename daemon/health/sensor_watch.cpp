@@ -54,6 +54,7 @@ void SensorWatch::renew() {
   }
   range_ = false;
   samples_ = seen_;
+  out_of_range_ = seen_out_of_range_;
 }
 
 void SensorWatch::take(const RestSums& sums, std::uint64_t samples, std::uint64_t out_of_range) {
@@ -65,6 +66,7 @@ void SensorWatch::take(const RestSums& sums, std::uint64_t samples, std::uint64_
   }
   silent_ = samples == seen_ ? silent_ + 1 : 0;
   seen_ = samples;
+  seen_out_of_range_ = out_of_range;
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     Axis& axis = axes_[a];
     if (silent_ == kSilence) axis.level.forget_level();

@@ -87,7 +87,7 @@ class SensorWatch {
   std::vector<Axis> axes_;
   RestSums before_{};
   std::uint64_t samples_ = 0, out_of_range_ = 0;  // when the ten minutes under way began
-  std::uint64_t seen_ = 0;
+  std::uint64_t seen_ = 0, seen_out_of_range_ = 0;
   int silent_ = 0;
   bool range_ = false;
   double step_radps_ = 0.0;

@@ -242,6 +242,7 @@ void Housekeeping::reload() {
     SensorConfig config;
     std::unique_ptr<ChainParts> parts;
     std::string noise;  // that the parts begin with, as it is kept
+    bool another;       // model or filter: what was usual of a sensor need not be so any more
   };
   notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
   std::vector<Renewed> renewed;
@@ -263,8 +264,10 @@ void Housekeeping::reload() {
       settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
       settings.since_power_up_s = since_power_up_s(config);
       auto parts = std::make_unique<ChainParts>(settings);
-      renewed.push_back(
-          {sensor.get(), std::move(config), std::move(parts), sensor->parts.noise.text(settings.learned)});
+      const bool another = config.text != sensor->config.text ||
+                           parts->model_identity() != std::string(sensor->snapshot.model.data());
+      renewed.push_back({sensor.get(), std::move(config), std::move(parts),
+                         sensor->parts.noise.text(settings.learned), another});
     } catch (const std::exception& error) {
       errors.push_back("sensor \"" + printable(config.name) + "\": " + error.what());
     }
@@ -280,7 +283,7 @@ void Housekeeping::reload() {
       each.sensor->config = std::move(each.config);
       each.sensor->parts.pipeline->filter().offer(std::move(each.parts));
       record_anew(*each.sensor, each.noise);
-      each.sensor->report.renew_watch();
+      if (each.another) each.sensor->report.renew_watch();
     }
   } else {
     log_->error("reload refused: nothing has changed for any sensor");
@@ -316,6 +319,9 @@ void Housekeeping::stop_all() {
 }
 
 void Housekeeping::each_second(double interval_s) {
+  // Whoever had it may be gone by now.
+  if (!mark_.is_set() && mark_.set(state_folder(config_.state_folder)).empty() && mark_.is_set())
+    log_->info("{}: marked as this daemon's", state_folder(config_.state_folder));
   double rate = 0.0;
   for (const auto& sensor : sensors_) {
     report_second(*sensor, interval_s);

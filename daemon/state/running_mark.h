@@ -17,8 +17,9 @@ class RunningMark {
   RunningMark(const RunningMark&) = delete;
   RunningMark& operator=(const RunningMark&) = delete;
 
-  // Of this process, once. folder "": none. Gives a complaint, "" for none: no right to the folder, or
-  // another daemon works with it.
+  [[nodiscard]] bool is_set() const { return fd_ >= 0; }
+  // Of this process, until it has succeeded. folder "": none. Gives a complaint, "" for none: no right to the
+  // folder, or another daemon works with it.
   [[nodiscard]] std::string set(const std::string& folder);
 
  private:

@@ -69,6 +69,7 @@ void as_chosen(Table& table, const CsvLayout& layout, const std::string& path) {
     for (double& value : values) value = value * conversion.scale + conversion.offset;
     if (!column.is_angle()) continue;
     differentiate(values, table.time_s);
+    // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)
         fail_at(path, line_of_row(table, row),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/driver.h"
@@ -30,6 +31,31 @@ constexpr std::array<OfUnit, 6> kUnits = {{
     {"Pa", {-1e7, 1e9}},          // a difference of two; the deepest sea ten times
 }};
 
+// As this project spells them. A counter `k`, a `gps_t` or an `adc_c` is in no kelvin, tesla or degrees.
+constexpr std::array<std::string_view, 16> kSpelled = {"degC", "degF", "mps2", "mg", "ug", "mV",
+                                                       "mA",   "uA",   "mT",   "uT", "nT", "Pa",
+                                                       "hPa",  "kPa",  "mbar", "bar"};
+// One letter is a unit only behind what is measured in it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLetter = {{{"K", "temp"},
+                                                                                      {"C", "temp"},
+                                                                                      {"F", "temp"},
+                                                                                      {"V", "supply"},
+                                                                                      {"V", "volt"},
+                                                                                      {"A", "supply"},
+                                                                                      {"A", "current"},
+                                                                                      {"g", "accel"}}};
+
+// The unit that a column's name ends in; empty where it may be no unit at all.
+std::string_view stated_unit(std::string_view column) {
+  const std::size_t line = column.rfind('_');
+  if (line == std::string_view::npos) return {};
+  const std::string_view unit = column.substr(line + 1), stem = column.substr(0, line);
+  if (std::find(kSpelled.begin(), kSpelled.end(), unit) != kSpelled.end()) return unit;
+  for (const auto& [letter, what] : kOneLetter)
+    if (unit == letter && stem.find(what) != std::string_view::npos) return unit;
+  return {};
+}
+
 constexpr double kSlowest_s = 0.1;    // between samples
 constexpr double kStandstill = 0.01;  // of the leap, the most beside it
 
@@ -50,7 +76,8 @@ Measurable measurable(const std::string& column) {
   std::string axis;
   if (axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis))
     return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
-  const std::string_view unit = std::string_view(column).substr(column.rfind('_') + 1);
+  const std::string_view unit = stated_unit(column);
+  if (unit.empty()) return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
   for (const OfUnit& known : kUnits) {
     const auto conversion = convert_unit(known.unit, unit);
     if (!conversion) continue;

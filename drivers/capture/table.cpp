@@ -129,10 +129,16 @@ struct Cells {
   std::string name;
   Measurable range;
   std::vector<double>* values = nullptr;
+  bool rate = false;           // of the capture: a rate or its reference
   std::size_t impossible = 0;  // cells that said more, and are taken for missing
   std::size_t first_line = 0;  // of those
   std::string first;           // as it stands there
 };
+
+bool is_rate(const std::string& column) {
+  std::string axis;
+  return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
+}
 
 // Of the capture's column, before its conversion.
 Measurable in_file_unit(const Measurable& range, const UnitConversion& conversion) {
@@ -173,6 +179,7 @@ std::vector<Cells> cells_of(const std::vector<std::string>& names, const CsvLayo
     for (std::size_t i = 1; i < names.size(); ++i) table.columns.push_back({names[i], {}});
     for (std::size_t i = 1; i < names.size(); ++i) {
       cells[i].range = measurable(names[i]);
+      cells[i].rate = is_rate(names[i]);
       cells[i].values = &table.columns[i - 1].values;
     }
     return cells;
@@ -190,6 +197,7 @@ std::vector<Cells> cells_of(const std::vector<std::string>& names, const CsvLayo
     const Measurable range =
         column.is_angle() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
     chosen.range = in_file_unit(range, conversion_of(column));
+    chosen.rate = is_rate(column.name);
     chosen.values = &table.columns[i].values;
   }
   return cells;
@@ -223,15 +231,17 @@ void take(Cells& column, std::string_view cell, bool decimal_comma, const std::s
   column.first = unquoted(cell);
 }
 
-// A cell here and there is a fault of the logger, and is missing; where many are, the column is not what its
-// name says.
+// A cell here and there is a fault of the logger, and is missing; where many are, a rate is not what its name
+// says. A channel is only missing then: a broken thermometer is no reason to know nothing of the rate.
 void tell_impossible(const std::vector<Cells>& columns, const std::string& path, Table& table) {
   for (const Cells& column : columns) {
     if (column.impossible == 0) continue;
     const auto rows = static_cast<double>(table.time_s.size());
+    std::string axis;
+    const bool rate = axis_of(column.name, "rate", axis) || axis_of(column.name, "reference_rate", axis);
     const bool few =
-        column.impossible == 1 || static_cast<double>(column.impossible) <= kMostImpossible * rows;
-    if (column.values == &table.time_s || rows == 1.0 || !few)
+        !rate || column.impossible == 1 || static_cast<double>(column.impossible) <= kMostImpossible * rows;
+    if (column.values == &table.time_s || (column.rate && rows == 1.0) || !few)
       fail_at(
           path, column.first_line,
           what_no_sensor_measures(column) +

@@ -142,6 +142,7 @@ class Run {
       const BlockData before = reconstructed_;
       SearchResult found = found_;
       undo_delay(data_.grid, delay->delay_s, reconstructed_.channels[delay->channel]);
+      rebuild_differences(reconstructed_);
       search({});
       const bool used = std::any_of(found_.fitted.begin(), found_.fitted.end(), [&](const Candidate& each) {
         return each.channel == delay->channel || each.with_channel == delay->channel;

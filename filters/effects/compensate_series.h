@@ -11,18 +11,19 @@
 
 namespace ifog {
 
-// All columns as long as time_s, which has at least two samples.
+// All columns as long as time_s.
 struct SeriesToCompensate {
   std::span<const double> time_s;
   std::vector<std::span<const double>> rate_radps;  // by axis of the compensator
   std::vector<std::span<const double>> channels;    // by Compensator::channels(); empty: never has a value
 };
 
-// The median step; what goes more than half a step beyond it is a gap.
+// The median step; what goes more than half a step beyond it is a gap. 0 of fewer than two samples.
 inline double usual_step(std::span<const double> time_s) {
   std::vector<double> steps;
   steps.reserve(time_s.size());
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  if (steps.empty()) return 0.0;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
@@ -37,7 +38,7 @@ void compensate_series(Compensator& compensator, const SeriesToCompensate& serie
   const double usual_s = usual_step(series.time_s);
   for (std::size_t i = 0; i < series.time_s.size(); ++i) {
     const std::size_t end = i == 0 ? 1 : i;
-    in.dt_s = series.time_s[end] - series.time_s[end - 1];
+    in.dt_s = end < series.time_s.size() ? series.time_s[end] - series.time_s[end - 1] : 0.0;
     in.missed_s.fill(in.dt_s > 1.5 * usual_s ? in.dt_s - usual_s : 0.0);
     for (std::size_t c = 0; c < now.size(); ++c)
       now[c] = series.channels[c].empty() ? std::numeric_limits<double>::quiet_NaN() : series.channels[c][i];

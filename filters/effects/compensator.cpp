@@ -89,7 +89,9 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     if (effect.parameters[i].name != "coefficient" || *form == Form::kLookup) continue;
     term.parameter = first_row + i;
-    term.coefficient_error = effect.parameters[i].std_error;
+    // nan stands for not known: nothing is added for it, rather than nothing corrected.
+    if (std::isfinite(effect.parameters[i].std_error))
+      term.coefficient_error = effect.parameters[i].std_error;
   }
   try {
     add_factor(term, shape_settings(effect), effect.channel, axes, ranges);
@@ -128,6 +130,9 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
   settings.elapsed_s = since_power_up_s_.value_or(0.0);
   Factor factor{Shape(std::move(settings)), kNone, kNone, kNone, range_of(channel, ranges)};
   const ChannelNames names = names_in(channel);
+  if (!names.less.empty() && (rate || !axis_of_rate(names.of).empty() || !axis_of_rate(names.less).empty() ||
+                              is_reference_rate(names.of) || is_reference_rate(names.less)))
+    throw std::invalid_argument("a difference is of two environment channels, not of rates");
   if (of_other) factor.rate = static_cast<std::size_t>(other - axes.begin());
   if (rate && !of_other) {
     factor.rate = kOwn;
@@ -251,7 +256,8 @@ void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& 
     if (term.axis != axis) continue;
     for (const Factor& factor : term.factors) {
       if (factor.rate == kNone) continue;
-      if (reach_of(rates[factor.rate], factor.range).outside()) out.flags |= kOutOfRange;
+      if (std::isfinite(rates[factor.rate]) && reach_of(rates[factor.rate], factor.range).outside())
+        out.flags |= kOutOfRange;
       if (factor.rate != axis && !std::isfinite(rates[factor.rate])) out.flags |= kStaleChannel;
     }
     if (!term.usable) continue;

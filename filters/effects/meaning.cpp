@@ -237,7 +237,8 @@ std::string meaning_of(const Effect& effect) {
     case Form::kRateRamp:
       return "the bias drifts steadily with time";
     case Form::kWarmUp:
-      return "warm-up: the bias settles exponentially after the start of the record";
+      return "warm-up: the bias settles exponentially after the start of the record, which is taken for "
+             "power-up";
     case Form::kRebuiltRamp:
       return of_rebuilt_ramp(effect);
     case Form::kGaussMarkov:

@@ -19,7 +19,8 @@
 // standstill f(phase now) - f(phase before) is in proportion to the rotation itself, and a phase could be
 // found that explains rotation away.
 //
-// The correction is bounded as an angle whatever the phase does: it cannot swallow rotation.
+// The correction is bounded as an angle, by one swing of the table, for as long as the phase is known; each
+// time it is lost what stands then stays: it cannot swallow rotation.
 #pragma once
 
 #include <array>

@@ -93,7 +93,8 @@ double Shape::table(double value) const noexcept {
   const auto& x = settings_.table_x;
   const auto& y = settings_.table_y;
   if (settings_.period > 0.0) value -= settings_.period * std::floor((value - x.front()) / settings_.period);
-  if (value <= x.front()) return y.front();
+  // Written so that what is no number is not looked up.
+  if (!(value > x.front())) return y.front();
   if (value >= x.back()) return y.back();
   const auto above = std::upper_bound(x.begin(), x.end(), value);
   const auto i = static_cast<std::size_t>(above - x.begin());
@@ -174,11 +175,13 @@ double Shape::slope(double value) const noexcept {
 }
 
 double Shape::at(const Reach& channel) const noexcept {
+  if (is_periodic(settings_.form)) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
   return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
+  if (is_periodic(settings_.form)) return step(channel.value + channel.beyond, dt_s);
   if (power_of(settings_.form) > 1 && channel.outside()) return at(channel);
   return step(goes_on() ? channel.value : channel.edge, dt_s);
 }

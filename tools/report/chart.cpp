@@ -282,8 +282,10 @@ std::string Chart::plot_data(const Frame& f) const {
       continue;
     }
     each["y"] = packed(s.y);
-    const auto same = std::find_if(series_.begin(), series_.begin() + static_cast<std::ptrdiff_t>(i),
-                                   [&](const Series& other) { return other.x == s.x; });
+    const auto same = std::find_if(
+        series_.begin(), series_.begin() + static_cast<std::ptrdiff_t>(i), [&](const Series& other) {
+          return other.x == s.x && thinned(other.x, other.y).x.size() == s.x.size();
+        });
     if (same < series_.begin() + static_cast<std::ptrdiff_t>(i))
       each["x"] = same - series_.begin();
     else
@@ -298,7 +300,7 @@ std::string Chart::plot_data(const Frame& f) const {
                         {"x", axis(x_, sx)},
                         {"y", axis(y_, sy)},
                         {"series", series}}
-      .dump();
+      .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);  // a name may hold any bytes
 }
 
 std::string Chart::panel(double width, double height, double left) const {

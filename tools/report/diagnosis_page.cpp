@@ -41,6 +41,13 @@ std::string section(const std::string& id, const std::string& heading, const std
          "</section>\n";
 }
 
+// From the record's first moment: seconds since 1970 would leave a picture no digits.
+Series since_start(const Series& time_s, const TimeUnit& unit) {
+  Series out;
+  for (const double t : time_s) out.push_back((t - time_s.front()) / unit.seconds);
+  return out;
+}
+
 // "in 1 s means": the series are block means of whatever length kept them drawable.
 std::string block_words(const DiagnosisSeries& s) {
   if (s.time_s.size() < 2) return "";
@@ -53,14 +60,14 @@ std::string time_picture(const Diagnosis& d) {
   const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
   Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
               {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
-  const Series t = scaled(s.time_s, 1.0 / unit.seconds);
+  const Series t = since_start(s.time_s, unit);
   chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
   // Bursts come in clusters: a word where there is room for one.
   double named = -1e300;
   for (const double burst : d.unexplained.times_s) {
     const bool room = burst - named > 0.1 * (s.time_s.back() - s.time_s.front());
-    chart.mark_x(burst / unit.seconds, room ? "burst" : "");
+    chart.mark_x((burst - s.time_s.front()) / unit.seconds, room ? "burst" : "");
     if (room) named = burst;
   }
   return figure_html(chart.svg(), "The error, " + block_words(s) + ", about its mean.");
@@ -119,7 +126,7 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
     return "";
   if (s.time_s.empty()) return "";
   const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
-  const Series t = scaled(s.time_s, 1.0 / unit.seconds);
+  const Series t = since_start(s.time_s, unit);
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
   Series with(effect);

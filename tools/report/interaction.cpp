@@ -34,7 +34,8 @@ function ticks(axis, low, high, wanted) {
   }
   const rough = (high - low) / wanted, decade = 10 ** Math.floor(Math.log10(rough));
   const step = decade * (rough / decade < 1.5 ? 1 : rough / decade < 3.5 ? 2 : rough / decade < 7.5 ? 5 : 10);
-  for (let k = Math.ceil(low / step); k * step <= high; ++k) out.push(k * step);
+  const first = Math.ceil(low / step), count = Math.min(50, Math.floor(high / step) - first + 1);
+  for (let k = 0; k < count; ++k) out.push((first + k) * step);
   return out;
 }
 for (const chart of document.querySelectorAll('svg[data-plot]')) {
@@ -50,6 +51,14 @@ for (const chart of document.querySelectorAll('svg[data-plot]')) {
   const over = make(chart, 'g', {class: 'over'}), shade = make(over, 'rect', {class: 'shade', y: top, height: bottom - top, width: 0});
   const cursor = make(over, 'path', {class: 'cursor', d: 'M0 0'}), say = make(over, 'g', {class: 'say'});
   let view = [plot.x.low, plot.x.high], sx, sy, from = null;
+
+  // What is packed has seven digits: a closer look than that shows nothing.
+  function look(a, b) {
+    const least = 1e-6 * Math.max(Math.abs(a), Math.abs(b), plot.x.high - plot.x.low);
+    if (plot.x.log ? !(b / a > 1 + 1e-6) : !(b - a > least)) return;
+    view = [a, b];
+    draw();
+  }
 
   function heights() {
     if (view[0] === plot.x.low && view[1] === plot.x.high) return [plot.y.low, plot.y.high];
@@ -145,7 +154,7 @@ for (const chart of document.querySelectorAll('svg[data-plot]')) {
   });
   chart.addEventListener('pointerup', e => {
     const at = place(e);
-    if (from !== null && Math.abs(at - from) > 5) { view = [sx.at(Math.min(at, from)), sx.at(Math.max(at, from))]; draw(); forget(); }
+    if (from !== null && Math.abs(at - from) > 5) { look(sx.at(Math.min(at, from)), sx.at(Math.max(at, from))); forget(); }
     from = null;
     shade.setAttribute('width', 0);
   });
@@ -156,7 +165,7 @@ for (const chart of document.querySelectorAll('svg[data-plot]')) {
   chart.addEventListener('keydown', e => {
     held ??= (left + right) / 2;
     const step = (right - left) / 100, zoom = f => { const a = sx.px(view[0]), b = sx.px(view[1]);
-      view = [sx.at(held - (held - a) * f), sx.at(held + (b - held) * f)].map(v => Math.min(plot.x.high, Math.max(plot.x.low, v))); draw(); };
+      look(...[sx.at(held - (held - a) * f), sx.at(held + (b - held) * f)].map(v => Math.min(plot.x.high, Math.max(plot.x.low, v)))); };
     if (e.key === 'ArrowLeft' || e.key === 'ArrowRight') held = Math.min(right, Math.max(left, held + (e.key === 'ArrowLeft' ? -step : step)));
     else if (e.key === '+') zoom(.5);
     else if (e.key === '-') zoom(2);

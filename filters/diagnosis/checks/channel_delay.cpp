@@ -6,6 +6,7 @@
 
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/projection.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 namespace {
@@ -138,6 +139,7 @@ std::optional<DelayOfChannel> most_delayed_channel(const BlockData& data, const 
   std::size_t place = 0;
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const FineChannel& channel = data.channels[c];
+    if (!names_in(channel.name).less.empty()) continue;  // follows the two it is made of
     if (static_cast<std::ptrdiff_t>(c) == data.reference || !channel.varies || channel.rotates ||
         channel.still)
       continue;

@@ -43,6 +43,8 @@ void check_columns(const std::vector<Record>& records) {
   if (records.empty()) throw std::invalid_argument("a diagnosis needs a record");
   for (const Record& record : records) {
     const std::size_t n = record.time_s.size();
+    if (n < 2)
+      throw std::invalid_argument(record.name + ": " + std::to_string(n) + " samples, expected two at least");
     const auto same = [&](std::size_t size, const std::string& what) {
       if (size != n) {
         throw std::invalid_argument(record.name + ": " + what + " has " + std::to_string(size) +

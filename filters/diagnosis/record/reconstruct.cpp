@@ -282,8 +282,6 @@ bool stands_still(std::span<const double> readings) {
   return true;
 }
 
-namespace {
-
 // Of what both channels were: readings in steps, one taken from the other, are steps of neither.
 void rebuild_differences(BlockData& data) {
   const auto named = [&](const std::string& name) {
@@ -301,8 +299,6 @@ void rebuild_differences(BlockData& data) {
       channel.values[k] = of->values[k] - less->values[k];
   }
 }
-
-}  // namespace
 
 BlockData with_reconstructed_channels(const BlockData& data) {
   BlockData reconstructed = data;

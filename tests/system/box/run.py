@@ -174,7 +174,8 @@ class Box(Faults):
         return self.machine.run("(sleep 5; cansend vcan0 123#1122334455667788) & timeout 30 candump -n 1 vcan0").strip()
 
     def check_unit_verifies(self):
-        said = self.machine.run("systemd-analyze verify ifogd.service ifogd-diagnose.timer ifogd-diagnose.service 2>&1", 60).strip()
+        # The image has no man; that every page is there the test of the packages sees.
+        said = self.machine.run("systemd-analyze verify --man=no ifogd.service ifogd-diagnose.timer ifogd-diagnose.service 2>&1", 60).strip()
         if said:
             raise Failure(said)
         return "systemd-analyze verify has nothing to say"

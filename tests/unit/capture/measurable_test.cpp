@@ -76,6 +76,28 @@ TEST(Measurable, LimitsAreConvertedWithTheColumn) {
       std::isnan(parse_capture(capture("w,T", 2, 9, 1, "9000"), "a.csv", layout).channels[0].values[9]));
 }
 
+// Names that end in a letter that a unit has, too: no limit but the interface's.
+TEST(Measurable, ALetterIsNoUnit) {
+  for (const char* const column : {"k", "gps_t", "gps_T", "adc_c", "encoder_A", "position_k", "phase_c"}) {
+    EXPECT_TRUE(measurable(column).holds(1.7e9)) << column;
+    EXPECT_TRUE(measurable(column).holds(-1e6 - 1.0)) << column;
+  }
+  EXPECT_FALSE(measurable("case_temperature_K").holds(-1.0));
+  EXPECT_FALSE(measurable("supply_V").holds(1e7));
+  EXPECT_FALSE(measurable("x_accel_g").holds(1e7));
+}
+
+// A thermometer that says -999 every other row tells nothing; the rate does.
+TEST(Measurable, AChannelOfThemIsMissingAndNoReasonToRefuse) {
+  std::string text = "time_s,rate_radps,temperature_degC\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 2 == 1 ? ",0,-999\n" : ",0,25\n");
+  const Capture read = parse_capture(text, "a.csv");
+  EXPECT_TRUE(std::isnan(read.channels[0].values[1]));
+  EXPECT_EQ(read.channels[0].values[2], 25.0);
+  ASSERT_EQ(read.faults.size(), 1U);
+  EXPECT_NE(read.faults[0].find("50 such cells taken for missing"), std::string::npos) << read.faults[0];
+}
+
 TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
   std::string text = "time_s,rate_radps\n";
   for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 20 == 7 ? ",1e30\n" : ",0\n");

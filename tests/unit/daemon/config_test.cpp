@@ -162,10 +162,13 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
        "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE already"},
       {"[[sensor]]\nname = \"nose_status\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
-       "f.toml:9: sensor.name = 'nose_status': another sensor publishes on IFOG_NOSE_STATUS already"},
+       "f.toml:9: sensor.name = 'nose_status': expected one that does not end in _status or _imu, as other "
+       "channels "
+       "do"},
       {"[[sensor]]\nname = \"nose_imu\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
-       "f.toml:9: sensor.name = 'nose_imu': another sensor publishes on IFOG_NOSE_IMU already"},
+       "f.toml:9: sensor.name = 'nose_imu': expected one that does not end in _status or _imu, as other "
+       "channels do"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nminimum = 5.0\nmaximum = 5.0\n",
        "f.toml:12: sensor.channel.maximum: not above minimum; expected minimum < maximum"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nmax_step = -1.0\n",

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+
+#include "filters/effects/compensate_series.h"
 
 namespace ifog {
 namespace {
@@ -165,6 +168,68 @@ TEST(Compensator, FollowsAnAngleThroughItsWraps) {
   }
   model.effects[0].period = 0.0;
   EXPECT_THROW(Compensator(model, {""}), std::invalid_argument);
+}
+
+// A range of the angle, written by hand, say: a turn further the same comes again.
+TEST(Compensator, APeriodicEffectGoesOnBeyondItsRange) {
+  Model model;
+  Effect effect;
+  effect.form = "cosine";
+  effect.channel = "heading_deg";
+  effect.period = 360.0;
+  effect.parameters = {{"coefficient", 3e-6, 0.0, "rad/s"}};
+  model.effects = {effect};
+  model.ranges = {{"heading_deg", 0.0, 360.0}};
+  Compensator compensator(model, {""});
+  for (const double degrees : {100.0, 400.0, 1000.0, -5000.0})
+    EXPECT_NEAR(step(compensator, 0.0, {degrees}).correction_radps[0],
+                3e-6 * std::cos(degrees * M_PI / 180.0), 1e-17)
+        << degrees;
+}
+
+TEST(Compensator, AnErrorThatIsNotKnownAddsNothing) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  model.effects[0].parameters[0].std_error = kMissing;
+  model.ranges = {{"temperature_degC", 10.0, 40.0}};
+  Compensator compensator(model, {""});
+  for (const double t : {30.0, 60.0}) {
+    const CompensatorOutput out = step(compensator, 1e-3, {t});
+    EXPECT_TRUE(std::isfinite(out.compensated_radps[0]) && std::isfinite(out.variance_rad2ps2[0])) << t;
+  }
+}
+
+TEST(Compensator, ADifferenceOfRatesIsRefused) {
+  for (const auto& [of, less] :
+       {std::pair{"reference_rate_radps", "rate_cmd_radps"}, {"rate_y_radps", "rate_z_radps"}}) {
+    Model model;
+    model.effects = {linear(1e-6)};
+    model.effects[0].channel = difference_of(of, less);
+    EXPECT_THROW(Compensator(model, {"x", "y", "z"}), std::invalid_argument) << of;
+  }
+}
+
+// An axis that measured nothing is outside no range.
+TEST(Compensator, AnUnmeasuredAxisIsNotOutsideTheRange) {
+  Model model;
+  model.effects = {of_rate("linear", 0.01)};
+  Compensator compensator(model, {""});
+  EXPECT_EQ(step(compensator, kMissing, {}).flags & kOutOfRange, 0U);
+}
+
+// A series of one row has no step; it is corrected all the same.
+TEST(Compensator, OneSampleIsASeries) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  Compensator compensator(model, {""});
+  const std::vector<double> time{5.0}, rate{1e-3}, temperature{30.0};
+  int calls = 0;
+  compensate_series(compensator, {time, {rate}, {temperature}},
+                    [&](std::size_t, const CompensatorOutput& out) {
+                      ++calls;
+                      EXPECT_NEAR(out.compensated_radps[0], 1e-3 - 5e-6, 1e-18);
+                    });
+  EXPECT_EQ(calls, 1);
 }
 
 TEST(Compensator, WhatIsOnlyShownIsNotTakenAway) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state folder: proposals, the history of what was adopted, and the mark of a running daemon.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -209,6 +211,60 @@ TEST_F(StateFolder, TheMarkIsThereAsLongAsItsProcess) {
   EXPECT_FALSE(running_daemon(state()));
   close(ready[0]);
   close(ready[1]);
+}
+
+// A signal goes to the process that is found: a lock that nobody holds by a number, or holds for reading
+// only, is not the daemon's; and what is no plain file is not opened to wait for somebody.
+TEST_F(StateFolder, AMarkThatIsNoDaemonsIsNotTakenForOne) {
+  write("ifogd.lock", "");
+  const int fd = ::open(path("ifogd.lock").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(fd, 0);
+  for (const short type : {short{F_RDLCK}, short{F_WRLCK}}) {
+    struct flock lock {};
+    lock.l_type = type;
+    lock.l_whence = SEEK_SET;
+    ASSERT_EQ(::fcntl(fd, F_OFD_SETLK, &lock), 0);
+    EXPECT_NE(complaint([&] { (void)running_daemon(state()); }).find("by no process that can be seen"),
+              std::string::npos);
+    RunningMark mark;
+    EXPECT_NE(mark.set(state()), "");
+    EXPECT_FALSE(mark.is_set());
+  }
+  ::close(fd);
+  fs::remove(path("ifogd.lock"));
+  ASSERT_EQ(mkfifo(path("ifogd.lock").c_str(), 0644), 0);
+  EXPECT_NE(complaint([&] { (void)running_daemon(state()); }), "");
+  fs::remove(path("ifogd.lock"));
+  write("private", "mine");
+  fs::permissions(path("private"), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("private", path("ifogd.lock"));
+  RunningMark mark;
+  EXPECT_NE(mark.set(state()), "");
+  EXPECT_EQ(fs::status(path("private")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+// Who may write into the folder must not make root write elsewhere.
+TEST_F(StateFolder, NothingIsWrittenThroughALink) {
+  write("elsewhere", "mine");
+  fs::create_symlink("elsewhere", path("nose.night.json"));
+  EXPECT_NE(complaint([&] {
+              write_bookmark(state(), "nose", {1, "now", "said"});
+            }).find("no regular file"),
+            std::string::npos);
+  EXPECT_EQ(text("elsewhere"), "mine");
+}
+
+// Killed between the history and the model: the model before is in use, so the change never was.
+TEST_F(StateFolder, AChangeThatNeverCameAboutIsForgotten) {
+  const Model first = model_with(1e-8), second = model_with(2e-8);
+  History history(state(), "nose");
+  history.add({"adopt", "a", name_of(first), {}, "", {}, ""}, std::nullopt);
+  history.add({"adopt", "b", name_of(second), name_of(first), "", {}, ""}, first);
+  history.forget_what_never_was(name_of(second));
+  EXPECT_EQ(history.changes().size(), 2U);
+  history.forget_what_never_was(name_of(first));
+  ASSERT_EQ(history.changes().size(), 1U);
+  EXPECT_EQ(history.in_force()->model, name_of(first));
 }
 
 TEST_F(StateFolder, ASensorWithoutAModelHasTheAdoptedOne) {

@@ -107,6 +107,7 @@ void adopt(const Arguments& arguments) {
     require_that_it_fits(field, sensor, model);
     exchange = std::make_unique<ModelExchange>(field, sensor, before.name);
     History history(field.state(), sensor.name);
+    history.forget_what_never_was(before.name);
     // First what undoes it, then it, and the proposal goes last: wherever this ends, nothing is lost.
     history.add({"adopt", utc_now(), proposal.model, before.name, proposal.why, proposal.gain, ""},
                 before.model);
@@ -133,8 +134,12 @@ void adopt(const Arguments& arguments) {
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
   say("  %s\n", text.c_str());
-  keep_outcome(field, sensor.name, proposal.model, text);
   if (!arguments.json.empty()) write_json(arguments.json, as_json(proposal, watched, text));
+  try {
+    keep_outcome(field, sensor.name, proposal.model, text);
+  } catch (const std::exception& error) {
+    warn("ifog adopt: the outcome is not in the history: %s\n", error.what());
+  }
   if (verdict_of(watched.gain) == Verdict::broken) {
     warn("ifog adopt: back with: ifog revert %s\n", sensor.name.c_str());
     throw Failed("the promise was broken");
@@ -147,11 +152,12 @@ void revert(const Arguments& arguments) {
   const SensorConfig& sensor = field.sensor(arguments.sensor);
   const StateInHand hand(field.state());
   History history(field.state(), sensor.name);
+  const ModelInUse now = model_at(field.model_path(sensor));
+  history.forget_what_never_was(now.name);
   const ModelChange* const in_force = history.in_force();
   if (in_force == nullptr)
     throw std::runtime_error("nothing was adopted for sensor " + in_quotes(sensor.name) +
                              " that could be taken back");
-  const ModelInUse now = model_at(field.model_path(sensor));
   if (now.name != in_force->model)
     throw std::runtime_error("sensor " + in_quotes(sensor.name) + " uses model " +
                              or_none(now.name.identity) + ", last adopted was " +

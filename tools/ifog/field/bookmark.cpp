@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "drivers/capture/output_file.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -33,8 +32,8 @@ void write_bookmark(const std::string& state, const std::string& sensor, const B
                                     {"until", bookmark.until},
                                     {"when", bookmark.when},
                                     {"said", bookmark.said}};
-  write_file(path_of(state, sensor),
-             file.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_state_file(path_of(state, sensor),
+                   file.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace ifog::tools

@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kHeardWithin = 5s;   // a status comes every second
+constexpr auto kHeardWithin = 3s;   // a status comes every second
 constexpr auto kTakenWithin = 15s;  // the daemon reloads at most once a second
 
 std::string process(pid_t id) { return "the daemon (process " + std::to_string(id) + ")"; }
@@ -45,11 +45,18 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
       sensor_(sensor.name),
       path_(field.model_path(sensor)),
       daemon_(running_daemon(field.state())) {
-  if (!daemon_) return;
+  live_ = std::make_unique<LiveStatus>(field.lcm_url());
+  if (!daemon_) {
+    // One without a mark in the folder would go on with the old model, and nobody would see what comes of it.
+    if (live_->listen(kHeardWithin, [&] { return live_->of(sensor_) != nullptr; }))
+      throw std::runtime_error("sensor " + in_quotes(sensor_) + " is heard on " + field.lcm_url() +
+                               ", of a daemon that does not work with " + field.state() +
+                               ": expected the state folder of that one (--state)");
+    return;
+  }
   if (::kill(*daemon_, 0) != 0)
     throw std::runtime_error(process(*daemon_) + " cannot be asked to reload: " +
                              std::generic_category().message(errno) + ", expected its own user or root");
-  live_ = std::make_unique<LiveStatus>(field.lcm_url());
   if (!live_->listen(kHeardWithin, [&] { return live_->of(sensor_) != nullptr; }))
     throw std::runtime_error(process(*daemon_) + " says nothing of sensor " + in_quotes(sensor_) + " on " +
                              field.lcm_url() +
@@ -75,8 +82,11 @@ void ModelExchange::put(const std::optional<Model>& model) const {
 }
 
 void ModelExchange::ask_for_reload() const {
-  if (::kill(*daemon_, SIGHUP) != 0)
-    throw std::runtime_error(process(*daemon_) +
+  // Asked anew: it may have been started again since, and its number be somebody else's.
+  const std::optional<pid_t> now = running_daemon(field_.state());
+  if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
+  if (::kill(*now, SIGHUP) != 0)
+    throw std::runtime_error(process(*now) +
                              " cannot be asked to reload: " + std::generic_category().message(errno));
 }
 
@@ -101,7 +111,11 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
   }
   put(before);
   // Whatever has become of the first question: with what is in place now it must go on.
-  ::kill(*daemon_, SIGHUP);
+  try {
+    ask_for_reload();
+  } catch (const std::exception& error) {
+    why += std::string("; ") + error.what() + ", let it reload";
+  }
   throw std::runtime_error(why + "; the model before is in place again");
 }
 

@@ -14,6 +14,7 @@
 
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/model_file/toml_file.h"
 
 namespace ifog::tools {
 namespace {
@@ -42,7 +43,8 @@ Field::Field(const FieldOptions& options) {
   config_path_ = options.config.empty() ? kConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))
-    config_ = read_config(config_path_);
+    // Adopted models come from the state folder that is meant here, which need not be the configured one.
+    config_ = parse_config(read_toml_text(config_path_), config_path_);
   state_ = options.state.empty() ? state_folder(config_ ? config_->state_folder : "") : options.state;
   if (state_.empty()) state_ = kState;
   if (config_) use_adopted_models(*config_, state_);

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "drivers/capture/output_file.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -55,7 +54,7 @@ const ModelChange* History::in_force() const {
 }
 
 void History::add(ModelChange change, const std::optional<Model>& replaced) {
-  if (replaced) write_file(kept_path(change.replaced), model_text(*replaced));
+  if (replaced) write_state_file(kept_path(change.replaced), model_text(*replaced));
   changes_.push_back(std::move(change));
   write();
 }
@@ -70,6 +69,10 @@ void History::take_back() {
   if (changes_.empty()) return;
   changes_.pop_back();
   write();
+}
+
+void History::forget_what_never_was(const ModelName& in_use) {
+  if (!changes_.empty() && changes_.back().model != in_use && changes_.back().replaced == in_use) take_back();
 }
 
 std::optional<Model> History::kept(const ModelName& name) const {
@@ -91,7 +94,7 @@ void History::write() const {
                        {"gain", gain_json(each.gain)},
                        {"outcome", each.outcome}});
   const ordered_json file = {{"schema", kSchema}, {"sensor", sensor_}, {"changes", changes}};
-  write_file(path(), file.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  write_state_file(path(), file.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 std::string History::path() const { return (fs::path(state_) / (sensor_ + ".history.json")).string(); }

@@ -36,6 +36,9 @@ class History {
   void set_outcome(const std::string& outcome);
   // The last change did not come about.
   void take_back();
+  // A change that was written down and never came about, as the model before it is in use: an adoption or a
+  // revert that was killed between the two. Taken back.
+  void forget_what_never_was(const ModelName& in_use);
 
   // Nothing where the name is that of no model. Throws as above: not there, another one.
   [[nodiscard]] std::optional<Model> kept(const ModelName& name) const;

@@ -91,6 +91,7 @@ class Night {
 
  private:
   std::string judge(const std::vector<RecordedFile>& files);
+  [[nodiscard]] std::string not_to_be_judged(const ModelInUse& in_use) const;
   std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                        const ModelInUse& in_use);
   void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
@@ -131,18 +132,33 @@ std::string Night::run() {
 
 std::string Night::judge(const std::vector<RecordedFile>& files) {
   const ModelInUse in_use = model_at(field_.model_path(sensor_));
-  // A recording that cannot be used today cannot be tomorrow.
+  // A recording that cannot be read today cannot be tomorrow; a proposal that a full disk did not take can.
   gone_through_ = true;
   const Recorded recorded = read_recorded(sensor_, files, field_.required_config().plugin_folders);
+  gone_through_ = false;
   const double rest_s = static_cast<double>(recorded.rest.resting()) * recorded.period_s;
   if (rest_s < arguments_.least_rest_s) {
-    gone_through_ = false;
     return "at rest for " + in_hours(rest_s) + " of " +
            in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
            in_hours(arguments_.least_rest_s) + " at least: waits for more";
   }
+  if (const std::string why = not_to_be_judged(in_use); !why.empty()) return why;
   judge_last_adoption(files, in_use);
-  return diagnose(recorded, files, in_use);
+  std::string said = diagnose(recorded, files, in_use);
+  gone_through_ = true;
+  return said;
+}
+
+// What the daemon corrects by the time since power-up is not in a recording: the drift that is left here
+// would be taken for another cause, and corrected twice.
+std::string Night::not_to_be_judged(const ModelInUse& in_use) const {
+  if (!sensor_.powered_with_computer || !in_use.model) return "";
+  const auto& effects = in_use.model->effects;
+  if (std::none_of(effects.begin(), effects.end(), [](const Effect& each) { return each.form == "warm_up"; }))
+    return "";
+  return "the model in use corrects a warm-up by the time since power-up, which recordings do not carry: "
+         "diagnose "
+         "them by hand with --since-power-up";
 }
 
 // What was adopted proves itself on all that was recorded since.

@@ -8,7 +8,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "drivers/capture/output_file.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/field/state_json.h"
@@ -138,8 +137,8 @@ std::string gain_text(const std::vector<AxisGain>& gain) {
 
 void write_proposal(const std::string& state, const Proposal& proposal, const Model& model,
                     const std::string& report) {
-  write_file(inside(state, proposal.model_file), model_text(model));
-  write_file(inside(state, proposal.report_file), report);
+  write_state_file(inside(state, proposal.model_file), model_text(model));
+  write_state_file(inside(state, proposal.report_file), report);
   const ordered_json index = {{"schema", kSchema},
                               {"sensor", proposal.sensor},
                               {"made", proposal.made},
@@ -149,8 +148,8 @@ void write_proposal(const std::string& state, const Proposal& proposal, const Mo
                               {"model_file", proposal.model_file},
                               {"report_file", proposal.report_file},
                               {"gain", gain_json(proposal.gain)}};
-  write_file(index_path(state, proposal.sensor),
-             index.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  write_state_file(index_path(state, proposal.sensor),
+                   index.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   remove_others(state, proposal.sensor, &proposal);
 }
 

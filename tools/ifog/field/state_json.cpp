@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 
@@ -27,6 +28,14 @@ std::optional<nlohmann::json> read_state_json(const std::string& path, const std
              : printable(found->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))) +
         ", expected " + schema);
   return json;
+}
+
+void write_state_file(const std::string& path, std::string_view bytes) {
+  std::error_code none;
+  const std::filesystem::file_status there = std::filesystem::symlink_status(path, none);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    throw std::runtime_error(path + ": is no regular file, which is not written in a state folder");
+  write_file(path, bytes);
 }
 
 void refuse_keys(const std::string& path, const nlohmann::json::exception& error) {

@@ -127,6 +127,9 @@ std::string message_json(std::string_view sensor, const status_t& message) {
   out["fault"] = message.fault;
   for (const auto& [name, member] : kCounts) out[name] = message.*member;
   for (const auto& [name, member] : kFigures) out[name] = message.*member;
+  out["model_since"] = message.model_since;
+  out["noticed"] = message.noticed;
+  out["notice"] = message.notice;
   out["nis_mean"] = message.nis_mean;
   out["whiteness"] = message.whiteness;
   out["measurement_noise"] = message.measurement_noise;
