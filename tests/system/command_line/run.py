@@ -266,6 +266,21 @@ class Checks:
         again = self.json("diagnose", self.capture, "--quiet", "--model", model)
         assert again["effects"] == [], again["effects"]
 
+    def check_a_column_that_reads_as_a_difference(self):
+        """A model names a difference of two columns "A - B": a column of that name is left out and said, and the model it writes is one."""
+        odd, model = self.folder / "odd.csv", self.folder / "odd.toml"
+        odd.write_text(self.capture.read_text().replace("temperature_degC", "inlet - outlet_degC", 1))
+        said = ifog("diagnose", odd, "--write-model", model)
+        assert "'inlet - outlet_degC' was left out" in said, said
+        ifog("denoise", odd, "--model", model, "--output", self.folder / "odd_out.csv")
+        found = ifog("diagnose", odd, "--column", "rate_radps=rate_radps:rad/s", "--column", "temperature_degC=inlet - outlet_degC")
+        assert "linear of temperature_degC" in found, found
+        one = self.folder / "one.csv"
+        one.write_text("time_s,rate_radps\n0,1e-5\n")
+        for captures in ([one], [self.capture, one]):
+            complaint = ran("diagnose", *captures).stderr.strip()
+            assert complaint == f"ifog: {one}: 1 samples, expected two at least", complaint
+
     def check_diagnose_reads_frames(self):
         """The same answer from a candump log through the driver as from the CSV, where no channel is in the frames: nothing."""
         options = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter",

@@ -14,6 +14,7 @@
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
+#include "tests/unit/diagnosis/by_definition.h"
 
 namespace ifog {
 namespace {
@@ -79,27 +80,6 @@ SecondHalf compensated(const std::vector<double>* rotation) {
     EXPECT_EQ(corrected.correction_radps[0], 0.0);
   }
   return out;
-}
-
-double deviation(const std::vector<double>& x) {
-  double mean = 0.0;
-  double square = 0.0;
-  for (const double v : x) mean += v / static_cast<double>(x.size());
-  for (const double v : x) square += (v - mean) * (v - mean);
-  return std::sqrt(square / static_cast<double>(x.size()));
-}
-
-// Overlapping Allan deviation, straight from its definition.
-double allan(const std::vector<double>& x, std::size_t m) {
-  double square = 0.0;
-  double n = 0.0;
-  for (std::size_t i = 0; i + 2 * m <= x.size(); ++i) {
-    double d = 0.0;
-    for (std::size_t k = 0; k < m; ++k) d += (x[i + m + k] - x[i + k]) / static_cast<double>(m);
-    square += d * d;
-    n += 1.0;
-  }
-  return std::sqrt(0.5 * square / n);
 }
 
 TEST_F(MeasuredRebuiltRamp, IsFoundAlone) {

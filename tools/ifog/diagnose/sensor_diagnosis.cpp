@@ -15,6 +15,7 @@
 #include "drivers/transport/utc_now.h"
 #include "filters/diagnosis/record/derived_channels.h"
 #include "filters/effects/compensate_series.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/console/command_line.h"
@@ -23,6 +24,9 @@
 
 namespace ifog::tools {
 namespace {
+
+// In a model such a name is that of two columns.
+bool reads_as_difference(const std::string& name) { return !names_in(name).less.empty(); }
 
 Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
   Record record;
@@ -34,7 +38,7 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
   record.reference_name =
       capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
   for (const CaptureColumn& column : capture.channels)
-    record.channels.push_back({column.name, column.values});
+    if (!reads_as_difference(column.name)) record.channels.push_back({column.name, column.values});
   for (std::size_t other = 0; other < capture.axes.size(); ++other)
     if (other != axis)
       record.other_axes.push_back({rate_of_axis(capture.axes[other]), capture.rate_radps[other]});
@@ -138,7 +142,11 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
     try {
       diagnosis = diagnose(records, options);
     } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(names.front() + ": " + error.what());
+      // Of several captures the diagnosis names the one it means.
+      const std::string what = error.what();
+      const bool named = std::any_of(names.begin(), names.end(),
+                                     [&](const std::string& name) { return what.starts_with(name + ": "); });
+      throw std::runtime_error(named ? what : names.front() + ": " + what);
     }
     progress.reset();
     found.push_back({axes[axis], std::move(diagnosis)});
@@ -147,6 +155,12 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
     for (const Capture& capture : captures) {
       auto& remarks = found.front().diagnosis.remarks;
       remarks.insert(remarks.begin(), capture.faults.begin(), capture.faults.end());
+      for (const CaptureColumn& column : capture.channels)
+        if (reads_as_difference(column.name))
+          remarks.push_back(
+              in_quotes(column.name) +
+              " was left out: \" - \" in a name stands for a difference of two columns; another name "
+              "(--column) makes it a channel");
     }
   const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
   if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
