@@ -77,6 +77,8 @@ class AngleLedger {
     manoeuvre_[axis] += angle_rad;
     quick_s_ = std::max(quick_s_, kOwedSamples * period_s_);
   }
+  // Of a filter that is to begin again: all is owed to nobody, until it is told so anew.
+  void forget() noexcept { at_rest_ = manoeuvre_ = {}; }
 
  private:
   static constexpr double kNoLimit = 1e300;

@@ -22,6 +22,8 @@ constexpr double kWell = 0.1;
 constexpr std::uint64_t kLagEvery = 256;
 // Samples: what was not tested at the beginning belongs to no manoeuvre that begins later.
 constexpr double kUntestedKept = 256.0;
+// Where the noise looks coloured and how slow it is has yet to be found, a test of this many more is blunt.
+constexpr double kColouredUntested = 4096.0;
 // So many lags after it was moved the filter at rest has settled. Of n measurements it takes the mean, with
 // gain 1 / n, until it has.
 constexpr double kSettledLags = 2.0;
@@ -158,6 +160,10 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   }
 }
 
+bool Engine::hardly_tested(std::size_t axis) const noexcept {
+  return !noise_[axis].white() && tested_for_[axis] < kColouredUntested;
+}
+
 double Engine::lag_samples() const noexcept { return std::max(longest_lag_, 1.0); }
 
 Surprise Engine::surprise(const Measurement& m) const noexcept {
@@ -207,7 +213,9 @@ void Engine::learn_noise(const Measurement& m) noexcept {
   double rest = 0.0, greatest = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
-    newly = noise_[a].learn(m.innovation[a] * std::sqrt(1.0 / m.noise_scale), lag_samples()) || newly;
+    newly = noise_[a].learn(m.innovation[a] * std::sqrt(1.0 / m.noise_scale), lag_samples(),
+                            noise_[a].known() ? 0.0 : foresight_[a].least()) ||
+            newly;
     all = all && noise_[a].known();
     rest += noise_[a].rest();
     greatest += noise_[a].greatest_noise();
@@ -241,6 +249,9 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     trackers_.pass_over();
   } else if (m.valid != 0) {
     if (now.valid != 0) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
+    for (std::size_t a = 0; a < axes_; ++a)
+      if (has(m.valid, a) && !noise_[a].known())
+        foresight_[a].take(trackers_, a, m.in.rate_radps[a], m.noise_scale);
     trackers_.correct(m.in.rate_radps, m.valid);
   }
   if (changed) {
@@ -290,7 +301,11 @@ void Engine::guard(const Measurement& m, EstimatorOutput& out) noexcept {
   ++health_.divergences;
   ++health_.restarts;
   out.flags |= kRestarted;
+  // As a new filter takes over an old one's debt: no lag returns it any more.
+  const Axes debt = owed();
+  ledger_.forget();
   restart();
+  owe(debt);
   begin_axes(m.in.rate_radps, m.valid);
   update_rest(m, false);
   publish_rest();
@@ -329,14 +344,21 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
       const double short_by =
           has(m.valid, a) && !published_.passed_over ? m.in.rate_radps[a] - published_.rate[a] : 0.0;
-      const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), in_manoeuvre());
+      // What a filter that is lost falls short of is no lag's, whatever it takes itself for.
+      const bool under_way = in_manoeuvre() || (follow_manoeuvres_ && lost_);
+      const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), under_way);
       // What was fallen short of before its noise was known no test has seen: a filter that begins under way
       // finds that out late, and owes it to the manoeuvre.
       if (!has(m.tested, a)) {
         untested_[a] += grown;
         tested_for_[a] = 0.0;
-      } else if ((tested_for_[a] += 1.0) > kUntestedKept) {
-        untested_[a] = 0.0;
+      } else {
+        tested_for_[a] += 1.0;
+        if (hardly_tested(a)) {
+          if (!under_way) untested_[a] += grown;
+        } else if (tested_for_[a] > kUntestedKept) {
+          untested_[a] = 0.0;
+        }
       }
     }
     out.denoised_radps[a] = rate;

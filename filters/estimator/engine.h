@@ -9,6 +9,7 @@
 #include "filters/estimator/angle_ledger.h"
 #include "filters/estimator/change_test.h"
 #include "filters/estimator/estimator.h"
+#include "filters/estimator/foresight.h"
 #include "filters/estimator/motion_mix.h"
 #include "filters/estimator/noise_scale.h"
 #include "filters/estimator/outlier_run.h"
@@ -92,6 +93,7 @@ class Engine {
   void publish(const Measurement& m, EstimatorOutput& out) noexcept;
   void grade(std::size_t axis, double normalised) noexcept;
   void doubt(std::size_t axis, double normalised) noexcept;
+  [[nodiscard]] bool hardly_tested(std::size_t axis) const noexcept;
   void refresh_lag() noexcept;
   [[nodiscard]] double lag_samples() const noexcept;
 
@@ -102,6 +104,7 @@ class Engine {
   SteadyGain* steady_;
   SensorCheck check_;
   std::array<NoiseScale, kMaxAxes> noise_;
+  std::array<Foresight, kMaxAxes> foresight_;
   TrackerBank trackers_;
   ChangeTest change_;
   OutlierRun outliers_;
@@ -121,7 +124,7 @@ class Engine {
   Motion motion_ = Motion::at_rest;
   bool lost_ = false;           // was found so, and has not been well since: guard()
   Axes tested_for_{};           // measurements since the noise was known
-  Axes untested_{};             // angle fallen short of while the noise was not known
+  Axes untested_{};             // angle fallen short of while the noise was not known, or the test blunt
   Axes kept_out_{};             // angle of the measurements kept out in a row
   Axes waiting_rate_{};         // that measurement
   Axes surprised_{};            // running mean of the least normalised square in the manoeuvre

@@ -64,7 +64,8 @@ void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, Estimato
   Axes rate{};
   for (std::size_t a = 0; a < axes_; ++a) {
     rate[a] = trackers_.rate(tracker, a);
-    ledger_.move_to_manoeuvre(a, change_.fallen_short(tracker, a));
+    // What the test has seen is among what it was too blunt for.
+    if (!hardly_tested(a)) ledger_.move_to_manoeuvre(a, change_.fallen_short(tracker, a));
     owe_to_manoeuvre(a);
   }
   ledger_.pace(trackers_.length(tracker));

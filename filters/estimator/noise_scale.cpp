@@ -50,26 +50,27 @@ void NoiseScale::recall(double colour) noexcept {
   if (colour > 1.0 && colour < kMostColour) recalled_ = colour;
 }
 
-// What was told counts only where the innovations are much louder than they are rough: motion or colour, and
-// nothing else says which.
-void NoiseScale::settle() noexcept {
+// What was told counts only where the innovations are much louder than they are rough and no tracker follows
+// them: then it is colour, and how slow it is nothing else says yet.
+void NoiseScale::settle(double foreseen) noexcept {
   if (rough_count_ < kDifferent) rough_ = told_;
   const double rough = std::max(rough_, 1e-9 * told_);
   const double found = squares_ / learned_;
   const double usual = recalled_ * rough;
-  rest_ = found <= 2.0 * usual ? usual : std::max(told_, usual);
+  const bool motion = foreseen <= kForeseen * rough;
+  rest_ = found <= kLouder * usual || motion ? usual : std::max(told_, usual);
   rough_ = rough;
   colour_ = rest_ / rough;
   colour_count_ = recalled_ > 1.0 ? kColourMemory : kMemory;
   known_ = true;
 }
 
-bool NoiseScale::learn(double innovation, double lag) noexcept {
+bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept {
   if (!known_) {
     squares_ += innovation * innovation;
     if (++learned_ < kLearning || different_ < kDifferent) return false;
     if (rough_count_ < kDifferent && learned_ < kUnheard) return false;
-    settle();
+    settle(foreseen);
     return true;
   }
   const double apart = innovation - mean_;

@@ -25,9 +25,10 @@ class NoiseScale {
   // The next measurement, scaled to the nominal period's noise. Call break_off() where one is missing.
   void take(double rate) noexcept;
   void break_off() noexcept { in_a_row_ = 0; }
-  // An innovation of the filter at rest, scaled likewise; lag: of that filter, in samples. True when this was
-  // the one that made the scale known.
-  bool learn(double innovation, double lag) noexcept;
+  // An innovation of the filter at rest, scaled likewise; lag: of that filter, in samples; foreseen: the
+  // noise's variance by the tracker that foresees best, while the scale is not known. True when this was the
+  // one that made it known.
+  bool learn(double innovation, double lag, double foreseen) noexcept;
 
   // Variance of an innovation at rest as the noise is now.
   [[nodiscard]] double now() const noexcept;
@@ -63,6 +64,10 @@ class NoiseScale {
   static constexpr double kMostColour = 1e4;
   // Of the ratio of innovations to roughness so much counts for motion.
   static constexpr double kMotion = 0.5;
+  // Innovations this much louder than rough are motion or colour; motion where a tracker foresees them this
+  // nearly to the roughness.
+  static constexpr double kLouder = 2.0;
+  static constexpr double kForeseen = 1.4;
   // A square counts for this many variances at most, so that an outlier is none.
   static constexpr double kClip = 25.0;
   // The ratio of two variances is spoiled by less.
@@ -70,7 +75,7 @@ class NoiseScale {
   // Of the limit above the roughness, whose own error is 4 %.
   static constexpr double kMargin = 1.05;
 
-  void settle() noexcept;
+  void settle(double foreseen) noexcept;
 
   double told_, rest_, local_;
   double rough_ = 0.0, rough_count_ = 0.0;  // variance by third differences, measurements in it
