@@ -17,10 +17,14 @@ namespace {
 
 constexpr std::size_t kLeastStartUp = 256;
 constexpr std::size_t kMostStartUp = 20000;
-// Of the driving noise of a sample over the measurement's, of start-up data, where changes of rate are
-// followed. Ten thousand times any gyro's: what looks quicker was a motion, and a filter that is quicker than
-// the trackers of motions would never be found at rest again, nor learn better.
-constexpr double kMostStartUpRatio = 1e-3;
+// Of the driving noise of a sample over the measurement's, as learned, where changes of rate are followed.
+// Ten thousand times any gyro's: what looks quicker was a motion, and a filter that is quicker than the
+// trackers of motions would never be found at rest again, nor learn better.
+constexpr double kMostLearnedRatio = 1e-3;
+
+double within_reach(double process_noise, double measurement_noise, double period_s) noexcept {
+  return std::min(process_noise, kMostLearnedRatio * measurement_noise / period_s);
+}
 
 }  // namespace
 
@@ -156,8 +160,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   if (filter_.process_noise <= 0.0) {
     filter_.process_noise = noise.process_noise;
     if (learns_process_noise_ && filter_.follow_manoeuvres)
-      filter_.process_noise =
-          std::min(noise.process_noise, kMostStartUpRatio * filter_.measurement_noise / period_s_);
+      filter_.process_noise = within_reach(noise.process_noise, filter_.measurement_noise, period_s_);
   }
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
   estimator_->owe(owed_);
@@ -175,9 +178,11 @@ void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept 
   rest_noise_.take(out.compensated_radps, in.valid_axes, is);
   const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
   if (!found) return;
-  filter_.process_noise = found->process_noise;
+  filter_.process_noise = filter_.follow_manoeuvres
+                              ? within_reach(found->process_noise, found->measurement_noise, period_s_)
+                              : found->process_noise;
   rest_measurement_noise_ = found->measurement_noise;
-  estimator_->retune(found->process_noise);
+  estimator_->retune(filter_.process_noise);
 }
 
 void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "filters/random/log_exp.h"
+#include "filters/estimator/octave_fit.h"
 
 namespace ifog {
 namespace {
@@ -16,22 +16,26 @@ constexpr double kIndependent = 0.5;
 // Trials of the ratio of walk to noise: a factor apart, up to a walk that is all there is.
 constexpr double kStep = 1.2;
 constexpr double kMostRatio = 10.0;
+// Of ratios that fit nearly as well as the best, a standard error wide, the quickest walk is taken: a filter
+// that is a little too quick is a little louder, one that is too slow takes the walk for motion, and finds no
+// rest to learn better from.
+constexpr double kNearlyAsWell = 1.0;
 
 }  // namespace
 
 void RestNoise::RatioSearch::begin(const OctaveSums& sums) noexcept {
   // No slower than the record could have shown.
-  next_ = best_ = 1.0 / (sums.samples * sums.samples);
+  next_ = best_ = quickest_ = 1.0 / (sums.samples * sums.samples);
   lowest_ = 1e300;
 }
 
 bool RestNoise::RatioSearch::advance(const OctaveSums& sums) noexcept {
-  double noise = 0.0;
-  const double here = RestNoise::misfit(sums, next_, noise);
+  const double here = fit_octaves(sums.squares, sums.counts, next_).misfit;
   if (here < lowest_) {
     lowest_ = here;
     best_ = next_;
   }
+  if (here <= lowest_ + kNearlyAsWell) quickest_ = next_;
   next_ *= kStep;
   return !(next_ < kMostRatio);
 }
@@ -83,27 +87,13 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
   }
 }
 
-// Sum of n (ln S + V / S), S = R (6 / m + ratio m), at the R that fits best, which comes with it.
-double RestNoise::misfit(const OctaveSums& sums, double ratio, double& noise) noexcept {
-  double weighted = 0.0, total = 0.0, logs = 0.0, block = 1.0;
-  for (std::size_t k = 0; k < kOctaves; ++k, block *= 2.0) {
-    if (!(sums.counts[k] > 0.0)) continue;
-    const double shape = 6.0 / block + ratio * block;
-    weighted += sums.squares[k] / shape;
-    total += sums.counts[k];
-    logs += sums.counts[k] * logarithm(shape);
-  }
-  noise = total > 0.0 ? weighted / total : 0.0;
-  return noise > 0.0 ? total * logarithm(noise) + logs : 0.0;
-}
-
 void RestNoise::judge() noexcept {
   if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_)) return;
   if (judging_ == Judging::kChapter) {
     compare();
     return;
   }
-  known_ratio_ = search_.ratio();
+  known_ratio_ = search_.quickest();
   judging_ = Judging::kNothing;
   news_ = true;
 }
@@ -111,9 +101,9 @@ void RestNoise::judge() noexcept {
 // The chapter that was read before this one with all that is known.
 void RestNoise::compare() noexcept {
   judging_ = Judging::kNothing;
-  double noise = 0.0;
   if (known_.samples > 0.0) {
-    const double behind = misfit(judged_, known_ratio_, noise) - search_.misfit();
+    const double behind =
+        fit_octaves(judged_.squares, judged_.counts, known_ratio_).misfit - search_.misfit();
     const bool differ = 0.5 * behind > kSurely;
     const bool quicker = differ && search_.ratio() > known_ratio_;
     if (quicker && (contradictions_ < 0 || ++contradictions_ < kContradicted)) return;
@@ -131,10 +121,9 @@ void RestNoise::compare() noexcept {
 
 std::optional<NoiseEstimate> RestNoise::take_news(double period_s) noexcept {
   if (!std::exchange(news_, false)) return std::nullopt;
-  double noise = 0.0;
-  (void)misfit(known_, known_ratio_, noise);
-  if (!(noise > 0.0)) return std::nullopt;
-  return NoiseEstimate{known_ratio_ * noise / period_s, noise};
+  const OctaveFit fit = fit_octaves(known_.squares, known_.counts, known_ratio_);
+  if (!(fit.noise > 0.0)) return std::nullopt;
+  return NoiseEstimate{known_ratio_ * fit.low_noise / period_s, fit.noise};
 }
 
 }  // namespace ifog

@@ -55,17 +55,17 @@ class RestNoise {
     // True: at its end.
     bool advance(const OctaveSums& sums) noexcept;
     [[nodiscard]] double ratio() const noexcept { return best_; }
+    [[nodiscard]] double quickest() const noexcept { return quickest_; }  // kNearlyAsWell
     [[nodiscard]] double misfit() const noexcept { return lowest_; }
 
    private:
-    double next_ = 0.0, best_ = 0.0, lowest_ = 0.0;
+    double next_ = 0.0, best_ = 0.0, quickest_ = 0.0, lowest_ = 0.0;
   };
   enum class Judging { kNothing, kChapter, kAll };
 
   void add(std::size_t axis, double rate) noexcept;
   void judge() noexcept;
   void compare() noexcept;
-  [[nodiscard]] static double misfit(const OctaveSums& sums, double ratio, double& noise) noexcept;
 
   std::array<std::array<Octave, kOctaves>, kMaxAxes> octaves_{};
   OctaveSums known_, chapter_, judged_;

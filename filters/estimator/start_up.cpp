@@ -8,15 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "filters/estimator/octave_fit.h"
+
 namespace ifog {
 namespace {
 
 constexpr std::size_t kLeast = 32;
+// As in rest_noise.cpp; nearer to the best, as these seconds may have been motion.
+constexpr double kNearlyAsWell = 0.3;
 // Median of the square of a standard normal.
 constexpr double kMedianSquare = 0.4549364;
 
 struct Octave {
-  double block = 1.0;     // samples
   double variance = 0.0;  // of the second difference of block means, mean over axes
   double count = 0.0;     // independent ones, of all axes
 };
@@ -45,7 +48,7 @@ std::vector<Octave> octaves(std::span<const double> rate) {
   std::vector<Octave> all;
   std::vector<double> means(rate.begin(), rate.end());
   // Twelve differences are the fewest whose median says something.
-  for (double block = 1.0; means.size() >= 14; block *= 2.0) {
+  while (means.size() >= 14) {
     std::vector<double> squares;
     for (std::size_t i = 2; i < means.size(); ++i) {
       const double second = means[i] - 2.0 * means[i - 1] + means[i - 2];
@@ -53,31 +56,15 @@ std::vector<Octave> octaves(std::span<const double> rate) {
     }
     if (squares.size() >= 12) {
       const auto count = static_cast<double>(squares.size());
-      all.push_back({block, robust_variance(squares), count / 2.0});
+      all.push_back({robust_variance(squares), count / 2.0});
+    } else {
+      all.emplace_back();
     }
     std::vector<double> halved(means.size() / 2);
     for (std::size_t i = 0; i < halved.size(); ++i) halved[i] = present_mean(means[2 * i], means[2 * i + 1]);
     means = std::move(halved);
   }
   return all;
-}
-
-// For a given ratio q dt / R: the R that fits best and the misfit, sum of count (ln S + V / S).
-struct Fit {
-  double noise = 0.0;
-  double misfit = std::numeric_limits<double>::infinity();
-};
-
-Fit fit(const std::vector<Octave>& all, double ratio) {
-  double weighted = 0.0, total = 0.0;
-  for (const Octave& o : all) {
-    weighted += o.count * o.variance / (6.0 / o.block + ratio * o.block);
-    total += o.count;
-  }
-  const double noise = weighted / total;
-  double misfit = total * (std::log(noise) + 1.0);
-  for (const Octave& o : all) misfit += o.count * std::log(6.0 / o.block + ratio * o.block);
-  return {noise, misfit};
 }
 
 // Adds an axis to what the ones before it gave: octaves that one of them lacks are dropped.
@@ -89,7 +76,7 @@ void add(std::vector<Octave>& all, const std::vector<Octave>& axis, int before) 
   all.resize(std::min(all.size(), axis.size()));
   for (std::size_t k = 0; k < all.size(); ++k) {
     all[k].variance += (axis[k].variance - all[k].variance) / (before + 1.0);
-    all[k].count += axis[k].count;
+    all[k].count = axis[k].count > 0.0 && all[k].count > 0.0 ? all[k].count + axis[k].count : 0.0;
   }
 }
 
@@ -126,18 +113,23 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
   const double lowest = std::log(1.0 / (n * n));
   const double highest = std::log(100.0);
   constexpr int kGrid = 400;
-  double best_ratio = 0.0;
-  Fit best;
+  std::vector<double> squares, counts;
+  for (const Octave& o : all) {
+    squares.push_back(o.variance * o.count);
+    counts.push_back(o.count);
+  }
+  double quickest = 0.0, least = std::numeric_limits<double>::infinity();
+  OctaveFit taken_fit;
   for (int i = 0; i <= kGrid; ++i) {
     const double ratio = std::exp(lowest + (highest - lowest) * i / kGrid);
-    const Fit here = fit(all, ratio);
-    if (here.misfit < best.misfit) {
-      best = here;
-      best_ratio = ratio;
-    }
+    const OctaveFit here = fit_octaves(squares, counts, ratio);
+    least = std::min(least, here.misfit);
+    if (here.misfit > least + kNearlyAsWell) continue;
+    taken_fit = here;
+    quickest = ratio;
   }
-  const double noise = std::max(best.noise, last_digit * last_digit);
-  return {best_ratio * noise / dt_s, noise};
+  const double noise = std::max(taken_fit.noise, last_digit * last_digit);
+  return {quickest * std::max(taken_fit.low_noise, last_digit * last_digit) / dt_s, noise};
 }
 
 }  // namespace ifog

@@ -18,11 +18,11 @@ struct NoiseEstimate {
 // Second differences of block means over octaves of block length do not see a constant or a ramp; of each
 // octave the median is taken, so motion in a part of the record counts little (in a fifth of it, q comes out
 // some five times too large). A random walk of density q in white noise R gives them variance 6 R / m + q dt
-// m at m samples a block; R and q are fitted to all octaves by Gaussian quasi-likelihood. A record that shows
-// no random walk gets the slowest one it could have shown, q dt = R / n^2; a constant record the noise of its
-// last digit. A few seconds show the white noise well and the random walk badly: `ifog tune` on an hour at
-// rest is the better way. Takes about 0.1 ms a thousand values. Allocates. Throws std::invalid_argument when
-// no axis has 32 measurements.
+// m at m samples a block; R and q are fitted by Gaussian quasi-likelihood to all octaves but the shortest,
+// where these are of another kind (octave_fit.h). A record that shows no random walk gets one that it might
+// hide; a constant record the noise of its last digit. A few seconds show the white noise well and the random
+// walk badly: `ifog tune` on an hour at rest is the better way. Takes about 0.1 ms a thousand values.
+// Allocates. Throws std::invalid_argument when no axis has 32 measurements.
 [[nodiscard]] NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s);
 
 }  // namespace ifog

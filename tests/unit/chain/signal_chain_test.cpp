@@ -95,6 +95,46 @@ TEST(SignalChain, NewPartsGoOnWithTheAngle) {
   }
 }
 
+// An output filter makes neighbours alike: of three axes one has noise of colour 0.5. None is told what its
+// noise is like, and after four minutes each is denoised as by one that is: the bound is twice the steady
+// error of a Kalman filter told q and the noise's density at low frequency, sqrt(sqrt(q R)).
+TEST(SignalChain, ColourOfOneAxisThatNobodyToldMakesNoAxisLouder) {
+  ChainSettings unknown = settings(0.0, 0.0);
+  unknown.facts.axes = 3;
+  unknown.axes = {"x", "y", "z"};
+  constexpr double kNoise = 1e-4, kRatio = 1e-6, kColour = 0.5;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    SignalChain chain(std::make_unique<ChainParts>(unknown));
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    Axes walk{}, noise{}, squares{};
+    Increment in;
+    ChainOutput out;
+    constexpr int kSamples = 240'000, kFrom = 120'000;
+    for (int i = 0; i < kSamples; ++i) {
+      in.sequence = static_cast<std::uint64_t>(i);
+      in.dt_s = kPeriod_s;
+      in.valid_axes = 7;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double colour = a == 0 ? kColour : 0.0;
+        noise[a] = colour * noise[a] + std::sqrt(1.0 - colour * colour) * normal(engine);
+        walk[a] += std::sqrt(kRatio) * normal(engine);
+        in.rate_radps[a] = kNoise * (noise[a] + walk[a]);
+        in.covered_s[a] = kPeriod_s;
+        in.delta_theta_rad[a] = in.rate_radps[a] * kPeriod_s;
+      }
+      chain.process(in, out);
+      for (std::size_t a = 0; a < 3 && i >= kFrom; ++a)
+        squares[a] += std::pow(out.estimate.denoised_radps[a] / kNoise - walk[a], 2) / (kSamples - kFrom);
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double density = a == 0 ? (1.0 + kColour) / (1.0 - kColour) : 1.0;
+      EXPECT_LT(std::sqrt(squares[a]), 2.0 * std::sqrt(std::sqrt(kRatio * density)))
+          << seed << ", axis " << a;
+    }
+  }
+}
+
 // ∫(denoised − compensated)dt over a turn with a sharp start and a slow end, with new parts at sample `at`.
 double apart_after_a_turn(const ChainSettings& each, int at, unsigned seed) {
   SignalChain chain(std::make_unique<ChainParts>(each));

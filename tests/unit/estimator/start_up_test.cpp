@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -43,13 +44,22 @@ TEST(StartUp, FindsTheNoiseThroughDriftMotionAndMissingSamples) {
   }
 }
 
-TEST(StartUp, OfWhiteNoiseIsTheSlowestWalkTheRecordCouldShow) {
-  const Record r = record(3, 5000, 0.0);
-  const auto found = ifog::estimate_noise(r.measured, 1, kPeriod);
-  EXPECT_NEAR(found.measurement_noise, 1.0, 0.15);
-  EXPECT_GT(found.process_noise, 0.0);
-  // The longest octave, 256 samples with some ten differences, knows 6 R / 256 to a half: q to 5e-5.
-  EXPECT_LT(found.process_noise * kPeriod, 1e-4);
+// The longest octave, 256 samples with some nine independent differences, knows 6 R / 256 to a half, and q to
+// 4.5e-5: neither a walk that the record surely does not have nor one too slow to be told from none. Single
+// records scatter by more, as medians do.
+TEST(StartUp, OfWhiteNoiseIsAWalkThatTheRecordMightHide) {
+  std::vector<double> walks;
+  for (std::uint64_t seed = 1; seed <= 21; ++seed) {
+    const Record r = record(seed, 5000, 0.0);
+    const auto found = ifog::estimate_noise(r.measured, 1, kPeriod);
+    EXPECT_NEAR(found.measurement_noise, 1.0, 0.15);
+    walks.push_back(found.process_noise * kPeriod);
+  }
+  std::sort(walks.begin(), walks.end());
+  EXPECT_LT(walks[10], 2.0 * 4.5e-5);
+  EXPECT_GT(walks[10], 0.5 * 4.5e-5);
+  EXPECT_GT(walks.front(), 1e-6);
+  EXPECT_LT(walks.back(), 1e-3);
 }
 
 // The normalised squared error of each of the first samples, over many records, is 1 at most, and 1 once a
