@@ -66,8 +66,11 @@ Parts parts_of(const std::string& header) {
   return {lower(header.substr(0, underscore)), last};
 }
 
-// The axis that a rate's header ends in, if its beginning speaks of a rate.
+// The axis that a rate's header ends in, if its beginning speaks of a rate; `raw` is what `ifog denoise`
+// calls what was measured.
 std::optional<std::string> rate_axis(const std::string& base) {
+  if (base == "raw") return "";
+  if (base.size() == 5 && base.starts_with("raw_")) return base.substr(4);
   constexpr std::array<std::string_view, 9> kWords{"gyroscope",       "gyro",   "gyr", "rate", "omega",
                                                    "angularvelocity", "angvel", "w",   "g"};
   std::string squeezed;

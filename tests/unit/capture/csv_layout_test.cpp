@@ -127,6 +127,10 @@ TEST(CsvLayout, AHeaderThatIsNearlyRightGetsTheOptionsToType) {
   EXPECT_EQ(
       told("timestamp,rate_radps,frame_rate_hz,T"),
       "a.csv:1: first column is 'timestamp', expected 'time_s'; to read it as it is: --time timestamp:UNIT");
+  EXPECT_EQ(
+      told("time_s,raw_x_radps,denoised_x_radps,raw_z_radps"),
+      "a.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …; to read it as it is: --column "
+      "rate_x_radps=raw_x_radps:radps --column rate_z_radps=raw_z_radps:radps");
   EXPECT_EQ(told("a,b,c,d"), "a.csv:1: first column is 'a', expected 'time_s'");
   EXPECT_EQ(told("time_s;rate_radps"),
             "a.csv:1: no comma in the header 'time_s;rate_radps'; expected commas, or --separator ';'");
