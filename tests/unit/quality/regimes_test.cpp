@@ -41,7 +41,7 @@ TEST(Regimes, EveryRecordIsWhole) {
     EXPECT_EQ(missing > 0, one.name.starts_with("missing"));
     EXPECT_GE(one.limit_at(1e-3), one.limit_at(1e-6));
   }
-  EXPECT_EQ(names.size(), 31U);
+  EXPECT_EQ(names.size(), 33U);
 }
 
 TEST(Regimes, RecordsDependOnRegimeRatioAndSeedOnly) {
