@@ -37,7 +37,7 @@ SensorWatch::SensorWatch(std::size_t axes, double sample_rate_hz)
       period_s_(1.0 / sample_rate_hz) {
   const double block_s = block_samples_ * period_s_;
   const double cusum = std::log(blocks_between_alarms(axes, block_s, (1.0 - kForStep) / kCusums));
-  const double step = window_threshold(blocks_between_alarms(axes, block_s, kForStep), StepTest::kWindows);
+  const double step = blocks_between_alarms(axes, block_s, kForStep);
   axes_.assign(axes, Axis(cusum, cusum, step));
 }
 
@@ -129,11 +129,11 @@ bool SensorWatch::test_noise(Axis& axis, double square, double correlation, doub
 }
 
 void SensorWatch::test_level(Axis& axis, double mean) {
-  const LevelNoise::Innovation innovation = axis.level.take(mean, axis.skipped);
+  const LevelNoise::Innovation& innovation = axis.level.take(mean, axis.skipped);
   axis.bias_for = std::max(0.0, axis.bias_for - 1.0);
   if (!innovation.known) return;
   // Also while it learns: how far sums go is part of that.
-  const bool stepped = axis.steps.take(innovation.value, innovation.gain, innovation.spread);
+  const bool stepped = axis.steps.take(innovation);
   if (axis.level.blocks() < kLearned) return;
   axis.follows.take(innovation.value);
   if (!stepped) return;
@@ -153,9 +153,9 @@ std::int32_t SensorWatch::noticed() const {
   return out;
 }
 
-double SensorWatch::largest_step_score() const {
-  double out = 0.0;
-  for (const Axis& axis : axes_) out = std::max(out, axis.steps.largest());
+double SensorWatch::nearest_step() const {
+  double out = axes_.front().steps.nearest();
+  for (const Axis& axis : axes_) out = std::min(out, axis.steps.nearest());
   return out;
 }
 

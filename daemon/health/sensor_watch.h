@@ -13,9 +13,8 @@
 //   range    more than half of the samples of ten minutes were outside the range of the model's channels
 //
 // The first three are wrong at most once in thirty days of all axes together. As real innovations are not
-// quite those of the theory, they are designed for kAlarmEvery_s, twice as long, which is shared among them:
-// four fifths of the alarms to the bias, which needs them most; the last cannot be wrong. See
-// sequential_tests.h.
+// quite those of the theory, they are designed for kAlarmEvery_s, which is shared among them: four fifths of the
+// alarms to the bias, which needs them most; the last cannot be wrong. See sequential_tests.h and step_test.h.
 //
 // A sensor that is turned rests at another rate afterwards, as the Earth turns: the level is then begun anew.
 // One that is turned so slowly that it passes for rest is told as a step.
@@ -27,8 +26,10 @@
 #include <string>
 #include <vector>
 
+#include "daemon/health/level_noise.h"
 #include "daemon/health/rest_sums.h"
 #include "daemon/health/sequential_tests.h"
+#include "daemon/health/step_test.h"
 
 namespace ifog {
 
@@ -42,7 +43,7 @@ enum Noticed : std::int32_t {
 
 class SensorWatch {
  public:
-  static constexpr double kAlarmEvery_s = 60.0 * 86400.0;
+  static constexpr double kAlarmEvery_s = 40.0 * 86400.0;
   static constexpr double kBlock_s = 10.0;
   // Blocks at rest before anything is tested: two hours.
   static constexpr double kLearned = 720.0;
@@ -59,8 +60,8 @@ class SensorWatch {
   [[nodiscard]] std::string words(std::int32_t only = ~0) const;
   // Of the step that was found last, rad/s; 0: none was.
   [[nodiscard]] double step_radps() const { return step_radps_; }
-  // For who wants to know how near it was: the greatest |z| of the bias test, all axes.
-  [[nodiscard]] double largest_step_score() const;
+  // For who wants to know how near it was: StepTest::nearest() of all axes.
+  [[nodiscard]] double nearest_step() const;
 
  private:
   struct Axis {

@@ -262,7 +262,7 @@ void Housekeeping::reload() {
       ChainSettings settings = sensor_chain_settings(
           config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
       settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
-      settings.since_power_up_s = since_power_up_s(config);
+      settings.powered_ns = powered_ns(config);
       auto parts = std::make_unique<ChainParts>(settings);
       const bool another = config.text != sensor->config.text ||
                            parts->model_identity() != std::string(sensor->snapshot.model.data());

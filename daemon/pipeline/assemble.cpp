@@ -38,7 +38,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   out.outside = std::make_shared<ChannelTable>(settings.facts.channels - settings.facts.frame_channels);
   out.noise = NoiseMemory(state_folder(config.state_folder), sensor.name, sensor.driver, settings.facts);
   settings.learned = out.noise.recalled();
-  settings.since_power_up_s = since_power_up_s(sensor);
+  settings.powered_ns = powered_ns(sensor);
   auto parts = std::make_unique<ChainParts>(settings);
   out.left_out = parts->left_out();
   out.recorder = make_recorder(sensor, config, driver, out.noise);

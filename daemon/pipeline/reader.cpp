@@ -31,12 +31,12 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
 void Reader::take(const ifog_sample& sample) noexcept {
   ++now_.decoded;
   read_sample(sample, facts_.frame_channels, reading_);
-  const std::int64_t came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
+  reading_.came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
     const ChannelValue& now = outside_now_[static_cast<std::size_t>(i - facts_.frame_channels)];
     reading_.channel[c] = now.value;
-    reading_.channel_age_s[c] = now.age_s(came_ns);
+    reading_.channel_age_s[c] = now.age_s(reading_.came_ns);
   }
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = queue_.next();

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "daemon/sensor/noise_memory.h"
+#include "daemon/sensor/sensor_parts.h"
 
 namespace ifog {
 namespace {
@@ -56,6 +57,7 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
   out.options = sensor.options;
   for (const ChannelConfig& channel : sensor.channels)
     if (channel.source != ChannelConfig::Source::frame) out.channels.push_back(channel.name);
+  out.powered_ns = powered_ns(sensor);
   out.configuration = sensor.text;
   out.configuration_file = std::filesystem::absolute(config.file).string();
   if (!noise.empty()) out.files[noise_file_name(sensor.name)] = noise;

@@ -2,12 +2,12 @@
 #include "daemon/sensor/sensor_parts.h"
 
 #include <algorithm>
-#include <ctime>
 #include <stdexcept>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
+#include "drivers/transport/clock.h"
 #include "drivers/transport/file.h"
 #include "drivers/transport/serial.h"
 #include "drivers/transport/tcp.h"
@@ -150,10 +150,9 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
   return out;
 }
 
-std::optional<double> since_power_up_s(const SensorConfig& sensor) {
-  timespec now{};
-  if (!sensor.powered_with_computer || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return std::nullopt;
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+std::optional<std::int64_t> powered_ns(const SensorConfig& sensor) {
+  if (!sensor.powered_with_computer) return std::nullopt;
+  return arrival_clock_at_boot_ns();
 }
 
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor) {

@@ -31,9 +31,9 @@ std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, con
 ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_description& description,
                                     std::shared_ptr<const Model> model);
 
-// Of a sensor that is switched on with the computer: the time since boot, suspended time included. Nothing is
-// known of others.
-std::optional<double> since_power_up_s(const SensorConfig& sensor);
+// When a sensor was switched on, arrival clock: of one that is switched on with the computer when that was,
+// suspended time since then included. Nothing is known of others.
+std::optional<std::int64_t> powered_ns(const SensorConfig& sensor);
 
 // Null when the sensor has none.
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor);

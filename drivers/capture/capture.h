@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,7 @@ struct Capture {
   std::vector<CaptureColumn> channels;                    // every other column
   std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
   std::vector<std::string> faults;                        // cells taken for missing, one line a column
+  std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };

@@ -59,6 +59,8 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
     out.number = number<std::uint64_t>(key, value);
   else if (key == "opened_ns")
     out.opened_ns = number<std::int64_t>(key, value);
+  else if (key == "powered_ns")
+    out.powered_ns = number<std::int64_t>(key, value);
   else if (key == "program")
     out.program = std::move(value);
   else if (key == "sensor")
@@ -108,6 +110,7 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   add("run", std::to_string(header.run));
   add("number", std::to_string(header.number));
   add("opened_ns", std::to_string(header.opened_ns));
+  if (header.powered_ns) add("powered_ns", std::to_string(*header.powered_ns));
   add("configuration_file", header.configuration_file);
   add("configuration", header.configuration);
   add_named("file.", header.files);

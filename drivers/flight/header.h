@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +27,7 @@ struct FlightHeader {
   std::string driver;                          // "" for messages
   std::map<std::string, std::string> options;  // of the driver
   std::vector<std::string> channels;           // those that came from elsewhere, by their index
+  std::optional<std::int64_t> powered_ns;      // arrival clock when the sensor was switched on
   std::string configuration;                   // the sensor's part of ifogd.toml, as text
   std::string configuration_file;              // where that stood
   std::map<std::string, std::string> files;    // what options and configuration name, by path: DBC, model

@@ -46,6 +46,7 @@ std::int64_t realtime_ns() noexcept { return clock_ns(CLOCK_REALTIME); }
 std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
 std::int64_t thread_time_ns() noexcept { return clock_ns(CLOCK_THREAD_CPUTIME_ID); }
 std::int64_t arrival_clock_ns() noexcept { return clock_ns(CLOCK_BOOTTIME) + epoch_ns(); }
+std::int64_t arrival_clock_at_boot_ns() noexcept { return epoch_ns(); }
 
 std::int64_t WallShift::from(std::int64_t realtime, std::int64_t arrival) noexcept {
   const std::int64_t shift = realtime - arrival;

@@ -21,6 +21,8 @@ std::int64_t thread_time_ns() noexcept;
 
 // The arrival clock, ns since the epoch as the wall clock had it when the process started.
 std::int64_t arrival_clock_ns() noexcept;
+// What it would have shown when the machine was switched on.
+std::int64_t arrival_clock_at_boot_ns() noexcept;
 
 // How far the wall clock has been set since the process started, ns. Exactly the same value until somebody
 // sets it by more than the reading of two clocks can tell (50 µs): a label must not jitter.

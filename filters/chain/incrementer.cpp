@@ -271,6 +271,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.status = reading.status;
   out.sequence = sequence_;
   out.arrival_ns = reading.arrival_ns;
+  out.came_ns = reading.came_ns;
   out.wall_shift_ns = reading.wall_shift_ns;
   if (started_ && reading.wall_shift_ns != last_.wall_shift_ns) {
     out.flags |= kClockStep;

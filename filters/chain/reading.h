@@ -49,7 +49,8 @@ struct SensorFacts {
 struct Reading {
   // On a clock that nobody sets, ns; 0 where nobody knows (a raw byte file, a backlog).
   std::int64_t arrival_ns = 0;
-  std::int64_t wall_shift_ns = 0;    // time of day less that clock
+  std::int64_t came_ns = 0;        // the same, or where that is 0 when it was read; 0: offline, nobody knows
+  std::int64_t wall_shift_ns = 0;  // time of day less that clock
   std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; −1: it has none
   std::uint32_t sequence = 0;        // as sent
   bool has_sequence = false;
@@ -74,6 +75,7 @@ enum IncrementFlags : std::uint32_t {
 struct Increment {
   std::int64_t utime_ns = 0;       // fitted time of the sample, time of day, ns since the epoch
   std::int64_t arrival_ns = 0;     // as in Reading
+  std::int64_t came_ns = 0;        // likewise
   std::int64_t wall_shift_ns = 0;  // likewise
   std::int64_t device_time_ns = -1;
   std::uint64_t sequence = 0;  // unwrapped; starts at the device's first counter value

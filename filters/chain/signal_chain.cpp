@@ -85,7 +85,9 @@ std::optional<LearnedNoise> ChainParts::learned() const noexcept {
 
 void ChainParts::use_effects(const ChainSettings& settings) {
   // Each channel has a limit of its own: the compensator is given ages in units of it.
-  compensator_.emplace(*settings.model, settings.axes, 1.0, settings.since_power_up_s);
+  compensator_.emplace(*settings.model, settings.axes, 1.0,
+                       settings.powered_ns ? 0.0 : settings.since_power_up_s);
+  powered_ns_ = settings.powered_ns;
   for (const std::string& name : compensator_->channels()) {
     const auto found = std::find(settings.channels.begin(), settings.channels.end(), name);
     if (found == settings.channels.end()) {
@@ -114,6 +116,12 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
   out.delta_theta_rad = in.delta_theta_rad;
   out.compensator_flags = 0;
   if (!compensator_) return;
+  if (powered_ns_) {
+    // A sample from before that is a recording's, of which nobody knows: no warm-up, rather than all of it.
+    compensator_->begin(in.came_ns < *powered_ns_ ? std::numeric_limits<double>::infinity()
+                                                  : static_cast<double>(in.came_ns - *powered_ns_) * 1e-9);
+    powered_ns_.reset();
+  }
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     channel_[i] = in.channel[wanted_[i]];
     relative_age_[i] = static_cast<double>(in.channel_age_s[wanted_[i]]) * relative_age_max_[i];

@@ -35,7 +35,10 @@ struct ChainSettings {
   // By an earlier run of the same sensor: in place of start-up data where neither settings nor model say.
   std::optional<LearnedNoise> learned;
   std::shared_ptr<const Model> model;      // null: nothing is compensated
-  std::optional<double> since_power_up_s;  // of the sensor at the first sample; none: no warm_up is corrected
+  std::optional<double> since_power_up_s;  // of the sensor at the first sample
+  // When it was, as Increment::came_ns has time; stands over since_power_up_s. Neither: no warm_up is
+  // corrected.
+  std::optional<std::int64_t> powered_ns;
 };
 
 enum ChainFlags : std::uint32_t {
@@ -98,8 +101,9 @@ class ChainParts {
   std::string identity_;
   double period_s_;
   std::optional<Compensator> compensator_;
-  std::vector<std::size_t> wanted_;       // by the compensator: index in Increment::channel
-  std::vector<double> relative_age_max_;  // 1 / the age allowed, of each
+  std::optional<std::int64_t> powered_ns_;  // until the first sample
+  std::vector<std::size_t> wanted_;         // by the compensator: index in Increment::channel
+  std::vector<double> relative_age_max_;    // 1 / the age allowed, of each
   std::vector<double> channel_, relative_age_;
   CompensatorOutput correction_;
   std::vector<double> start_up_;   // compensated rates, axis after axis

@@ -303,6 +303,11 @@ void Compensator::subtract_ramps(const CompensatorInput& in, CompensatorOutput& 
   }
 }
 
+void Compensator::begin(double since_power_up_s) noexcept {
+  for (Term& term : terms_)
+    for (Factor& factor : term.factors) factor.shape.begin(since_power_up_s);
+}
+
 void Compensator::restart() noexcept {
   for (Held& held : held_) held = {};
   for (Term& term : terms_) {

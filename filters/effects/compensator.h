@@ -62,6 +62,9 @@ class Compensator {
   // power-up is not known; in words.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
 
+  // Before the first step: the time since power-up at that, in place of the one given to the constructor,
+  // which must have had one.
+  void begin(double since_power_up_s) noexcept;
   void step(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   void restart() noexcept;
 

@@ -36,6 +36,8 @@ class Shape {
   // if the channel had always been there. No allocation, no exception.
   double step(double value, double dt_s) noexcept;
   void restart() noexcept { started_ = false; }
+  // Of a warm_up, before its first sample: ShapeSettings::elapsed_s.
+  void begin(double elapsed_s) noexcept { settings_.elapsed_s = elapsed_s; }
 
   // One sample of a channel that may have left the range the shape was fitted on; see reach.h.
   double step(const Reach& channel, double dt_s) noexcept;

@@ -19,11 +19,13 @@ class SlowNoise {
  public:
   SlowNoise(const NoiseKind& kind, double step_s, std::mt19937_64& random);
   double next(std::mt19937_64& random);
-
- private:
   struct Markov {
     double keep, drive, value;
   };
+  // What it is made of, beside the walk.
+  [[nodiscard]] const std::vector<Markov>& processes() const { return processes_; }
+
+ private:
   std::vector<Markov> processes_;
   double walk_ = 0.0, walk_step_;
   std::normal_distribution<double> normal_;

@@ -27,10 +27,10 @@ class Faults:
 
     # --- what the checks are made of -----------------------------------------------------------------------------
 
-    def journal_since(self):
+    def journal_since(self, unit="ifogd"):
         """Returns a function that gives the service's log lines from now on."""
-        cursor = self.machine.run("journalctl -u ifogd -n 0 --show-cursor -o cat | sed -n 's/^-- cursor: //p'").strip()
-        return lambda: self.machine.run(f"journalctl -u ifogd --after-cursor '{cursor}' -o cat --no-pager")
+        cursor = self.machine.run("journalctl -n 0 --show-cursor -o cat | sed -n 's/^-- cursor: //p'").strip()
+        return lambda: self.machine.run(f"journalctl -u {unit} --after-cursor '{cursor}' -o cat --no-pager")
 
     def says(self, lines, text, seconds=10):
         """Waits for a line in the log."""

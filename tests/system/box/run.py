@@ -22,6 +22,7 @@ import traceback
 
 import frames
 from faults import Faults, complaints
+from loop import Loop, make_days
 from machine import Failure, Machine, connect
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -67,7 +68,7 @@ class Line:
         return sending
 
 
-class Box(Faults):
+class Box(Faults, Loop):
     def __init__(self, build, packages, work, given):
         self.build, self.packages, self.work = build, packages, work
         self.pulls, self.kills, self.seconds = given.pulls, given.kills, given.seconds
@@ -92,10 +93,14 @@ class Box(Faults):
         os.symlink("../ifog-shell.service", os.path.join(wants, "ifog-shell.service"))
         for package in glob.glob(os.path.join(self.packages, "*.deb")):
             put(package, "opt/test/" + os.path.basename(package))
-        for program in ("lcm_count", "device_return"):
+        for program in ("lcm_count", "device_return", "lcm_record", "log_reload"):
             put(os.path.join(self.build, "tests/system", program), "opt/test/" + program, 0o755)
         with open(os.path.join(root, "opt/test/gyro.dbc"), "w") as file:
             file.write(frames.DBC)
+        dbc, *days = make_days(self.build, self.work)
+        put(dbc, "opt/test/slow_gyro.dbc")
+        for day in days:
+            put(day, "opt/test/" + os.path.basename(day))
         return root
 
     def configure(self, hertz):
@@ -320,7 +325,7 @@ def main():
     image = os.path.join(work, "image")
     subprocess.run([os.path.join(HERE, "make_image"), image], check=True, timeout=900)
     box = Box(build, packages, work, given)
-    checks = [name for part in (Box, Faults) for name in vars(part) if name.startswith("check_")]
+    checks = [name for part in (Box, Faults, Loop) for name in vars(part) if name.startswith("check_")]
     wanted = [name for name in checks if name in NEEDED or not given.only or any(word in name for word in given.only)]
     passed = failed = 0
     box.machine = Machine(image, box.overlay(), os.path.join(work, "machine"))

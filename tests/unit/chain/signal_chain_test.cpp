@@ -81,6 +81,36 @@ TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
   EXPECT_LT(std::abs(out.estimate.denoised_radps[0] - 0.01), 5e-5);
 }
 
+TEST(SignalChain, AWarmUpBeginsAtPowerUpWhicheverWayThatIsSaid) {
+  auto model = std::make_shared<Model>();
+  Effect warm_up;
+  warm_up.form = "warm_up";
+  warm_up.parameters = {{"coefficient", 2e-6, 0.0, "rad/s"}, {"time_constant_s", 40.0, 0.0, "s"}};
+  model->effects = {warm_up};
+  ChainSettings by_time = settings(), by_clock = settings(), before = settings();
+  by_time.model = by_clock.model = before.model = model;
+  // As exact as its nanoseconds: 25 s.
+  by_time.since_power_up_s = 25.0;
+  by_clock.powered_ns = 1'795'000'000'000'000'000;
+  before.powered_ns = 1'795'000'100'000'000'000;
+  SignalChain one(std::make_unique<ChainParts>(by_time)), other(std::make_unique<ChainParts>(by_clock)),
+      none(std::make_unique<ChainParts>(before));
+  EXPECT_TRUE(other.parts().left_out().empty());
+  ChainOutput a, b, c;
+  std::int64_t came_ns = *by_clock.powered_ns + 25'000'000'000;
+  for (Increment increment : increments(500, 4)) {
+    increment.came_ns = came_ns;
+    came_ns += 1'000'000;
+    one.process(increment, a);
+    other.process(increment, b);
+    none.process(increment, c);
+    ASSERT_EQ(bits(a.compensated_radps[0]), bits(b.compensated_radps[0]));
+    ASSERT_LT(a.compensated_radps[0], increment.rate_radps[0] - 1e-6);
+    // A sample from before power-up is a recording's, and nobody knows when that was switched on.
+    ASSERT_EQ(bits(c.compensated_radps[0]), bits(increment.rate_radps[0]));
+  }
+}
+
 TEST(SignalChain, NewPartsGoOnWithTheAngle) {
   const std::vector<Increment> all = increments(1000, 3);
   SignalChain swapped(std::make_unique<ChainParts>(settings())),

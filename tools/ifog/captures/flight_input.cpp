@@ -122,8 +122,10 @@ Capture FlightInput::capture(DriverInstance& driver) {
     builder.allow_restarts();
     std::vector<ChannelValue> before(header().channels.size());
     std::vector<double> fresh(before.size());
+    std::int64_t first_ns = 0;
     const RecordingCounts counts =
         for_each_sample(driver, {[&](const RecordedSample& recorded) {
+                                   if (first_ns == 0) first_ns = recorded.came_ns;
                                    for (std::size_t i = 0; i < before.size(); ++i) {
                                      const ChannelValue& now = recorded.outside[i];
                                      fresh[i] = now.same(before[i]) ? kNone : now.value;
@@ -135,7 +137,12 @@ Capture FlightInput::capture(DriverInstance& driver) {
     for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
     if (builder.missing() != 0)
       warn("%s: %zu samples are missing by the device's counter\n", file_.path().c_str(), builder.missing());
-    return builder.finish();
+    Capture out = builder.finish();
+    // Of the first file's header; who puts files of several power-ups behind one another is told by its
+    // times.
+    if (const auto powered_ns = header().powered_ns; powered_ns && first_ns >= *powered_ns)
+      out.since_power_up_s = static_cast<double>(first_ns - *powered_ns) * 1e-9;
+    return out;
   });
 }
 

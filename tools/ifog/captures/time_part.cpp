@@ -62,6 +62,8 @@ std::size_t TimePart::cut(std::vector<double>& time_s, std::span<std::vector<dou
 
 std::size_t TimePart::cut(Capture& capture, const std::string& name) const {
   const Rows rows = rows_in(*this, capture.time_s, name);
+  if (capture.since_power_up_s && rows.begin < capture.size())
+    *capture.since_power_up_s += capture.time_s[rows.begin] - capture.time_s.front();
   rows.keep(capture.time_s);
   for (std::vector<double>& rate : capture.rate_radps) rows.keep(rate);
   for (std::vector<double>& reference : capture.reference_rate_radps) rows.keep(reference);

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +15,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
@@ -27,6 +29,7 @@
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
+#include "tools/ifog/console/installed.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/offline_chain.h"
@@ -183,7 +186,11 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
   OfflineSettings out;
   if (flight != nullptr && options.config.empty()) out.sensor = flight->sensor();
   if (!options.config.empty()) {
-    const Config config = read_config(options.config);
+    Config config = read_config(options.config);
+    // The service is told its state folder by systemd, a person at a terminal is not.
+    if (std::error_code none; state_folder(config.state_folder).empty() &&
+                              std::filesystem::equivalent(options.config, kServiceConfig, none))
+      use_adopted_models(config, kServiceState);
     const auto found =
         std::find_if(config.sensors.begin(), config.sensors.end(), [&](const SensorConfig& sensor) {
           return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
@@ -357,7 +364,9 @@ void add_denoise(CLI::App& app) {
       ->type_name("N");
   command
       ->add_option("--since-power-up", options->since_power_up_s,
-                   "Seconds from power-up to the first sample; without it a model's warm_up is not corrected")
+                   "Seconds from power-up to the first sample; default: as a recording says it. Where nobody "
+                   "does, a model's "
+                   "warm_up is not corrected")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
   command->add_option("--from", options->part.from_s,

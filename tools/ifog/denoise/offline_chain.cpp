@@ -162,6 +162,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
   ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
   chain_settings.learned = settings.learned;
   chain_settings.since_power_up_s = settings.since_power_up_s;
+  if (!settings.since_power_up_s) chain_settings.powered_ns = flight.header().powered_ns;
   const SensorFacts& facts = chain_settings.facts;
   const std::vector<ChannelConfig> outside = outside_channels(settings.sensor);
   // By name: the settings may be others than those it was recorded with.
@@ -179,6 +180,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
   const RecordedSamples samples{[&](const RecordedSample& recorded) {
                                   read_sample(recorded.sample, facts.frame_channels, reading);
                                   reading.wall_shift_ns = recorded.wall_shift_ns;
+                                  reading.came_ns = recorded.came_ns;
                                   for (std::size_t i = 0; i < outside.size(); ++i) {
                                     const std::size_t c = static_cast<std::size_t>(facts.frame_channels) + i;
                                     const ChannelValue now = recorded_at[i] < recorded.outside.size()

@@ -39,11 +39,12 @@ void run(const Arguments& arguments) {
     hashes.emplace_back();
     const bool wanted = !arguments.write_model.empty() || !arguments.report.empty();
     captures.push_back(arguments.input.read(path, wanted ? &hashes.back() : nullptr));
+    if (arguments.since_power_up_s) captures.back().since_power_up_s = arguments.since_power_up_s;
   }
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
-    for (Capture& capture : captures) compensate(capture, model, arguments.since_power_up_s);
+    for (Capture& capture : captures) compensate(capture, model);
   }
   for (std::size_t c = 0; c < captures.size(); ++c) arguments.part.cut(captures[c], arguments.captures[c]);
   AxesToDiagnose wanted = arguments.wanted;
@@ -74,7 +75,9 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
   command
       ->add_option("--since-power-up", arguments->since_power_up_s,
-                   "seconds from power-up to the captures' first sample: a warm_up of --model is corrected")
+                   "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
+                   "and one that is "
+                   "found counts from power-up; default: as a recording says it")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--write-model", arguments->write_model, "write the model with what was found");
   command->add_option("--json", arguments->json, "write the diagnosis as JSON");

@@ -20,6 +20,7 @@
 #include "filters/units/field_units.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/diagnose/power_up.h"
 #include "tools/report/diagnosis_page.h"
 
 namespace ifog::tools {
@@ -86,9 +87,9 @@ std::string vertical_rate(const Capture& capture) {
 
 }  // namespace
 
-std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model,
-                                                   std::optional<double> since_power_up_s) {
-  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(), since_power_up_s);
+std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model) {
+  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(),
+                          capture.since_power_up_s);
   SeriesToCompensate series{capture.time_s, {capture.rate_radps.begin(), capture.rate_radps.end()}, {}};
   for (const std::string& name : compensator.channels()) {
     const CaptureColumn* found = nullptr;
@@ -107,8 +108,8 @@ std::vector<std::vector<double>> compensated_rates(const Capture& capture, const
   return out;
 }
 
-void compensate(Capture& capture, const Model& model, std::optional<double> since_power_up_s) {
-  capture.rate_radps = compensated_rates(capture, model, since_power_up_s);
+void compensate(Capture& capture, const Model& model) {
+  capture.rate_radps = compensated_rates(capture, model);
 }
 
 std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
@@ -116,6 +117,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
                                          const AxesToDiagnose& wanted) {
   std::vector<AxisDiagnosis> found;
   const std::vector<std::string>& axes = captures.front().axes;
+  const std::optional<double> power_up_s = began_after_power_up(captures);
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     if (!wanted.axes.empty() &&
         std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) == wanted.axes.end()) {
@@ -149,6 +151,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
       throw std::runtime_error(named ? what : names.front() + ": " + what);
     }
     progress.reset();
+    if (power_up_s) count_from_power_up(diagnosis, *power_up_s);
     found.push_back({axes[axis], std::move(diagnosis)});
   }
   if (!found.empty())

@@ -23,12 +23,11 @@ struct AxesToDiagnose {
 };
 
 // The rates less the model's effects, by axis, by the code that subtracts them online. Throws
-// std::runtime_error with one line: a channel that the capture does not have. since_power_up_s: of the first
-// sample, without it a warm-up stays.
-[[nodiscard]] std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model,
-                                                                 std::optional<double> since_power_up_s = {});
+// std::runtime_error with one line: a channel that the capture does not have. Without
+// Capture::since_power_up_s a warm-up stays.
+[[nodiscard]] std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model);
 // In place.
-void compensate(Capture& capture, const Model& model, std::optional<double> since_power_up_s = {});
+void compensate(Capture& capture, const Model& model);
 
 // names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with
 // different axes, too short, none of the axes wanted.

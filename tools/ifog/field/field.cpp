@@ -15,24 +15,20 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
+#include "tools/ifog/console/installed.h"
 
 namespace ifog::tools {
-namespace {
-
-// As the service has them.
-constexpr const char* kConfig = "/etc/ifogd/ifogd.toml";
-constexpr const char* kState = "/var/lib/ifogd";
-
-}  // namespace
+namespace {}  // namespace
 
 void FieldOptions::add_to(CLI::App& command, bool listens) {
-  command.add_option("--config", config, std::string("the daemon's configuration; default: ") + kConfig)
+  command
+      .add_option("--config", config, std::string("the daemon's configuration; default: ") + kServiceConfig)
       ->type_name("FILE");
   command
       .add_option(
           "--state", state,
           std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
-              kState)
+              kServiceState)
       ->type_name("FOLDER");
   if (listens)
     command.add_option("--lcm-url", lcm_url, "where the daemon publishes; default: as configured")
@@ -40,13 +36,13 @@ void FieldOptions::add_to(CLI::App& command, bool listens) {
 }
 
 Field::Field(const FieldOptions& options) {
-  config_path_ = options.config.empty() ? kConfig : options.config;
+  config_path_ = options.config.empty() ? kServiceConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))
     // Adopted models come from the state folder that is meant here, which need not be the configured one.
     config_ = parse_config(read_toml_text(config_path_), config_path_);
   state_ = options.state.empty() ? state_folder(config_ ? config_->state_folder : "") : options.state;
-  if (state_.empty()) state_ = kState;
+  if (state_.empty()) state_ = kServiceState;
   if (config_) use_adopted_models(*config_, state_);
   lcm_url_ = options.lcm_url;
   if (lcm_url_.empty()) lcm_url_ = config_ ? config_->lcm_url : Config{}.lcm_url;

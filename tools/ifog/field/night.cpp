@@ -90,8 +90,9 @@ class Night {
   std::string run();
 
  private:
-  std::string judge(const std::vector<RecordedFile>& files);
-  [[nodiscard]] std::string not_to_be_judged(const ModelInUse& in_use) const;
+  std::string judge(const std::vector<RecordedFile>& all);
+  [[nodiscard]] std::string not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const;
+  [[nodiscard]] bool corrects_warm_up(const ModelInUse& in_use) const;
   std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                        const ModelInUse& in_use);
   void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
@@ -130,8 +131,13 @@ std::string Night::run() {
   return said;
 }
 
-std::string Night::judge(const std::vector<RecordedFile>& files) {
+std::string Night::judge(const std::vector<RecordedFile>& all) {
   const ModelInUse in_use = model_at(field_.model_path(sensor_));
+  // A warm-up that is not there yet would be found where two of them follow each other, too.
+  const std::vector<RecordedFile> files = sensor_.powered_with_computer ? of_one_power_up(all) : all;
+  if (files.size() < all.size())
+    warn("%s: of several times that it was switched on the longest is judged: %zu of %zu recordings\n",
+         sensor_.name.c_str(), files.size(), all.size());
   // A recording that cannot be read today cannot be tomorrow; a proposal that a full disk did not take can.
   gone_through_ = true;
   const Recorded recorded = read_recorded(sensor_, files, field_.required_config().plugin_folders);
@@ -142,23 +148,27 @@ std::string Night::judge(const std::vector<RecordedFile>& files) {
            in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
            in_hours(arguments_.least_rest_s) + " at least: waits for more";
   }
-  if (const std::string why = not_to_be_judged(in_use); !why.empty()) return why;
+  if (const std::string why = not_to_be_judged(in_use, recorded); !why.empty()) return why;
   judge_last_adoption(files, in_use);
   std::string said = diagnose(recorded, files, in_use);
   gone_through_ = true;
   return said;
 }
 
-// What the daemon corrects by the time since power-up is not in a recording: the drift that is left here
-// would be taken for another cause, and corrected twice.
-std::string Night::not_to_be_judged(const ModelInUse& in_use) const {
-  if (!sensor_.powered_with_computer || !in_use.model) return "";
-  const auto& effects = in_use.model->effects;
-  if (std::none_of(effects.begin(), effects.end(), [](const Effect& each) { return each.form == "warm_up"; }))
-    return "";
-  return "the model in use corrects a warm-up by the time since power-up, which recordings do not carry: "
+// Of a recording that does not say when the sensor was switched on, the daemon's correction of a warm-up
+// cannot be made again: the drift that is left would be taken for another cause, and corrected twice.
+std::string Night::not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const {
+  if (!corrects_warm_up(in_use) || recorded.capture.since_power_up_s) return "";
+  return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
          "diagnose "
          "them by hand with --since-power-up";
+}
+
+bool Night::corrects_warm_up(const ModelInUse& in_use) const {
+  if (!sensor_.powered_with_computer || !in_use.model) return false;
+  const auto& effects = in_use.model->effects;
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const Effect& each) { return each.form == "warm_up"; });
 }
 
 // What was adopted proves itself on all that was recorded since.

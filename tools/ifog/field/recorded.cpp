@@ -5,8 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -28,6 +30,18 @@ std::string opened_at(std::string_view name) {
   return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 5) + ":" + date.substr(11, 2) +
          ":" + date.substr(13, 3);
 }
+
+// When the sensor was switched on, as the file says it; one that cannot be read says nothing, and is told of
+// when it is.
+std::optional<std::int64_t> powered_ns(const RecordedFile& file) try {
+  InputFile input(file.path);
+  return FlightInput(input).header().powered_ns;
+} catch (const std::exception&) {
+  return std::nullopt;
+}
+
+// The arrival clock of another run of the daemon may be off by what the wall clock was set.
+constexpr std::int64_t kOnePowerUp_ns = 10'000'000'000;
 
 // Rows begin … end − 1 of the stretches.
 std::vector<Stretch> from_row(const std::vector<Stretch>& all, std::size_t begin) {
@@ -62,6 +76,26 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
   std::sort(out.begin(), out.end(),
             [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
   return out;
+}
+
+std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files) {
+  std::vector<RecordedFile> best, these;
+  std::uint64_t most = 0, bytes = 0;
+  std::optional<std::int64_t> since;
+  for (const RecordedFile& file : files) {
+    const std::optional<std::int64_t> now = powered_ns(file);
+    if (now && since && std::abs(*now - *since) > kOnePowerUp_ns) {
+      these.clear();
+      bytes = 0;
+    }
+    if (now) since = now;
+    these.push_back(file);
+    bytes += file.bytes;
+    if (bytes < most) continue;
+    most = bytes;
+    best = these;
+  }
+  return best;
 }
 
 Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFile>& files,

@@ -25,6 +25,10 @@ struct RecordedFile {
 // Of the sensor's folder, by number; none where there is no such folder.
 [[nodiscard]] std::vector<RecordedFile> recorded_files(const SensorConfig& sensor);
 
+// Those of one power-up of the sensor, of several that with most bytes, where the recordings say when it was
+// switched on: a warm-up begins anew with each. All of them where they do not say.
+[[nodiscard]] std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files);
+
 struct Recorded {
   Capture capture;
   double period_s = 0.0;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The level of a sensor at rest, by the means of blocks of its samples: what the next mean should be, and how
+// far off it may be. White noise, bias instability (1/f) and rate random walk, each as large as all that has
+// come makes it likely.
+//
+// The state is one Gauss-Markov process a decade of time, from one block to 10 000, of equal variance, whose
+// sum has a spectrum of 1/f between (M. S. Keshner, Proc. IEEE 70, 1982), and a walk, whose start is
+// anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise; the likelihood
+// chooses.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace ifog {
+
+class LevelNoise {
+ public:
+  static constexpr std::size_t kStates = 6;
+  using Vector = std::array<double, kStates>;
+  struct Innovation {
+    bool known = false;
+    double value = 0.0;   // of variance 1
+    double spread = 0.0;  // its standard deviation, in the unit of the means
+    double scale = 1.0;   // the same in that of the white noise
+    Vector keep{};        // what became of each state since the mean before
+    Vector gain{};        // how much of the innovation each state takes
+  };
+
+  LevelNoise();
+  // The next mean, `blocks` after the one before (1: its neighbour).
+  const Innovation& take(double mean, double blocks) noexcept;
+  // The level is anybody's guess from here on; what is known of the noise stays.
+  void forget_level() noexcept { has_level_ = false; }
+  [[nodiscard]] double level() const noexcept;
+  [[nodiscard]] double blocks() const noexcept { return count_; }
+  // In units of the white noise of a block's mean: variance of a decade of the bias instability; variance of
+  // the walk's step from block to block.
+  [[nodiscard]] double instability() const noexcept { return filters_[chosen_].instability; }
+  [[nodiscard]] double walk() const noexcept { return filters_[chosen_].walk; }
+
+ private:
+  struct Filter {
+    double instability = 0.0, walk = 0.0;
+    Vector state{}, gain{};
+    std::array<Vector, kStates> covariance{};
+    double squares = 0.0, log_variance = 0.0, total = 1.0;
+    void begin(double mean) noexcept;
+    void predict(const Vector& keep, double blocks) noexcept;
+    double update(double mean) noexcept;
+    [[nodiscard]] double level() const noexcept;
+  };
+  void choose() noexcept;
+  std::vector<Filter> filters_;
+  Innovation innovation_;
+  std::size_t chosen_ = 0;
+  double count_ = 0.0;
+  bool has_level_ = false;
+};
+
+}  // namespace ifog

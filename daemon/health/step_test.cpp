@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/health/step_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace ifog {
+namespace {
+
+double density(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi); }
+double distribution(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+// The variance of sums is taken for that of white innovations until so many independent sums say otherwise.
+constexpr double kBelieved = 100.0;
+// Below it nothing is near.
+constexpr double kLeastOfNote = 2.5;
+
+}  // namespace
+
+double exceeded_per_block(double z, double s) {
+  const double x = z * std::sqrt(2.0 * s);
+  const double nu =
+      2.0 / x * (distribution(0.5 * x) - 0.5) / (0.5 * x * distribution(0.5 * x) + density(0.5 * x));
+  return 2.0 * z * density(z) * s * nu;
+}
+
+void StepTest::restart() noexcept {
+  begun_ = 0;
+  nearest_ = kFar;
+}
+
+void StepTest::extend(Window& window, const LevelNoise::Innovation& innovation) noexcept {
+  double left = 1.0;
+  for (std::size_t i = 0; i < LevelNoise::kStates; ++i) left -= window.taken[i] *= innovation.keep[i];
+  const double weight = left / innovation.scale;
+  window.sum += weight * innovation.value;
+  window.squares += weight * weight;
+  window.neighbours += weight * window.weight;
+  window.weight = weight;
+  for (std::size_t i = 0; i < LevelNoise::kStates; ++i) window.taken[i] += innovation.gain[i] * left;
+}
+
+// How many false alarms this would be one of, as a share of those allowed.
+double StepTest::look(std::size_t number) noexcept {
+  const Window& window = windows_[(begun_ - kLengths[number]) % kLongest];
+  Spread& seen = spreads_[number];
+  const double s = std::clamp(1.0 - window.neighbours / window.squares, 1e-3, 1.0);
+  const double independent = s * seen.count;
+  const double variance =
+      std::max(1.0, (kBelieved + independent * seen.mean_square) / (kBelieved + independent));
+  const double square = window.sum * window.sum / window.squares;
+  const double z = std::sqrt(square / variance);
+  seen.count += 1.0;
+  seen.mean_square += (square - seen.mean_square) / seen.count;
+  if (z < kLeastOfNote) return kFar;
+  return exceeded_per_block(z, s) / (kShares[number] * alarms_per_block_);
+}
+
+bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
+  windows_[begun_++ % kLongest] = {};
+  const std::size_t in_use = std::min(begun_, kLongest);
+  for (std::size_t i = 0; i < in_use; ++i) extend(windows_[i], innovation);
+  double nearest = kFar;
+  for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {
+    const double near = look(i);
+    if (near >= nearest) continue;
+    nearest = near;
+    const Window& window = windows_[(begun_ - kLengths[i]) % kLongest];
+    step_ = window.sum / window.squares * innovation.spread / innovation.scale;
+  }
+  nearest_ = std::min(nearest_, nearest);
+  if (nearest < 1.0) begun_ = 0;
+  return nearest < 1.0;
+}
+
+}  // namespace ifog

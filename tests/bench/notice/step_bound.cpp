@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/notice/step_bound.h"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+
+namespace ifog::bench {
+namespace {
+
+constexpr double kPast_s = 3.0 * 86400.0;
+// Nobody knows the bias to begin with: the variance of it, in units of the white noise of a block.
+constexpr double kAnyBias = 1e8;
+
+double normal(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+}  // namespace
+
+double deviations_of_step(const NoiseKind& kind, double step, double block_s, double look_s) {
+  std::mt19937_64 unused(1);
+  const SlowNoise noise(kind, block_s, unused);
+  const auto n = static_cast<Eigen::Index>(noise.processes().size() + 1);
+  const double white = kind.N * kind.N / block_s;
+  Eigen::VectorXd keep = Eigen::VectorXd::Ones(n), drive = Eigen::VectorXd::Zero(n),
+                  state = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const SlowNoise::Markov& process = noise.processes()[static_cast<std::size_t>(i)];
+    keep[i] = process.keep;
+    drive[i] = process.drive * process.drive;
+    covariance(i, i) = drive[i] / (1.0 - keep[i] * keep[i]);
+  }
+  drive[n - 1] = kind.K * kind.K * block_s;
+  covariance(n - 1, n - 1) = kAnyBias * white;
+  const double past = kPast_s / block_s, all = past + look_s / block_s;
+  double square = 0.0;
+  for (double block = 0.0; block < all; block += 1.0) {
+    const Eigen::VectorXd of_sum = covariance.rowwise().sum();
+    const double total = of_sum.sum() + white;
+    // The step alone goes through the filter; before it there is nothing.
+    const double left = block < past ? 0.0 : step - state.sum();
+    square += left * left / total;
+    state = keep.cwiseProduct(state + of_sum * (left / total));
+    covariance -= of_sum * of_sum.transpose() / total;
+    covariance = keep.asDiagonal() * covariance * keep.asDiagonal();
+    covariance.diagonal() += drive;
+  }
+  return std::sqrt(square);
+}
+
+double best_share(double deviations, double look_s, double alarm_every_s) {
+  double low = 0.0, high = 10.0;
+  for (int halvings = 0; halvings < 60; ++halvings) {
+    const double middle = 0.5 * (low + high);
+    (1.0 - normal(middle) > look_s / alarm_every_s ? low : high) = middle;
+  }
+  return normal(deviations - high);
+}
+
+}  // namespace ifog::bench

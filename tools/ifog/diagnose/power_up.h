@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// A warm-up is found by the time since the record began; a model has it by the time since power-up.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "drivers/capture/capture.h"
+#include "filters/diagnosis/diagnosis.h"
+
+namespace ifog::tools {
+
+// How long after power-up all of them began, s; none where one does not know, or they differ by over a
+// second.
+[[nodiscard]] std::optional<double> began_after_power_up(const std::vector<Capture>& captures);
+
+// a exp(-t / tau) of a record that began t0 after power-up is a exp(t0 / tau) exp(-(t0 + t) / tau):
+// coefficients, their errors and the covariance of all parameters, which go along by the derivatives.
+void count_from_power_up(Diagnosis& diagnosis, double began_s);
+
+}  // namespace ifog::tools
