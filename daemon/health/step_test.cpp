@@ -63,16 +63,21 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
   const std::size_t in_use = std::min(begun_, kLongest);
   for (std::size_t i = 0; i < in_use; ++i) extend(windows_[i], innovation);
   double nearest = kFar;
-  for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {
-    const double near = look(i);
-    if (near >= nearest) continue;
-    nearest = near;
-    const Window& window = windows_[(begun_ - kLengths[i]) % kLongest];
-    step_ = window.sum / window.squares * innovation.spread / innovation.scale;
-  }
+  for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i)
+    nearest = std::min(nearest, look(i));
   nearest_ = std::min(nearest_, nearest);
-  if (nearest < 1.0) begun_ = 0;
-  return nearest < 1.0;
+  if (nearest >= 1.0) return false;
+  step_ = likeliest(in_use) * innovation.spread / innovation.scale;
+  begun_ = 0;
+  return true;
+}
+
+// Whichever block it began with.
+double StepTest::likeliest(std::size_t in_use) const noexcept {
+  const auto* const best = std::max_element(
+      windows_.begin(), windows_.begin() + static_cast<std::ptrdiff_t>(in_use),
+      [](const Window& a, const Window& b) { return a.sum * a.sum * b.squares < b.sum * b.sum * a.squares; });
+  return best->sum / best->squares;
 }
 
 }  // namespace ifog

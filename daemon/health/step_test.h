@@ -34,7 +34,7 @@ class StepTest {
   explicit StepTest(double blocks_between_alarms) : alarms_per_block_(1.0 / blocks_between_alarms) {}
   // True: a step is found, and the test begins anew.
   bool take(const LevelNoise::Innovation& innovation) noexcept;
-  // The step that the newest block makes likeliest, in the unit of the means.
+  // The step that was found last, in the unit of the means.
   [[nodiscard]] double step() const noexcept { return step_; }
   // The least share of false alarms that something since restart() would have been one of: 1 or less is an
   // alarm.
@@ -55,6 +55,7 @@ class StepTest {
   static constexpr std::size_t kLongest = kLengths.back();
   static void extend(Window& window, const LevelNoise::Innovation& innovation) noexcept;
   double look(std::size_t number) noexcept;
+  [[nodiscard]] double likeliest(std::size_t in_use) const noexcept;
 
   double alarms_per_block_, step_ = 0.0, nearest_ = kFar;
   std::array<Window, kLongest> windows_{};  // by the number of their first block, modulo

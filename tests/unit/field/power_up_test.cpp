@@ -12,6 +12,7 @@
 
 #include "drivers/flight/archive.h"
 #include "drivers/flight/folder.h"
+#include "drivers/transport/clock.h"
 #include "tools/ifog/field/recorded.h"
 
 namespace ifog::tools {
@@ -97,7 +98,7 @@ class PoweredRecordings : public testing::Test {
     for (std::uint32_t i = 0; i < bytes; ++i)
       payload[i] = static_cast<std::uint8_t>((i * 2654435761U) >> 13U ^ i * i);
     archive.add({FlightKind::bytes, 0, 0, 0, 1}, payload);
-    archive.close(1, 1'800'000'000'000'000'000);
+    archive.close(1, realtime_ns());
   }
   [[nodiscard]] std::vector<std::uint64_t> judged() const {
     std::vector<std::uint64_t> out;
