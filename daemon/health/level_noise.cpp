@@ -110,7 +110,8 @@ const LevelNoise::Innovation& LevelNoise::take(double mean, double blocks) noexc
   return innovation_;
 }
 
-// The quickest level that may well be the right one: one that is taken for slower than it is looks like steps.
+// The quickest level that may well be the right one: one that is taken for slower than it is looks like
+// steps.
 void LevelNoise::choose() noexcept {
   const auto likelihood = [&](const Filter& filter) {
     return filter.squares > 0.0 ? -0.5 * (count_ * std::log(filter.squares / count_) + filter.log_variance)

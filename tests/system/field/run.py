@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The loop in the field, with the real programs: a gyro whose temperature effect nobody declared runs for two accelerated
 days. The first night proposes a model, a person adopts it while the second day runs, and that day's error is smaller by
-what was promised; the published angle is exact over the adoption.
+what was promised; the published angle is exact over the adoption. A sensor that is switched on with the computer says so in its
+recordings.
 
 usage: run.py BUILD [FOLDER to keep]
 
@@ -62,6 +63,15 @@ form = "linear"
 channel = "temperature_degC"
 coefficient = 2.0e-8
 reference = 25.0
+"""
+
+
+# Of a sensor that is switched on with the computer: long past where this runs, so the time constant is long, too.
+WARM_UP = """version = 1
+[[effect]]
+form = "warm_up"
+parameter = [{name = "coefficient", value = 1e-6, std_error = 0.0, unit = "rad/s"},
+             {name = "time_constant_s", value = %s, std_error = 0.0, unit = "s"}]
 """
 
 
@@ -180,8 +190,14 @@ file_s = 3
                 raise SystemExit(f"FAILED  waited {seconds} s for {what}")
             time.sleep(0.2)
 
-    def feed(self, day):
-        return subprocess.Popen([self.ifog, "replay", self.path(f"day{day}.log"), "--speed", str(SPEED),
+    def record_messages(self, name):
+        recorder = subprocess.Popen([os.path.join(self.build, "tests/system/lcm_record"), URL, "IFOG_NOSE", self.path(name)],
+                                    stdout=open(self.path("recorder"), "w"))
+        self.await_(lambda: "recording" in open(self.path("recorder")).read(), "the recorder of LCM")
+        return recorder
+
+    def feed(self, day, speed=SPEED):
+        return subprocess.Popen([self.ifog, "replay", self.path(f"day{day}.log"), "--speed", str(speed),
                                  "--to", "fifo:" + self.path("gyro")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def published(self):
@@ -216,9 +232,7 @@ file_s = 3
 
     def second_day(self):
         self.run("denoise", self.path("day2.log"), "--config", self.config, "--sensor", "nose", "--output", self.path("without.csv"))
-        recorder = subprocess.Popen([os.path.join(self.build, "tests/system/lcm_record"), URL, "IFOG_NOSE", self.path("day2.lcm")],
-                                    stdout=open(self.path("recorder"), "w"))
-        self.await_(lambda: "recording" in open(self.path("recorder")).read(), "the recorder of LCM")
+        recorder = self.record_messages("day2.lcm")
         feeder = self.feed(2)
         self.await_(lambda: self.published() > ROWS, "the second day to begin")
         said, adopted = self.of("adopt", "nose", "--watch", "20")
@@ -286,6 +300,52 @@ file_s = 3
         self.check([c["what"] for c in changes] == ["adopt", "revert", "adopt"], "the history has it all")
 
 
+    def switched_on_with_the_computer(self):
+        """A recording says when its sensor was switched on: what was published comes out of it to the bit, a warm-up by the time
+        since then included, and the night can judge it."""
+        rows = 1 << 15
+        with open("/proc/uptime") as file:
+            up_s = float(file.read().split()[0])
+        tau_s = max(600.0, up_s)
+        with open(self.path("warm_up.toml"), "w") as file:
+            file.write(WARM_UP % tau_s)
+        with open(self.config) as file:
+            text = file.read()
+        text = text.replace('driver = "dbc"\n', 'driver = "dbc"\npowered_with_computer = true\nmodel = "warm_up.toml"\n')
+        self.state, self.config = self.path("state3"), self.path("ifogd3.toml")
+        os.mkdir(self.state)
+        with open(self.config, "w") as file:
+            file.write(text.replace(self.path("state"), self.state).replace('"record"', '"record3"'))
+        # As if it were now: what comes before power-up is nobody's warm-up.
+        now = time.time()
+        with open(self.path("day1.log")) as file, open(self.path("day3.log"), "w") as out:
+            for number, line in enumerate(file):
+                if number == 2 * rows:
+                    break
+                out.write(f"({now + number // 2 / HZ:.6f}) {line.split(' ', 1)[1]}")
+        open(self.path("log"), "w").close()
+        self.start()
+        recorder = self.record_messages("day3.lcm")
+        self.check(self.feed(3, 10 * SPEED).wait(60) == 0, "a day of a sensor that was switched on with the computer was sent")
+        self.await_(lambda: self.published() >= rows, "it to be published")
+        recorder.send_signal(signal.SIGTERM)
+        recorder.wait(30)
+        self.check(self.stop() == 0, "the daemon ends well again")
+        self.run("denoise", self.path("record3/nose"), "--output", self.path("again.csv"))
+        with open(self.path("again.csv")) as file:
+            first = next(csv.DictReader(line for line in file if not line.startswith("#")))
+        corrected = float(first["raw_radps"]) - float(first["compensated_radps"])
+        # Some seconds passed since up_s was read, and not a minute.
+        self.check(1e-6 * math.exp(-(up_s + 60) / tau_s) < corrected <= 1e-6 * math.exp(-up_s / tau_s), "its warm-up counts from boot")
+        done = subprocess.run([os.path.join(self.build, "tests/system/log_reload"), self.path("day3.lcm"), "IFOG_NOSE",
+                               self.path("again.csv"), self.path("again.csv")], capture_output=True, text=True)
+        said = (done.stdout + done.stderr).strip()
+        self.check(said.startswith(f"{rows} samples, the model changed 0 times, at 0; 0 differences"), "from its recording, as published: " + said)
+        said = self.run("night", "--config", self.config)
+        print("        " + said.replace("\n", "\n        "))
+        self.check("proposes model" in said and "temperature_degC" in said, "and the night judges it")
+
+
 def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
@@ -303,6 +363,7 @@ def main():
         field.judge()
         field.refusals()
         field.back()
+        field.switched_on_with_the_computer()
     finally:
         if field.daemon is not None:
             field.daemon.kill()
