@@ -2,9 +2,10 @@
 // What the daemon notices of a gyro, and how often wrongly: many months in blocks, and the whole chain at its
 // sample rate. One line a case; results.md has them.
 //
-// usage: notice_bench blocks MONTHS SEED     months of each kind of noise, in blocks of ten seconds
-//        notice_bench steps TRIALS SEED      steps of the bias and louder noise, after three days at rest
-//        notice_bench chain DAYS SEED        a gyro at 200 Hz through signal chain and watch
+// usage: notice_bench blocks MONTHS SEED [WORD]  months of each kind of noise, in blocks of ten seconds
+//        notice_bench steps TRIALS SEED [WORD]   steps of the bias and louder noise, after three days at rest
+//        notice_bench chain DAYS SEED            a gyro at 200 Hz through signal chain and watch
+// WORD: only kinds of noise whose name has it.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -82,8 +83,9 @@ class Blocks {
   double step = 0.0, louder = 1.0;
 };
 
-void months(int count, unsigned seed) {
+void months(int count, unsigned seed, const std::string& word) {
   for (const NoiseKind& kind : kinds()) {
+    if (kind.name.find(word) == std::string::npos) continue;
     int noise = 0, colour = 0, bias = 0;
     double nearest = 1e9;
     for (int month = 0; month < count; ++month) {
@@ -140,8 +142,9 @@ void look_for(Change& change, Blocks blocks) {
 }
 
 // The share found within ten minutes, the median time of those found, and what nobody can beat.
-void steps(int trials, unsigned seed) {
+void steps(int trials, unsigned seed, const std::string& word) {
   for (const NoiseKind& kind : kinds()) {
+    if (kind.name.find(word) == std::string::npos) continue;
     std::vector<Change> wanted = changes(kind);
     for (int trial = 0; trial < trials; ++trial) {
       Blocks blocks(kind, seed + static_cast<unsigned>(trial));
@@ -215,16 +218,18 @@ void chain(double days, unsigned seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string mode = argc == 4 ? argv[1] : "";
-  const auto seed = static_cast<unsigned>(argc == 4 ? std::atoi(argv[3]) : 0);
-  if (mode == "blocks") {
-    months(std::atoi(argv[2]), seed);
-  } else if (mode == "steps") {
-    steps(std::atoi(argv[2]), seed);
-  } else if (mode == "chain") {
+  const std::string mode = argc >= 4 ? argv[1] : "", word = argc == 5 ? argv[4] : "";
+  const auto seed = static_cast<unsigned>(argc >= 4 ? std::atoi(argv[3]) : 0);
+  if (mode == "blocks" && argc <= 5) {
+    months(std::atoi(argv[2]), seed, word);
+  } else if (mode == "steps" && argc <= 5) {
+    steps(std::atoi(argv[2]), seed, word);
+  } else if (mode == "chain" && argc == 4) {
     chain(std::atof(argv[2]), seed);
   } else {
-    std::fprintf(stderr, "usage: notice_bench blocks MONTHS SEED | steps TRIALS SEED | chain DAYS SEED\n");
+    std::fprintf(
+        stderr,
+        "usage: notice_bench blocks MONTHS SEED [WORD] | steps TRIALS SEED [WORD] | chain DAYS SEED\n");
     return 2;
   }
   return 0;
