@@ -203,6 +203,9 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (!fault_worded) sensor.log->warn("{}", message.fault);
   sensor.fault = message.fault;
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
+  if (const std::string vain = sensor.report.nothing_of_it(); !vain.empty())
+    sensor.log->warn("{}: are driver {} and its options those of the device? (ifog drivers {})", vain,
+                     sensor.config.driver, sensor.config.driver);
   if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
   publish(sensor);
   keep_noise(sensor, false);

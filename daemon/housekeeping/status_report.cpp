@@ -11,6 +11,7 @@
 namespace ifog {
 namespace {
 
+constexpr int kInVain = 5;          // seconds of input without a frame that are worth a word
 constexpr double kSilence_s = 2.0;  // open, and nothing for this long: no data
 
 struct Named {
@@ -189,6 +190,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
+  in_vain_ = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0 ? in_vain_ + 1 : 0;
   watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
               pipeline.filter().counters().out_of_range.value());
   now_.noticed = watch_.noticed();
@@ -214,6 +216,13 @@ void StatusReport::update(Recorder& recorder) {
 }
 
 std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
+
+std::string StatusReport::nothing_of_it() const {
+  if (in_vain_ != kInVain) return "";
+  return (now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
+                               : std::to_string(now_.bytes_read) + " bytes") +
+         " came and no frame of the sensor was in them";
+}
 
 std::string StatusReport::moved() const {
   std::string out;

@@ -26,6 +26,10 @@ class StatusReport {
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
 
+  // Once, when for some seconds something has come and never a frame of the sensor's: what came, in words; ""
+  // else. So are a wrong driver, wrong options, another baud rate seen, which counters alone do not say.
+  [[nodiscard]] std::string nothing_of_it() const;
+
   // What was noticed of the sensor with the last update() and was not before, in words; "" for nothing.
   [[nodiscard]] std::string newly_noticed() const;
   // What the sensor was, is learned anew.
@@ -45,6 +49,7 @@ class StatusReport {
   ifog::status_t before_, now_;
   SensorWatch watch_;
   std::uint64_t decoded_ = 0;   // samples, at the last update()
+  int in_vain_ = 0;             // updates in a row after which something had come, and never a good frame
   std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
 };
 

@@ -46,6 +46,25 @@ TEST(PipelineStatus, CountersGoOnOverAReload) {
   rig.pipeline->stop();
 }
 
+TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsToldOnceInWords) {
+  for (const bool rubbish : {true, false}) {
+    Rig rig(rubbish ? std::vector<std::uint8_t>(50 * kFrame) : frames(50), kFrame, true);
+    rig.transport->stays_open_ = true;
+    rig.pipeline->start();
+    while (rig.pipeline->reader().books().bytes_read < 50 * kFrame) std::this_thread::sleep_for(1ms);
+    StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
+    std::string told;
+    for (int second = 0; second < 8; ++second) {
+      FilterSnapshot snapshot;
+      snapshot.reader = rig.pipeline->reader().books();
+      (void)report.update(*rig.pipeline, snapshot, 1.0);
+      told += report.nothing_of_it();
+    }
+    EXPECT_EQ(told, rubbish ? "1800 bytes came and no frame of the sensor was in them" : "");
+    rig.pipeline->stop();
+  }
+}
+
 TEST(PipelineStatus, HousekeepingGetsASnapshotWhileSamplesFlow) {
   Rig rig(frames(5000), kFrame, true, 64, 50us);
   rig.pipeline->start();
