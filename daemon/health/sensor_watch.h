@@ -13,8 +13,9 @@
 //   range    more than half of the samples of ten minutes were outside the range of the model's channels
 //
 // The first three are wrong at most once in thirty days of all axes together. As real innovations are not
-// quite those of the theory, they are designed for kAlarmEvery_s, which is shared among them: four fifths of the
-// alarms to the bias, which needs them most; the last cannot be wrong. See sequential_tests.h and step_test.h.
+// quite those of the theory, they are designed for kAlarmEvery_s, which is shared among them: four fifths of
+// the alarms to the bias, which needs them most; the last cannot be wrong. See sequential_tests.h and
+// step_test.h.
 //
 // A sensor that is turned rests at another rate afterwards, as the Earth turns: the level is then begun anew.
 // One that is turned so slowly that it passes for rest is told as a step.

@@ -2,9 +2,10 @@
 // Tests that look at a sensor for ever and may cry wolf once in a given time, on figures of blocks of its
 // samples at rest. Nothing here is a real-time thread's.
 //
-// CUSUM of a log likelihood ratio (E. S. Page, Biometrika 41, 1954): above h = ln(blocks), the time to a false
-// alarm is `blocks` or more, whatever the law, as long as the ratio is one (G. Lorden, Ann. Math. Statist. 42,
-// 1971). Where what holds is further from the alternative than the law that the ratio has, it is longer.
+// CUSUM of a log likelihood ratio (E. S. Page, Biometrika 41, 1954): above h = ln(blocks), the time to a
+// false alarm is `blocks` or more, whatever the law, as long as the ratio is one (G. Lorden, Ann. Math.
+// Statist. 42, 1971). Where what holds is further from the alternative than the law that the ratio has, it is
+// longer.
 #pragma once
 
 namespace ifog {
