@@ -190,7 +190,9 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
-  in_vain_ = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0 ? in_vain_ + 1 : 0;
+  in_vain_ = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0
+                 ? in_vain_ + 1
+                 : 0;
   watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
               pipeline.filter().counters().out_of_range.value());
   now_.noticed = watch_.noticed();
