@@ -27,6 +27,7 @@
 #include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/series.h"
 #include "filters/diagnosis/report/written_model.h"
+#include "filters/diagnosis/residual/dead_zone.h"
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/record_lines.h"
 #include "filters/diagnosis/residual/resonances.h"
@@ -80,8 +81,11 @@ std::string delay_in_words(const ChannelDelay& delay) {
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
  public:
-  Run(const std::vector<Record>& records, const WithoutRamps& without, const DiagnoseOptions& options)
+  // as_logged: the same with channels before their faults were repaired; null where there were none.
+  Run(const std::vector<Record>& records, const std::vector<Record>* as_logged, const WithoutRamps& without,
+      const DiagnoseOptions& options)
       : records_(records),
+        as_logged_(as_logged),
         ramps_(without.ramps),
         no_ramp_because_(without.remark),
         options_(options),
@@ -95,6 +99,7 @@ class Run {
     search({});
     align_channels();
     subtract_found(data_, found_, errors_);
+    separate_dead_zone();
     separate_lines();
     separate_hysteresis();
     drop_what_changes_sign();
@@ -155,6 +160,24 @@ class Run {
       result_.channel_delays.push_back(
           {data_.channels[delay->channel].name, delay->delay_s, delay->std_error_s});
     }
+  }
+
+  // The forms of the search may have taken a part of it for a nonlinearity.
+  void separate_dead_zone() {
+    if (data_.reference < 0 || data_.grid.dwells) return;
+    FoundZone found;
+    for (const Record& record : records_)
+      found.rates.push_back(on_even_grid(record, data_.grid.sample_s,
+                                         {record.reference_radps.begin(), record.reference_radps.end()}));
+    const auto zone = find_dead_zone(errors_, found.rates, data_.grid.sample_s, options_.significance);
+    if (!zone) return;
+    found.zone = *zone;
+    found.channel = data_.channels[static_cast<std::size_t>(data_.reference)].name;
+    zone_ = std::move(found);
+    take_out(*zone, zone_->rates, data_.grid, errors_);
+    reconstructed_.grid.error = data_.grid.error;
+    search({});
+    subtract_found(data_, found_, errors_);
   }
 
   // Lines are looked for in what the effects leave; a slow one then competes with them in a second search. A
@@ -252,7 +275,7 @@ class Run {
     result_.others = std::move(findings.others);
     result_.noise_posterior = joint_.noise;
     const std::size_t jointly = result_.effects.size();
-    for (FoundEffect& each : sample_effects(ramps_, lines_.fast, errors_, options_.axis))
+    for (FoundEffect& each : sample_effects(ramps_, zone_, lines_.fast, errors_, options_.axis))
       result_.effects.push_back(std::move(each));
     result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), jointly);
     result_.ranges = ranges_of(data_, result_.effects);
@@ -261,6 +284,7 @@ class Run {
 
   void report_figures() {
     result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_);
+    if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, result_);
     write_noise(records_, errors_, data_.grid, found_.noise, result_);
     add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, result_.series);
@@ -274,11 +298,16 @@ class Run {
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
     say(grown_in_words(result_, errors_));
+    if (as_logged_) say(faults_in_words(result_, errors_));
     if (moving_)
       describe_moving(*moving_, result_.unexplained);
     else
       say(no_ramp_because_);
-    if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
+    if (result_.hysteresis)
+      describe_hysteresis(*result_.hysteresis, result_.unexplained);
+    else
+      describe_two_states(errors_, data_.grid, result_.unexplained);
+    say(slow_beside(errors_, data_.grid, result_.unexplained));
     if (!moving_ && !data_.grid.dwells)
       say(resonances_in_words(find_resonances(longest_of(errors_).after, data_.grid.sample_s)));
     say(judged_beside(found_.noise.shape.harmonics.size()));
@@ -293,6 +322,7 @@ class Run {
   }
 
   const std::vector<Record>& records_;  // as given
+  const std::vector<Record>* as_logged_;
   const std::vector<RampFit>& ramps_;
   const std::string& no_ramp_because_;  // empty, or a sentence
   const DiagnoseOptions& options_;
@@ -300,6 +330,7 @@ class Run {
   BlockData data_;           // without the ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
+  std::optional<FoundZone> zone_;
   Lines lines_;
   std::optional<MovingLine> moving_;
   SearchResult found_;
@@ -323,7 +354,8 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
   const WithoutTurns resting = without_turns(derived.records);
   const std::vector<Record> fitted = share.whole() ? resting.records : fitted_parts(resting.records, share);
   const WithoutRamps without = take_out_ramps(fitted, options.significance);
-  Diagnosis diagnosis = Run(fitted, without, options).run();
+  const bool faults = share.whole() && !repaired.values.empty();
+  Diagnosis diagnosis = Run(fitted, faults ? &whole.records : nullptr, without, options).run();
   diagnosis.reference_delays = aligned.delays;
   for (const auto* remarks : {&resting.remarks, &aligned.remarks, &repaired.remarks})
     diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks->begin(), remarks->end());

@@ -60,7 +60,8 @@ struct Unexplained {
   double fraction =
       0.0;  // of the variance of the error that is neither white noise nor harmonic nor explained
   double means_s = 1.0;  // length of the means whose variance that is
-  // "nothing", "slow", "line", "moving_line", "bursts", "changing_variance", "hysteresis", "uncorrelated"
+  // "nothing", "slow", "line", "moving_line", "bursts", "changing_variance", "hysteresis", "two_states",
+  // "uncorrelated"
   std::string kind;
   std::string hint;
   double frequency_hz = 0.0;    // "line", "moving_line"

@@ -68,6 +68,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
   if (describes_noise(*form) || !carries_over(*form) || effect.shown_only) {
     left_out_.push_back(label_of(effect));
+    if (*form == Form::kDeadZone) add_zone(effect, axes);
     return;
   }
   if (*form == Form::kWarmUp && !since_power_up_s_) {
@@ -116,6 +117,16 @@ void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>&
     throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
   }
   if (!placed) refuse_axis(effect);
+}
+
+void Compensator::add_zone(const Effect& effect, const std::vector<std::string>& axes) {
+  const double half_width = parameter(effect, kHalfWidth);
+  if (!is_reference_rate(effect.channel) || !(half_width >= 0.0))
+    throw std::invalid_argument("effect " + label_of(effect) +
+                                ": expected reference_rate and a half_width of at least 0");
+  for (std::size_t axis = 0; axis < axes.size(); ++axis)
+    if (effect.axis.empty() || effect.axis == axes[axis])
+      zones_.push_back({axis, effect.reference, half_width});
 }
 
 void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel,
@@ -266,6 +277,10 @@ void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& 
     const double bent = term.coefficient_error * value.unseen_curvature;
     inflation += left * left + bent * bent;
   }
+  // Any rate within is as likely: an even spread.
+  for (const Zone& zone : zones_)
+    if (zone.axis == axis && std::abs(rates[axis] - zone.middle) < zone.half_width)
+      inflation += zone.half_width * zone.half_width / 3.0;
   out.variance_rad2ps2[axis] = parameter_variance(axis, rates) + inflation;
 }
 

@@ -42,7 +42,8 @@ struct CompensatorInput {
 struct CompensatorOutput {
   Axes compensated_radps{};
   Axes correction_radps{};  // what was subtracted
-  Axes variance_rad2ps2{};  // of the correction: parameter covariance, and leaving the range
+  // Of the correction: parameter covariance, leaving the range, and what a dead zone may hide.
+  Axes variance_rad2ps2{};
   std::uint32_t flags = 0;  // CompensatorFlags
 };
 
@@ -100,6 +101,10 @@ class Compensator {
     std::size_t axis;
     RampTracker tracker;
   };
+  struct Zone {  // in which the sensor sees nothing
+    std::size_t axis;
+    double middle, half_width;
+  };
   struct Held {
     double value = 0.0;
     Reach reach;
@@ -110,6 +115,7 @@ class Compensator {
   void add_effect(const Effect& effect, std::size_t first_row, const std::vector<std::string>& axes,
                   const std::vector<ChannelRange>& ranges);
   void add_ramp(const Effect& effect, const std::vector<std::string>& axes);
+  void add_zone(const Effect& effect, const std::vector<std::string>& axes);
   void add_factor(Term& term, ShapeSettings settings, const std::string& channel,
                   const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges);
   void place(Term term, const Effect& effect, const std::vector<std::string>& axes);
@@ -132,6 +138,7 @@ class Compensator {
   std::vector<Held> held_;
   std::vector<Term> terms_;
   std::vector<Ramp> ramps_;
+  std::vector<Zone> zones_;
   std::vector<double> covariance_;
   std::size_t parameters_ = 0;
   std::size_t axes_;

@@ -7,7 +7,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::array<std::pair<Form, std::string_view>, 24> kNames = {{
+constexpr std::array<std::pair<Form, std::string_view>, 25> kNames = {{
     {Form::kLinear, "linear"},
     {Form::kQuadratic, "quadratic"},
     {Form::kCubic, "cubic"},
@@ -22,6 +22,7 @@ constexpr std::array<std::pair<Form, std::string_view>, 24> kNames = {{
     {Form::kCosine, "cosine"},
     {Form::kSine, "sine"},
     {Form::kBandPower, "band_power"},
+    {Form::kDeadZone, "dead_zone"},
     {Form::kLine, "line"},
     {Form::kStep, "step"},
     {Form::kRateRamp, "rate_ramp"},
@@ -60,7 +61,8 @@ bool has_memory(Form form) {
 bool describes_noise(Form form) { return form >= Form::kGaussMarkov; }
 
 bool carries_over(Form form) {
-  return has_channel(form) || form == Form::kWarmUp || form == Form::kRebuiltRamp;
+  return (has_channel(form) && form != Form::kDeadZone) || form == Form::kWarmUp ||
+         form == Form::kRebuiltRamp;
 }
 
 int power_of(Form form) {
@@ -91,6 +93,11 @@ double parameter(const Effect& effect, std::string_view name) {
 std::string_view time_constant_name(Form form) {
   if (form == Form::kLagged) return "lag_s";
   return form == Form::kWarmUp ? "time_constant_s" : "bandwidth_s";
+}
+
+std::string_view time_constant_name(const Effect& effect) {
+  const std::string& name = effect.with_form.empty() ? effect.form : effect.with_form;
+  return time_constant_name(form_named(name).value_or(Form::kRate));
 }
 
 std::string rate_of_axis(std::string_view axis) {

@@ -7,6 +7,7 @@
 //   constants   lookup f(c), piecewise linear; with `angle` the table is an angle and the effect its
 //   difference over dt product c * with_form(with_channel) band_power mean square of c - LP(c)   absolute |c|
 //   cosine, sine of 2 pi c/period, the channel an angle: once a turn, or a whole part of it
+//   dead_zone c where |c| is below the half width, else 0
 // and of the time t since the record's start (or the daemon's):
 //   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
 //   rebuilt_ramp: a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
@@ -39,6 +40,7 @@ enum class Form {
   kCosine,
   kSine,
   kBandPower,
+  kDeadZone,
   kLine,
   kStep,
   kRateRamp,
@@ -60,8 +62,8 @@ std::string_view name_of(Form form);
 [[nodiscard]] bool describes_noise(Form form);  // nothing to subtract
 
 // False for what happened once in a record, or has a phase or an origin that the next record does not share:
-// it is reported and removed from that record, and left out online. A warm-up's origin is power-up, so it is
-// corrected where that is known.
+// it is reported and removed from that record, and left out online. So is a dead zone: what the sensor did
+// not see nobody can give back. A warm-up's origin is power-up, so it is corrected where that is known.
 [[nodiscard]] bool carries_over(Form form);
 
 // The power of a polynomial form, 0 for others.
@@ -70,9 +72,14 @@ std::string_view name_of(Form form);
 // 0 when the effect has no parameter of that name.
 [[nodiscard]] double parameter(const Effect& effect, std::string_view name);
 
+// Of a dead zone: its parameter beside the coefficient, in the channel's unit.
+inline constexpr std::string_view kHalfWidth = "half_width";
+
 // What a form's time constant is called: "lag_s" of lagged, "time_constant_s" of warm_up, "bandwidth_s" of
 // the others.
 [[nodiscard]] std::string_view time_constant_name(Form form);
+// Of a product: of its second factor.
+[[nodiscard]] std::string_view time_constant_name(const Effect& effect);
 
 // The measured rate of an axis of the same sensor as a channel: "rate_y_radps" for "y".
 [[nodiscard]] std::string rate_of_axis(std::string_view axis);

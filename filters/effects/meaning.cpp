@@ -27,6 +27,7 @@ std::string form_unit(Form form, const std::string& unit) {
       return unit + "^2";
     case Form::kLagged:
     case Form::kAbsolute:
+    case Form::kDeadZone:
       return unit;
     default:
       return power_unit(unit, std::max(1, power_of(form)));
@@ -111,6 +112,10 @@ std::string of_acceleration(Form form) {
 std::string of_reference(Form form) {
   if (form == Form::kLinear) return "scale factor error";
   if (form == Form::kAbsolute) return "scale factor asymmetry: another one backwards";
+  if (form == Form::kDeadZone)
+    return "dead zone: slow rotation is not seen, as where a closed loop locks in (2 pi reset, coupling of "
+           "its "
+           "electronics); what was not seen cannot be given back";
   if (power_of(form) % 2 == 1) return "scale factor nonlinearity, " + order_of(form) + "in the rate";
   return "scale factor asymmetry between the directions, " + order_of(form) + "in the rate";
 }
@@ -169,6 +174,8 @@ std::string of_product(const Effect& effect, Form with_form) {
     const std::string what =
         order == Form::kLinear ? "scale factor" : order_of(order) + "scale factor nonlinearity";
     const std::string how = first ? order_of(with_form) : "";
+    if (kind_of(other) == ChannelKind::kTemperature && first && with_form == Form::kLagged)
+      return what + " changes with the coil's temperature, which follows the thermometer with a lag";
     if (kind_of(other) == ChannelKind::kTemperature)
       return what + " changes with temperature (" + how + "product with the rate)";
     return what + " changes with " + other;

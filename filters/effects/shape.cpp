@@ -55,6 +55,7 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.table_y = effect.table_y;
   settings.period = effect.period;
   settings.angle = effect.angle;
+  settings.half_width = parameter(effect, kHalfWidth);
   return settings;
 }
 
@@ -73,6 +74,14 @@ ShapeSettings with_shape_settings(const Effect& effect) {
   return settings;
 }
 
+double mean_in_dead_zone(double mean, double variance, double half_width) noexcept {
+  const double reach = std::sqrt(3.0 * std::max(variance, 0.0));  // of an even spread
+  if (!(reach > 1e-9 * half_width)) return std::abs(mean) < half_width ? mean : 0.0;
+  const double low = std::max(mean - reach, -half_width);
+  const double high = std::min(mean + reach, half_width);
+  return high > low ? (high - low) * (high + low) / (4.0 * reach) : 0.0;
+}
+
 Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
   const bool lookup = settings_.form == Form::kLookup;
   if (lookup && (settings_.table_x.size() < 2 || settings_.table_x.size() != settings_.table_y.size())) {
@@ -83,6 +92,7 @@ Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
   if (settings_.time_constant_s < 0.0 || settings_.second_time_constant_s < 0.0) {
     throw std::invalid_argument("a time constant is negative");
   }
+  if (settings_.half_width < 0.0) throw std::invalid_argument("a half width is negative");
   if (!has_channel(settings_.form) && settings_.form != Form::kWarmUp) {
     throw std::invalid_argument("form " + in_quotes(std::string(name_of(settings_.form))) +
                                 " has no channel to be a shape of");
@@ -107,6 +117,7 @@ double Shape::at(double value) const noexcept {
   const double turns = is_periodic(settings_.form) ? c / settings_.period : 0.0;
   if (settings_.form == Form::kCosine) return std::cos(2.0 * std::numbers::pi * turns);
   if (settings_.form == Form::kSine) return std::sin(2.0 * std::numbers::pi * turns);
+  if (settings_.form == Form::kDeadZone) return std::abs(c) < settings_.half_width ? c : 0.0;
   return power(c, settings_.form);
 }
 
@@ -174,10 +185,15 @@ double Shape::slope(double value) const noexcept {
   return (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
 }
 
+double Shape::tangent(const Reach& channel) const noexcept {
+  return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
+}
+
 double Shape::at(const Reach& channel) const noexcept {
   if (is_periodic(settings_.form)) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
-  return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
+  if (settings_.form == Form::kQuadratic) return at(channel.value);
+  return tangent(channel);
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
@@ -189,10 +205,11 @@ double Shape::step(const Reach& channel, double dt_s) noexcept {
 double Shape::left_behind(const Reach& channel) const noexcept {
   // Periodic: every value is inside.
   if (settings_.angle || is_periodic(settings_.form) || !channel.outside()) return 0.0;
+  if (settings_.form == Form::kDeadZone) return 0.0;
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
   if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {
-    return std::abs(at(channel.value) - at(channel)) + std::abs(slope(channel.edge) * channel.beyond);
+    return std::abs(at(channel.value) - tangent(channel)) + std::abs(slope(channel.edge) * channel.beyond);
   }
   const double tau = std::max(settings_.time_constant_s, 1e-3);
   switch (settings_.form) {
@@ -209,7 +226,7 @@ double Shape::left_behind(const Reach& channel) const noexcept {
 
 double Shape::unseen_curvature(const Reach& channel) const noexcept {
   const double past = std::abs(channel.past_the_edge());
-  if (past == 0.0 || !goes_on()) return 0.0;
+  if (past == 0.0 || !goes_on() || settings_.form == Form::kDeadZone) return 0.0;
   const double steepness = settings_.form == Form::kLagged ? 1.0 : std::abs(slope(channel.edge));
   return std::sqrt(15.0) * steepness * (past + past * past / channel.span);
 }
@@ -218,7 +235,8 @@ bool Shape::take_over(const Shape& previous) noexcept {
   const ShapeSettings& a = settings_;
   const ShapeSettings& b = previous.settings_;
   if (a.form != b.form || a.reference != b.reference || a.time_constant_s != b.time_constant_s ||
-      a.second_time_constant_s != b.second_time_constant_s || a.period != b.period || a.angle) {
+      a.second_time_constant_s != b.second_time_constant_s || a.period != b.period ||
+      a.half_width != b.half_width || a.angle) {
     return false;
   }
   first_ = previous.first_;

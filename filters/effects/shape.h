@@ -18,6 +18,7 @@ struct ShapeSettings {
   double second_time_constant_s = 0.0;   // lagged: a second stage
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
+  double half_width = 0.0;               // dead_zone
   bool angle = false;
   double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };
@@ -26,10 +27,14 @@ ShapeSettings shape_settings(
     const Effect& effect);  // of the effect's own channel; "product": its linear first factor
 ShapeSettings with_shape_settings(const Effect& effect);  // "product": the second factor
 
+// Mean of a dead zone's value over what is spread evenly about `mean` with that variance, as a rate is that
+// passes through the zone while it is averaged.
+double mean_in_dead_zone(double mean, double variance, double half_width) noexcept;
+
 class Shape {
  public:
   // Throws std::invalid_argument for a lookup without a table, a cosine or sine without a period, a negative
-  // time constant or a form without a channel other than warm_up.
+  // time constant or half width, or a form without a channel other than warm_up.
   explicit Shape(ShapeSettings settings);
 
   // One sample: the channel's value, and the time it covers. The first sample sets the low-pass to itself, as
@@ -47,7 +52,7 @@ class Shape {
   // Likewise, going on beyond the range as far as a fit may.
   [[nodiscard]] double at(const Reach& channel) const noexcept;
   // By how much the shape may be wrong outside the range, per unit of its coefficient: what it does not
-  // follow, and of a higher power the difference between the power and its tangent.
+  // follow, and of a power the difference between it and its tangent, whichever of them it goes on by.
   [[nodiscard]] double left_behind(const Reach& channel) const noexcept;
   // Likewise by a curvature that the fit could not see, per unit of the coefficient's standard error. Over a
   // range of width S evenly visited a linear term is known to s/(S sqrt(n/12)) and a quadratic one,
@@ -62,6 +67,7 @@ class Shape {
  private:
   [[nodiscard]] double table(double value) const noexcept;
   [[nodiscard]] double slope(double value) const noexcept;
+  [[nodiscard]] double tangent(const Reach& channel) const noexcept;  // at the edge
   [[nodiscard]] bool goes_on() const noexcept { return settings_.form != Form::kLookup; }
 
   ShapeSettings settings_;

@@ -71,6 +71,7 @@ std::string abscissa_label(const Effect& e) {
           (unit.empty() ? "" : " (" + unit + ")");
   }
   if (form == Form::kAbsolute) own = "size of " + own;
+  if (form == Form::kDeadZone) own = words + " in the dead zone (" + unit + ")";
   if (form == Form::kCosine || form == Form::kSine) own = e.form + " of " + words;
   if (form == Form::kBandPower) own = "mean square of " + words + " (" + unit + "²)";
   if (e.with_channel.empty()) return own;
@@ -85,6 +86,7 @@ std::string effect_words(const Effect& e) {
   if (e.form == "rate") out = "rate of change of " + channel_words(e.channel);
   if (e.form == "lagged") out = channel_words(e.channel) + ", lagged";
   if (e.form == "absolute") out = "size of " + channel_words(e.channel);
+  if (e.form == "dead_zone") out = "dead zone of the rate";
   if (e.form == "cosine" || e.form == "sine") out = e.form + " of " + channel_words(e.channel);
   if (e.form == "lookup") out = "curve over " + channel_words(e.channel);
   if (!e.with_channel.empty())

@@ -105,6 +105,7 @@ const std::vector<Kind>& effect_kinds() {
       {"quintic", {kCoefficient, kReference}, {}, 1},
       {"septic", {kCoefficient, kReference}, {}, 1},
       {"absolute", {kCoefficient, kReference}, {}, 1},
+      {"dead_zone", {kCoefficient, {"half_width", kMust, 0.0, kAny, "channel's"}}, {}, 1},
       {"cosine", {kCoefficient, {"period", kMust, kTiny, kAny, "channel's"}}, {}, 1},
       {"sine", {kCoefficient, {"period", kMust, kTiny, kAny, "channel's"}}, {}, 1},
       {"earth_rate",

@@ -213,6 +213,9 @@ std::vector<double> effect_signal(const Recipe& e, const Grid& grid, std::span<c
   if (e.kind == "absolute") {
     for (std::size_t i = 0; i < out.size(); ++i)
       out[i] = e["coefficient"] * std::abs(channel[i] - e["reference"]);
+  } else if (e.kind == "dead_zone") {
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = std::abs(channel[i]) < e["half_width"] ? e["coefficient"] * channel[i] : 0.0;
   } else if (e.kind == "cosine" || e.kind == "sine") {
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double phase = kTurn * channel[i] / e["period"];

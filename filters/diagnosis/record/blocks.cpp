@@ -273,6 +273,8 @@ Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std
       !source.power.empty() && (settings.form == Form::kQuadratic || settings.form == Form::kBandPower);
   return block_means(data.grid, [&](std::size_t k, bool starts) {
     if (starts) shape.restart();
+    if (settings.form == Form::kDeadZone && !source.power.empty())
+      return mean_in_dead_zone(source.values[k] - settings.reference, source.power[k], settings.half_width);
     const double value = shape.step(source.values[k], data.grid.fine_s);
     return add_power ? value + source.power[k] : value;
   });

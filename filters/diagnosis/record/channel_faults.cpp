@@ -20,8 +20,10 @@ constexpr double kFar = 20.0;    // the same of a channel that is not slow
 constexpr double kBeside = 0.3;  // of an excursion: as near it comes back to where it began
 constexpr double kSlow = 0.1;    // of the span, the most that a slow channel moves in a sample
 constexpr double kLongestExcursion_s = 60.0;
-constexpr double kMostOfRecord = 0.02;  // in excursions together; the least of a stretch that stands still
-constexpr double kJump = 8.0;           // usual changes
+// In excursions together but for those to one number; the least of a stretch that stands still.
+constexpr double kMostOfRecord = 0.02;
+constexpr double kJump = 8.0;          // usual changes
+constexpr double kPlaceholder = 30.0;  // interquartile ranges from the median
 constexpr std::size_t kFewValues = 5;
 constexpr std::size_t kShortest = 2;   // samples of the rate that a knock shakes, and comes back
 constexpr double kMostKnocks = 0.001;  // of the record: more are how this sensor is
@@ -40,6 +42,13 @@ struct Usual {
   bool slow = false;
 };
 
+// Of what is so far away that no quantile may be made of it: a logger's 9999, should it be there for minutes.
+void leave_out_placeholders(std::vector<double>& values) {
+  const double middle = quantile(values, 0.5);
+  const double far = kPlaceholder * (quantile(values, 0.75) - quantile(values, 0.25));
+  if (far > 0.0) std::erase_if(values, [&](double value) { return std::abs(value - middle) > far; });
+}
+
 Usual usual_of(std::span<const double> values) {
   Usual usual;
   std::vector<double> some, moves, changes;
@@ -51,6 +60,7 @@ Usual usual_of(std::span<const double> values) {
     if (move > 0.0 && changes.size() < 4 * kLookedAt) changes.push_back(move);
   }
   if (some.size() < 100 || changes.empty()) return usual;
+  leave_out_placeholders(some);
   usual.low = quantile(some, 0.01);
   usual.high = quantile(some, 0.99);
   usual.change = quantile(changes, 0.95);
@@ -98,6 +108,14 @@ std::optional<std::size_t> return_to(const Readings& of, std::size_t from, doubl
   return std::nullopt;
 }
 
+// One number again and again is what a logger writes where it has none, however often it does.
+bool repeats(std::span<const double> values, const Run& run) {
+  constexpr std::size_t kFewest = 3;
+  const auto first = values.begin() + static_cast<std::ptrdiff_t>(run.from);
+  const auto last = values.begin() + static_cast<std::ptrdiff_t>(run.to);
+  return run.to - run.from >= kFewest && std::all_of(first, last, [&](double v) { return v == *first; });
+}
+
 // Jumps as the channel never makes, and back again. A record may begin or end away: there one way is seen.
 std::vector<Run> excursions(const Readings& of, const Usual& usual) {
   const double span = usual.high - usual.low;
@@ -119,7 +137,7 @@ std::vector<Run> excursions(const Readings& of, const Usual& usual) {
     if (!back && ends && elsewhere(of.values[i])) back = n;
     if (!back) continue;
     found.push_back({i, *back});
-    samples += *back - i;
+    if (!repeats(of.values, {i, *back})) samples += *back - i;
     i = *back;
   }
   if (static_cast<double>(samples) > kMostOfRecord * static_cast<double>(n)) return {};

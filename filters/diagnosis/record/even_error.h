@@ -19,7 +19,8 @@ struct EvenError {
   // Less what is corrected online, by coefficients that were fitted without the sample's own part.
   std::vector<double> held_out;
   std::vector<double>
-      written;  // what the daemon's own correction leaves of `before`, by the model as written
+      written;                 // what the daemon's own correction leaves of `before`, by the model as written
+  std::vector<double> logged;  // the same with channels as they were logged, faults and all
 };
 
 // after, held_out and written: still empty. Throws as on_even_grid() does.

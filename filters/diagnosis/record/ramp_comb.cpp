@@ -23,7 +23,6 @@ constexpr std::size_t kScored = 16;    // harmonics
 constexpr double kStandsOut = 20.0;    // power over the noise around: once in 10^3 records by chance
 constexpr std::size_t kRefined = 3;    // candidates
 constexpr double kMostOfOne = 10.0;    // of a harmonic, in units of its cost: one loud line makes no comb
-constexpr std::size_t kFamily = 2;     // plain harmonics, or nothing is said of belonging together
 constexpr double kStanding = 0.3;      // of a carrier; through twenty cycles and more it turns to 0.05
 constexpr std::size_t kFirst = 4;      // harmonics that begin the search for k
 constexpr double kSeen = 25.0;         // twice the log-likelihood of a harmonic that says something of k
@@ -211,15 +210,6 @@ double refined(const HarmonicSums& sums, double k, double span) {
   return k;
 }
 
-// Angle that the mean rate would have turned.
-std::vector<double> evenly_turned(const UnbrokenPart& part) {
-  std::vector<double> even(part.size());
-  const double turn = part.mean_turn_rad();
-  for (std::size_t i = 0; i < even.size(); ++i)
-    even[i] = part.angle_rad.front() + turn * static_cast<double>(i);
-  return even;
-}
-
 // Of the harmonics of k, each at the fixed frequency nearby that suits it best.
 double gained_by_fixed(const UnbrokenPart& part, const RampComb& comb, double span) {
   const HarmonicSums sums(part, evenly_turned(part), comb.cycles_per_rad, comb.harmonics);
@@ -271,6 +261,14 @@ std::optional<RampComb> best_comb(const UnbrokenPart& part, const std::vector<do
 
 }  // namespace
 
+std::vector<double> evenly_turned(const UnbrokenPart& part) {
+  std::vector<double> even(part.size());
+  const double turn = part.mean_turn_rad();
+  for (std::size_t i = 0; i < even.size(); ++i)
+    even[i] = part.angle_rad.front() + turn * static_cast<double>(i);
+  return even;
+}
+
 VisibleCycles visible_cycles(const UnbrokenPart& part) {
   const double turn = std::abs(part.mean_turn_rad());
   if (!(turn > 0.0)) return {1.0, 0.0};
@@ -295,7 +293,7 @@ std::optional<RampComb> find_ramp_comb(const UnbrokenPart& part) {
 std::optional<RampComb> find_fixed_comb(const UnbrokenPart& part) {
   if (part.size() == 0) return std::nullopt;
   std::optional<RampComb> comb = best_comb(part, evenly_turned(part));
-  if (comb && comb->plain < kFamily) comb.reset();
+  if (comb && comb->plain == 0) comb.reset();
   return comb;
 }
 

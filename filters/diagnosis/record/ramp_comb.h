@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "filters/diagnosis/record/unbroken_part.h"
 
@@ -28,9 +29,12 @@ struct RampComb {
 
 // Nothing where no comb stands out of the noise.
 std::optional<RampComb> find_ramp_comb(const UnbrokenPart& part);
-// The same of a comb of fixed frequencies, cycles_per_rad at the mean rate; two plain harmonics or
-// more.
+// The same of a comb of fixed frequencies, cycles_per_rad at the mean rate; of one plain harmonic or more,
+// and of one alone it is no more than a line.
 std::optional<RampComb> find_fixed_comb(const UnbrokenPart& part);
+
+// Angle that the mean rate would have turned.
+std::vector<double> evenly_turned(const UnbrokenPart& part);
 
 // Cycles a radian that the part can show: from a fundamental above the slow part that was taken out, with
 // twenty cycles or more, to one below half the sample rate. Empty (least > most) near zero rate.

@@ -5,8 +5,10 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/ramp_between_captures.h"
 #include "filters/diagnosis/record/ramp_comb.h"
 #include "filters/diagnosis/record/ramp_table.h"
 #include "filters/effects/compensate_series.h"
@@ -40,15 +42,34 @@ std::string rounded(double value, int digits) {
   return out.str();
 }
 
+// One line, or lines at multiples of one.
+std::string lines_in_words(const RampComb& comb, double frequency_hz) {
+  return comb.plain < 2
+             ? "the line at " + rounded(frequency_hz, 4) + " Hz, or at a multiple of that, may be"
+             : "lines at multiples of " + rounded(frequency_hz, 4) + " Hz belong together and may be";
+}
+
+double frequency_of(const RampComb& comb, const UnbrokenPart& part) {
+  return comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s;
+}
+
 std::string fixed_in_words(const RampComb& comb, const UnbrokenPart& part) {
-  const double rate = std::abs(part.mean_turn_rad()) / part.sample_s;
-  return "lines at multiples of " + rounded(comb.cycles_per_rad * rate, 4) +
-         " Hz belong together. A feedback ramp (phase modulator, 2 pi reset) that was not logged would make "
-         "them, with " +
+  return lines_in_words(comb, frequency_of(comb, part)) +
+         " a machine's. A feedback ramp (phase modulator, 2 pi reset) that was not logged would make such, "
+         "with " +
          std::to_string(std::lround(comb.cycles_per_rad)) +
-         " cycles for each radian turned, and a machine nearby as well: the rate changed too little to show "
-         "whether they move with it. A capture at another rate would tell, and so would the feedback ramp, "
-         "logged";
+         " cycles for each radian turned: the rate changed too little to show whether they move with it. A "
+         "capture at another rate would tell, and so would the feedback ramp, logged";
+}
+
+// there: the same comb as the other capture has it.
+std::string moves_in_words(const RampComb& comb, const UnbrokenPart& part, const RampComb& there,
+                           const UnbrokenPart& other) {
+  return "lines stand at multiples of " + rounded(frequency_of(comb, part), 4) +
+         " Hz in one capture and of " + rounded(frequency_of(there, other), 4) +
+         " Hz in another, as the rates there are: a feedback ramp (phase modulator, 2 pi reset) of " +
+         std::to_string(std::lround(comb.cycles_per_rad)) +
+         " cycles for each radian turned. Its phase could not be followed, so nothing is corrected: log it";
 }
 
 std::string too_slow_in_words(const UnbrokenPart& part) {
@@ -133,41 +154,78 @@ double energy_taken(const std::vector<Record>& records, const RampFit& fit) {
   return taken;
 }
 
+// With the ramp's table and what the tracker makes of it; nothing where it does not help.
+std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at, const UnbrokenPart& part,
+                              const RampComb& comb, double p_value, double most_walk) {
+  const std::optional<RampTable> table = fit_ramp_table(part, comb);
+  if (!table || rms(table->one_cycle()) < kCertain * table->angle_error) return std::nullopt;
+  if (table->phase_walk > most_walk) return std::nullopt;
+  RampFit fit;
+  fit.effect = effect_of(*table);
+  fit.ratio = comb.ratio;
+  fit.p_value = p_value;
+  correct_all(records, at, part, *table, fit);
+  if (energy_taken(records, fit) <= 0.0) return std::nullopt;
+  return fit;
+}
+
+double chance_of(const RampComb& comb) {
+  const boost::math::chi_squared by_chance(2.0 * static_cast<double>(comb.harmonics));
+  return std::min(1.0, comb.tries * cdf(complement(by_chance, comb.ratio)));
+}
+
+// By two captures at different rates. That the lines follow the rate is proven by that, however the phase
+// walks.
+RebuiltRamp rebuild_between(const std::vector<Record>& records, const std::vector<UnbrokenPart>& parts,
+                            const std::vector<std::optional<RampComb>>& combs, double significance) {
+  constexpr double kAnyWalk = 1.0;
+  RebuiltRamp out;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    if (!combs[r]) continue;
+    const double p_value = chance_of(*combs[r]);
+    if (p_value > significance) continue;
+    for (std::size_t s = 0; s < records.size(); ++s) {
+      if (s == r || parts[s].size() == 0) continue;
+      const RampBetween between = follow_comb(parts[r], *combs[r], parts[s]);
+      if (!between.moves) continue;
+      RampComb there = *combs[r];
+      there.cycles_per_rad = between.cycles_per_rad;
+      out.fit = fit_of(records, r, parts[r], *combs[r], p_value, kAnyWalk);
+      if (!out.fit) out.remark = moves_in_words(*combs[r], parts[r], there, parts[s]);
+      return out;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance) {
   RebuiltRamp out;
+  std::vector<UnbrokenPart> parts;
+  std::vector<std::optional<RampComb>> combs(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const UnbrokenPart part = unbroken_part(records[r]);
+    const UnbrokenPart& part = parts.emplace_back(unbroken_part(records[r]));
     if (part.size() == 0) continue;
     if (kUsualCycles * std::abs(part.mean_turn_rad()) * static_cast<double>(part.size()) < kSeenCycles) {
       if (records[r].reference_radps.empty() && part.sample_s * kQuickSensor_hz < 1.0 && out.remark.empty())
         out.remark = too_slow_in_words(part);
       continue;
     }
-    const std::optional<RampComb> comb = find_ramp_comb(part);
-    if (!comb || comb->over_fixed < kOverFixed) {
+    combs[r] = find_ramp_comb(part);
+    if (!combs[r] || combs[r]->over_fixed < kOverFixed) {
       const std::optional<RampComb> fixed = find_fixed_comb(part);
-      if (fixed && out.remark.empty()) out.remark = fixed_in_words(*fixed, part);
+      if (fixed && (!combs[r] || combs[r]->ratio < fixed->ratio)) combs[r] = fixed;
+      const bool told = fixed && (fixed->plain > 1 || part.sample_s * kQuickSensor_hz < 1.0);
+      if (told && out.remark.empty()) out.remark = fixed_in_words(*fixed, part);
       continue;
     }
-    const boost::math::chi_squared by_chance(2.0 * static_cast<double>(comb->harmonics));
-    const double p_value = std::min(1.0, comb->tries * cdf(complement(by_chance, comb->ratio)));
+    const double p_value = chance_of(*combs[r]);
     if (p_value > significance) continue;
-    const std::optional<RampTable> table = fit_ramp_table(part, *comb);
-    if (!table || rms(table->one_cycle()) < kCertain * table->angle_error) continue;
-    if (table->phase_walk > kMostWalk) continue;
-    RampFit fit;
-    fit.effect = effect_of(*table);
-    fit.ratio = comb->ratio;
-    fit.p_value = p_value;
-    correct_all(records, r, part, *table, fit);
-    if (energy_taken(records, fit) <= 0.0) continue;
-    out.fit = std::move(fit);
-    out.remark.clear();
-    return out;
+    if (auto fit = fit_of(records, r, part, *combs[r], p_value, kMostWalk)) return {std::move(fit), ""};
   }
-  return out;
+  RebuiltRamp between = rebuild_between(records, parts, combs, significance);
+  return between.fit || !between.remark.empty() ? between : out;
 }
 
 }  // namespace ifog

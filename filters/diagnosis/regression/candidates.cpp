@@ -18,6 +18,8 @@ constexpr double kBlocksOfRate = 2.0;
 // What warms up has a mass. What settles faster is how the record began: a reference that came late, a hand
 // that let go.
 constexpr double kShortestWarmUp_s = 10.0;
+// Of a sample: a band power that weighs the frequencies near half the sample rate most.
+constexpr double kHighest = 0.5;
 constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
 constexpr double kOfDifference =
     3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
@@ -112,6 +114,18 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   // Of a smooth one, what is above the low-pass is its slope.
   if (!source.smooth) {
     for (const double tau : time_constants(data.grid, Form::kBandPower)) add(Form::kBandPower, tau);
+    if (source.power.empty()) add(Form::kBandPower, kHighest * data.grid.fine_s);
+  }
+}
+
+// The coil makes the scale factor, and a thermometer beside it is ahead of it. product: of the reference.
+void add_lagging_scale(const BlockData& data, Candidate product, std::vector<Candidate>& found) {
+  if (data.grid.dwells || kind_of(data.channels[product.with_channel].name) != ChannelKind::kTemperature)
+    return;
+  product.with_form = Form::kLagged;
+  for (const double tau : time_constants(data.grid, Form::kLagged)) {
+    product.time_constant_s = tau;
+    found.push_back(product);
   }
 }
 
@@ -141,6 +155,7 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
     candidate.with_channel = channel;
     candidate.with_form = Form::kQuadratic;
     found.push_back(candidate);
+    add_lagging_scale(data, candidate, found);
   }
 }
 
@@ -230,6 +245,20 @@ std::vector<Candidate> library(const BlockData& data) {
   return found;
 }
 
+namespace {
+
+// Two band powers, one that weighs high frequencies more, make with coefficients of their own the power of
+// one band beside another: a resonance of the coil answers one machine and not the next.
+void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
+  const FineChannel& source = data.channels[channel];
+  if (source.smooth || !source.power.empty()) return;
+  for (const double tau : time_constants(data.grid, Form::kBandPower))
+    pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
+                     candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
+}
+
+}  // namespace
+
 std::vector<NaturalPair> natural_pairs(const BlockData& data) {
   std::vector<NaturalPair> pairs;
   if (data.grid.dwells) return pairs;
@@ -241,6 +270,7 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
       for (std::size_t i = 0; i + 1 < turns.size(); i += 2) pairs.push_back({turns[i], turns[i + 1]});
     }
     if (!may_be_factor(data, channel) || source.two_valued) continue;
+    add_band(data, channel, pairs);
     pairs.push_back({candidate_of(Form::kLinear, channel), candidate_of(Form::kQuadratic, channel)});
   }
   for (const auto& [gate, other] : switched(data))
@@ -262,14 +292,15 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
   const auto n = static_cast<Eigen::Index>(grid.size());
   if (candidate.channel != Candidate::kNone) {
     if (candidate.form == Form::kProduct) {
-      return column(data, settings_of(data, Form::kLinear, candidate.channel, 0.0, 0.0), candidate.channel,
-                    settings_of(data, candidate.with_form, candidate.with_channel, 0.0, 0.0),
-                    candidate.with_channel);
+      return column(
+          data, settings_of(data, Form::kLinear, candidate.channel, 0.0, 0.0), candidate.channel,
+          settings_of(data, candidate.with_form, candidate.with_channel, candidate.time_constant_s, 0.0),
+          candidate.with_channel);
     }
-    return column(data,
-                  settings_of(data, candidate.form, candidate.channel, candidate.time_constant_s,
-                              candidate.second_time_constant_s, candidate.period),
-                  candidate.channel);
+    ShapeSettings settings = settings_of(data, candidate.form, candidate.channel, candidate.time_constant_s,
+                                         candidate.second_time_constant_s, candidate.period);
+    settings.half_width = candidate.half_width;
+    return column(data, settings, candidate.channel);
   }
   Columns columns = Columns::Zero(n, candidate.width());
   for (std::size_t r = 0; r < grid.records.size(); ++r) {
@@ -302,73 +333,6 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
     }
   }
   return columns;
-}
-
-namespace {
-
-double complexity_of_form(const Candidate& candidate) {
-  switch (candidate.form) {
-    case Form::kLinear:
-      return 0.0;
-    case Form::kQuadratic:
-    case Form::kAbsolute:
-    case Form::kCosine:
-    case Form::kSine:
-    case Form::kRateRamp:
-      return 2.0;
-    case Form::kSecondRate:
-      return 20.0;  // with its bandwidth free it stands in for most things that change; rarely is it the
-                    // thing
-    case Form::kQuintic:
-      return 5.0;
-    case Form::kSeptic:
-      return 6.0;
-    case Form::kWarmUp:
-      return 8.0;
-    case Form::kProduct:  // a scale factor that depends on a channel, or its nonlinearity that does
-      return candidate.with_form == Form::kLinear ? 4.0 : 8.0;
-    default:
-      return 4.0;
-  }
-}
-
-}  // namespace
-
-double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
-
-Effect effect_of(const BlockData& data, const Candidate& candidate) {
-  Effect effect;
-  effect.form = name_of(candidate.form);
-  if (candidate.channel != Candidate::kNone) {
-    effect.channel = data.channels[candidate.channel].name;
-    effect.reference = reference_of(effect.channel);
-    effect.period = candidate.period;
-  }
-  if (candidate.form == Form::kProduct) {
-    effect.with_form = name_of(candidate.with_form);
-    effect.with_channel = data.channels[candidate.with_channel].name;
-    effect.with_reference = reference_of(effect.with_channel);
-  }
-  if (candidate.form == Form::kLine) {
-    effect.parameters = {{"cosine", 0.0, 0.0, "rad/s"}, {"sine", 0.0, 0.0, "rad/s"}};
-    effect.parameters.push_back({"frequency_hz", candidate.frequency_hz, 0.0, "Hz"});
-  } else {
-    effect.parameters = {{"coefficient", 0.0, 0.0, coefficient_unit(effect)}};
-  }
-  if (candidate.searched()) {
-    effect.parameters.push_back(
-        {std::string(time_constant_name(candidate.form)), candidate.time_constant_s, 0.0, "s"});
-  }
-  if (candidate.second_time_constant_s > 0.0) {
-    effect.parameters.push_back({"second_lag_s", candidate.second_time_constant_s, 0.0, "s"});
-  }
-  if (candidate.form == Form::kStep) effect.parameters.push_back({"time_s", candidate.time_s, 0.0, "s"});
-  if (candidate.first_reading != FirstReading::kError && candidate.form == Form::kLinear)
-    effect.form = name_of(Form::kEarthRate);
-  effect.shown_only = candidate.first_reading == FirstReading::kEarthRateShown;
-  effect.meaning =
-      candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
-  return effect;
 }
 
 }  // namespace ifog

@@ -25,6 +25,7 @@ struct Candidate {
   std::size_t record = 0;     // step, line: where it is
   double frequency_hz = 0.0;  // line
   double period = 0.0;        // cosine, sine
+  double half_width = 0.0;    // dead_zone, which no search tries; see residual/dead_zone.h
   double of_channel = 0.0;    // what its channel adds to the complexity: one that no logger wrote
   FirstReading first_reading = FirstReading::kError;
 
@@ -50,8 +51,8 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form);
 std::vector<Candidate> library(const BlockData& data);
 
 // Two effects that are one law together, each of which may be hidden while the other is missing: a law about
-// a point that nobody knows, k (c - c0)^2 or k g (c - c0) while a switch g is on, and a swing of unknown
-// phase.
+// a point that nobody knows, k (c - c0)^2 or k g (c - c0) while a switch g is on, a swing of unknown phase,
+// and the power of vibration in one band.
 struct NaturalPair {
   Candidate first, second;
 };

@@ -11,19 +11,25 @@ void write_before_and_after(const std::vector<EvenError>& errors, double sample_
   std::vector<std::map<std::string, double>> before;
   std::vector<std::map<std::string, double>> written;
   std::vector<std::map<std::string, double>> held_out;
+  std::vector<std::map<std::string, double>> logged;
   std::vector<double> weight;
   for (const EvenError& error : errors) {
     before.push_back(error_figures(error.before, sample_s));
     written.push_back(error_figures(error.written, sample_s));
     held_out.push_back(error_figures(error.held_out, sample_s));
+    if (!error.logged.empty()) logged.push_back(error_figures(error.logged, sample_s));
     weight.push_back(static_cast<double>(error.before.size()));
   }
   diagnosis.before = pooled(before, weight);
   diagnosis.after = pooled(written, weight);
-  for (const auto& [name, value] : pooled(held_out, weight)) {
-    double& figure = diagnosis.after[name];
-    if (std::abs(value) > std::abs(figure)) figure = value;
-  }
+  const auto take_worse = [&](const std::map<std::string, double>& others) {
+    for (const auto& [name, value] : others) {
+      double& figure = diagnosis.after[name];
+      if (std::abs(value) > std::abs(figure)) figure = value;
+    }
+  };
+  take_worse(pooled(held_out, weight));
+  if (logged.size() == errors.size()) take_worse(pooled(logged, weight));
 }
 
 }  // namespace ifog

@@ -2,7 +2,10 @@
 #include "filters/diagnosis/report/findings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/report/separate.h"
@@ -23,9 +26,8 @@ std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& va
   return used;
 }
 
-bool is_searched(const ModelParameter& parameter, const std::string& form) {
-  return form == "line" ? parameter.name == "frequency_hz"
-                        : parameter.name == time_constant_name(form_named(form).value_or(Form::kRate));
+bool is_searched(const ModelParameter& parameter, const Effect& effect) {
+  return parameter.name == (effect.form == "line" ? "frequency_hz" : time_constant_name(effect));
 }
 
 }  // namespace
@@ -109,7 +111,7 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
       const double sigma = std::sqrt(joint.covariance(searched, searched));
       ++searched;
       for (ModelParameter& parameter : effect.effect.parameters) {
-        if (is_searched(parameter, effect.effect.form))
+        if (is_searched(parameter, effect.effect))
           parameter.std_error = sigma * (chosen.candidate.form == Form::kLine ? 1.0 : parameter.value);
       }
     }
@@ -119,6 +121,32 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     at += chosen.candidate.width();
     findings.effects.push_back(std::move(effect));
   }
+}
+
+// A scale factor that falls off towards full scale and hardly before is what a soft limit makes.
+void name_saturation(const BlockData& data, std::vector<FoundEffect>& effects) {
+  if (data.reference < 0) return;
+  const FineChannel& reference = data.channels[static_cast<std::size_t>(data.reference)];
+  const double full = std::max(std::abs(reference.low), std::abs(reference.high));
+  FoundEffect* bends = nullptr;
+  double at_full = 0.0;
+  double at_half = 0.0;
+  for (FoundEffect& found : effects) {
+    const Effect& effect = found.effect;
+    const int power = power_of(form_named(effect.form).value_or(Form::kProduct));
+    if (effect.channel != reference.name || power % 2 == 0) continue;
+    if (power > 1 && !bends) bends = &found;
+    at_full += parameter(effect, "coefficient") * std::pow(full, power);
+    at_half += parameter(effect, "coefficient") * std::pow(0.5 * full, power);
+  }
+  if (!bends || !(at_full < 0.0) || std::abs(at_half) > 0.25 * std::abs(at_full)) return;
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "; the rate reads %.2g ppm too small at %.3g °/s and hardly at half of that, as a soft limit makes it "
+      "(saturation)",
+      -1e6 * at_full / full, full * 180.0 / std::numbers::pi);
+  bends->effect.meaning += text.data();
 }
 
 void add_alternatives(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
@@ -166,6 +194,7 @@ Findings findings_of(const BlockData& data, const BlockData& reconstructed, cons
                      const JointFit& joint, const std::string& axis) {
   Findings findings;
   add_effects(data, found, joint, axis, findings);
+  name_saturation(data, findings.effects);
   add_alternatives(data, reconstructed, found, axis, findings);
   add_earth_rate(findings);
   return findings;
@@ -189,7 +218,7 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
       Row row;
       row.alone = parameter.std_error * parameter.std_error;
       if (i < jointly && j < width) row.column = at++;
-      if (i < jointly && j >= width && is_searched(parameter, effect.form)) {
+      if (i < jointly && j >= width && is_searched(parameter, effect)) {
         row.column = searched++;
         row.scale = effect.form == "line" ? 1.0 : parameter.value;
       }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/grown_figures.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/figures.h"
 
 namespace ifog {
 namespace {
@@ -60,6 +64,36 @@ std::string grown_in_words(const Diagnosis& diagnosis, const std::vector<EvenErr
   return sentence.empty()
              ? sentence
              : sentence + ": slow noise that happened to run against the effects was hidden by them";
+}
+
+std::string faults_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
+  constexpr double kMore = 1.05;
+  double written = 0.0;
+  double logged = 0.0;
+  for (const EvenError& error : errors) {
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(10.0 * diagnosis.sample_rate_hz)));
+    written += variance_of(means_over(error.written, count));
+    logged += variance_of(means_over(error.logged, count));
+  }
+  if (!(std::sqrt(logged) > kMore * std::sqrt(written))) return "";
+  std::array<char, 300> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "the daemon has the channels as they are logged: with the faults that were repaired for the fit it "
+      "leaves %.2g times as much of 10 s means as without, and the figures after are those",
+      std::sqrt(logged / written));
+  std::string sentence = text.data();
+  for (const Figure& figure : kFigures) {
+    const double growth = growth_of(diagnosis, figure.key);
+    if (growth <= kGrown || count_of(figure, diagnosis, errors) < kMany) continue;
+    if (figure.means_s > 0.0)
+      std::snprintf(text.data(), text.size(), "; %.3g s means grow %.3g times by that", figure.means_s,
+                    growth);
+    else
+      std::snprintf(text.data(), text.size(), "; single samples grow %.3g times by that", growth);
+    sentence += text.data();
+  }
+  return sentence;
 }
 
 }  // namespace ifog

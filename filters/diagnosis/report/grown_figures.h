@@ -18,4 +18,8 @@ bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& e
 // One sentence of the means that have grown over fewer; empty when there are none.
 std::string grown_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors);
 
+// One sentence where the channels as they were logged, with their faults, leave more than the repaired ones
+// the effects were fitted to; empty where they do not. errors: `written` and `logged` are filled.
+std::string faults_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors);
+
 }  // namespace ifog

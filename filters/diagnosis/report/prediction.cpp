@@ -74,10 +74,11 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
     candidate.with_channel = index(effect.with_channel);
     if (candidate.with_channel == Candidate::kNone) return std::nullopt;
   }
-  candidate.time_constant_s = parameter(effect, time_constant_name(*form));
+  candidate.time_constant_s = parameter(effect, time_constant_name(effect));
   candidate.second_time_constant_s = parameter(effect, "second_lag_s");
   candidate.frequency_hz = parameter(effect, "frequency_hz");
   candidate.period = effect.period;
+  candidate.half_width = parameter(effect, kHalfWidth);
   return candidate;
 }
 
@@ -130,19 +131,19 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     if (!candidate || candidate->form == Form::kStep || effect.parameters.empty()) continue;
     const double coefficient = effect.parameters[0].value;
     const Eigen::VectorXd column = regressors(next, *candidate).col(0);
-    if (candidate->form == Form::kRateRamp) {
+    if (candidate->form == Form::kRateRamp || candidate->form == Form::kDeadZone) {
       on.going_on += coefficient * column;
       continue;
     }
     on.gradient.col(at) = column;
     on.total += coefficient * column;
-    const bool tangent = power_of(candidate->form) > 1 || candidate->form == Form::kLookup;
+    const bool tangent = power_of(candidate->form) > 2 || candidate->form == Form::kLookup;
     on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
     if (!candidate->searched()) continue;
     const Columns by_logarithm =
         searched_columns(next, {*candidate}, Eigen::VectorXd::Constant(1, coefficient), 0);
     for (std::size_t j = 1; j < effect.parameters.size(); ++j) {
-      if (effect.parameters[j].name == time_constant_name(candidate->form))
+      if (effect.parameters[j].name == time_constant_name(effect))
         on.gradient.col(at + static_cast<Eigen::Index>(j)) = by_logarithm.col(0) / candidate->time_constant_s;
     }
   }

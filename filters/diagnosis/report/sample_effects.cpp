@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -17,6 +18,27 @@ FoundEffect ramp_effect(const RampFit& ramp, const std::vector<EvenError>& error
   double total = 0.0;
   for (std::size_t r = 0; r < errors.size(); ++r) {
     explained += variance_of(ramp.correction[r]);
+    total += variance_of(errors[r].before);
+  }
+  found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+  return found;
+}
+
+FoundEffect zone_effect(const FoundZone& of, const std::vector<EvenError>& errors) {
+  const DeadZone& zone = of.zone;
+  FoundEffect found;
+  Effect& effect = found.effect;
+  effect.form = name_of(Form::kDeadZone);
+  effect.channel = of.channel;
+  effect.parameters = {{"coefficient", zone.coefficient, zone.coefficient_error, coefficient_unit(effect)},
+                       {std::string(kHalfWidth), zone.half_width, zone.half_width_error, "rad/s"}};
+  effect.meaning = meaning_of(effect);
+  found.p_value = zone.p_value;
+  found.likelihood_ratio = zone.ratio;
+  double explained = 0.0;
+  double total = 0.0;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    explained += variance_of(hidden_by(zone, of.rates[r]));
     total += variance_of(errors[r].before);
   }
   found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
@@ -40,11 +62,14 @@ FoundEffect line_effect(const SpectralLine& line, double total_variance) {
 
 }  // namespace
 
-std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps, const std::vector<FastLine>& lines,
+std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
+                                        const std::optional<FoundZone>& zone,
+                                        const std::vector<FastLine>& lines,
                                         const std::vector<EvenError>& errors, const std::string& axis) {
   std::vector<FoundEffect> found;
-  found.reserve(ramps.size() + lines.size());
+  found.reserve(ramps.size() + lines.size() + 1);
   for (const RampFit& ramp : ramps) found.push_back(ramp_effect(ramp, errors));
+  if (zone) found.push_back(zone_effect(*zone, errors));
   for (const FastLine& fast : lines)
     found.push_back(line_effect(fast.line, variance_of(errors[fast.record].before)));
   for (FoundEffect& each : found) each.effect.axis = axis;

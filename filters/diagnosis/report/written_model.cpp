@@ -49,6 +49,18 @@ void run_written_model(const std::vector<Record>& records, const Diagnosis& diag
     errors[r].written = on_even_grid(records[r], sample_s, compensated_error(records[r], model));
 }
 
+void run_as_logged(const std::vector<Record>& records, const std::vector<Record>& logged,
+                   const Diagnosis& diagnosis, double sample_s, std::vector<EvenError>& errors) {
+  Model model;
+  add_to_model(diagnosis, "", model);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    Record record = records[r];
+    for (RecordChannel& channel : record.channels)
+      if (const auto values = values_of(logged[r], channel.name); !values.empty()) channel.values = values;
+    errors[r].logged = on_even_grid(records[r], sample_s, compensated_error(record, model));
+  }
+}
+
 std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
                                                std::size_t candidates, double sample_s,
                                                const std::vector<EvenError>& errors) {

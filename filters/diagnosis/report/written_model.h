@@ -22,6 +22,11 @@ void count_rates_from_the_bias(const std::vector<EvenError>& errors, std::vector
 void run_written_model(const std::vector<Record>& records, const Diagnosis& diagnosis, double sample_s,
                        std::vector<EvenError>& errors);
 
+// `logged` of each error: the same with the channels of `logged`, as many records of as many rows, where they
+// have one of that name: what a logger's faults, which the fit was spared, do to the correction.
+void run_as_logged(const std::vector<Record>& records, const std::vector<Record>& logged,
+                   const Diagnosis& diagnosis, double sample_s, std::vector<EvenError>& errors);
+
 // Of the diagnosis' first `candidates` effects that are corrected online, the one whose absence leaves least
 // of the error, means of a two-thousandth of the record; none where each makes it smaller.
 std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,

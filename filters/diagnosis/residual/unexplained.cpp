@@ -11,6 +11,7 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/residual/two_states.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 
@@ -264,6 +265,37 @@ void describe_moving(const MovingLine& line, Unexplained& found) {
       "turned. That is the closed loop's own doing, most likely the feedback ramp (phase modulator, 2 pi "
       "reset), and no channel given shows it. Log the feedback ramp at the sensor's own rate.",
       line.frequency_hz, line.cycles_per_rad);
+}
+
+void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, Unexplained& found) {
+  if (grid.dwells) return;
+  const auto two = find_two_states(longest_of(errors).after, grid.sample_s);
+  if (!two) return;
+  found.kind = "two_states";
+  found.frequency_hz = 0.0;
+  found.times_s.clear();
+  found.hint = text(
+      "the bias has two states, %.3g °/h apart: it jumped %zu times and stays %.3g s in the one and %.3g s "
+      "in the other (popcorn noise). Nothing of it is corrected, for nothing that was logged says which it "
+      "is in. A source that hops between modes, a contact or an amplifier does so: log the optical power, "
+      "the "
+      "source's current and the supply at the sensor's own rate.",
+      std::abs(two->difference) / kDegreePerHour, two->jumps, two->low_s, two->high_s);
+}
+
+std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
+                        const Unexplained& found) {
+  constexpr double kMuch = 0.3;          // of what those means scatter
+  constexpr double kUnexplained = 0.12;  // of the error: less is any sensor's own noise
+  if (grid.dwells || found.fraction < kUnexplained || found.kind == "slow" || found.kind == "hysteresis" ||
+      found.kind == "two_states")
+    return "";
+  const SlowRest slow = slow_rest(longest_of(errors).after, grid.sample_s);
+  if (slow.share < kMuch) return "";
+  return text(
+      "beside that a slow drift that follows none of the channels given: %.2g %% of what %.3g s means "
+      "scatter, by the sensor's own noise or by a cause that was not logged",
+      100.0 * slow.share, slow.over_s);
 }
 
 }  // namespace ifog

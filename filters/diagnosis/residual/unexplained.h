@@ -2,6 +2,9 @@
 // What stays, in words a person can act on.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/regression/noise_fit.h"
@@ -23,5 +26,11 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
 // A line that follows the rotation, or a loop, takes the description's place.
 void describe_moving(const MovingLine& line, Unexplained& found);
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
+
+// So does a bias that jumps between two levels, of the longest record.
+void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, Unexplained& found);
+// What is slow in it, where something quicker took the description's place; "" where nothing is.
+std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
+                        const Unexplained& found);
 
 }  // namespace ifog

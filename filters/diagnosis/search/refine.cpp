@@ -23,7 +23,8 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
   };
   double low = std::log(model[at].*which / 2.5);
   double high = std::log(model[at].*which * 2.5);
-  const double least = std::log(2.0 * data.grid.fine_s);
+  const bool power = model[at].form == Form::kBandPower;  // of vibration, which is as quick as the samples
+  const double least = std::log((power ? 0.3 : 2.0) * data.grid.fine_s);
   const std::vector<double> tried = time_constants(data.grid, model[at].form);
   low = std::max(low, model[at].form == Form::kWarmUp && !tried.empty() ? std::log(tried.front()) : least);
   const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
 #include "filters/random/philox.h"
@@ -254,6 +256,114 @@ TEST(Grammar, ATurningPointFarFromTheReferenceIsALineAndAParabola) {
   const Diagnosis found = diagnose({s.record()}, {});
   EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
   expect_coefficient(effect_of(found, "quadratic", "temperature_degC"), 3e-8);
+}
+
+// The coil makes the scale factor, three minutes behind its thermometer.
+TEST(Grammar, AScaleFactorOverTheCoilsTemperatureLags) {
+  Sensor s(31);
+  s.turn([](double t) { return 0.3 * std::sin(2.0 * M_PI * t / 50.0); });
+  std::vector<double>& read =
+      s.add("temperature_degC", [](double t) { return 25.0 + 8.0 * std::sin(2.0 * M_PI * t / 700.0); });
+  double coil = read.front();
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    coil += (1.0 - std::exp(-0.2 / 180.0)) * (read[i] - coil);
+    s.rate[i] += 3e-6 * (coil - 25.0) * s.reference[i];
+  }
+  const Diagnosis found = diagnose({s.record()}, {});
+  ASSERT_EQ(found.effects.size(), 1U) << all_in_words(found);
+  const Effect& effect = found.effects[0].effect;
+  EXPECT_EQ(effect.form, "product");
+  EXPECT_EQ(effect.with_form, "lagged");
+  EXPECT_EQ(effect.with_channel, "temperature_degC");
+  EXPECT_NEAR(parameter(effect, "lag_s"), 180.0, 18.0);
+  EXPECT_NE(effect.meaning.find("coil"), std::string::npos);
+  // What is written takes it away.
+  EXPECT_LT(found.after.at("rms_10s_radps"), 0.3 * found.before.at("rms_10s_radps"));
+}
+
+// Two machines; the coil answers the slower one alone. No band power of one time constant tells them apart, a
+// pair of two does: the slower one's power is half the square of its amplitude.
+TEST(Grammar, APairOfBandPowersIsThePowerOfOneMachine) {
+  Sensor s(32);
+  std::vector<double> total, power;
+  for (std::size_t i = 0; i < s.time.size(); ++i) {
+    const double t = s.time[i];
+    const double slower = 1.0 + 0.9 * std::sin(2.0 * M_PI * t / 310.0);
+    const double quicker = 1.5 + 1.3 * std::sin(2.0 * M_PI * t / 190.0 + 1.0);
+    total.push_back(slower * std::sin(2.0 * M_PI * 0.61 * t) + quicker * std::sin(2.0 * M_PI * 2.07 * t));
+    power.push_back(0.5 * slower * slower);
+  }
+  s.columns.emplace_back("accel_x_mps2", total);
+  const BlockData data = cut_to_blocks({s.record()});
+  const auto rows = static_cast<Eigen::Index>(data.grid.size());
+  Eigen::VectorXd truth(rows);
+  for (Eigen::Index b = 0; b < rows; ++b) truth[b] = power[static_cast<std::size_t>(b) * data.grid.fine];
+  const auto left_by = [&](const std::vector<Candidate>& effects) {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(rows, 1 + static_cast<Eigen::Index>(effects.size()));
+    for (std::size_t i = 0; i < effects.size(); ++i)
+      columns.col(1 + static_cast<Eigen::Index>(i)) = regressors(data, effects[i]).col(0);
+    const Eigen::VectorXd left = truth - columns * columns.colPivHouseholderQr().solve(truth).eval();
+    return left.squaredNorm() / (truth.array() - truth.mean()).matrix().squaredNorm();
+  };
+  double both = 1.0;
+  double alone = 1.0;
+  for (const NaturalPair& pair : natural_pairs(data)) {
+    if (pair.first.form != Form::kBandPower) continue;
+    both = std::min(both, left_by({pair.first, pair.second}));
+    alone = std::min({alone, left_by({pair.first}), left_by({pair.second})});
+  }
+  EXPECT_LT(both, 0.1);
+  EXPECT_GT(alone, 0.3);
+}
+
+// Never the same sample of a swing in the zone.
+double swing(double t) { return 0.02 * std::sin(2.0 * M_PI * t / 37.31); }
+
+TEST(Grammar, SlowRotationThatIsNotSeenIsADeadZone) {
+  constexpr double kHalfWidth = 3e-4;
+  Sensor s(33);
+  s.turn(swing);
+  for (std::size_t i = 0; i < s.time.size(); ++i)
+    if (std::abs(s.reference[i]) < kHalfWidth) s.rate[i] -= s.reference[i];
+  const Diagnosis found = diagnose({s.record()}, {});
+  ASSERT_EQ(found.effects.size(), 1U) << all_in_words(found);
+  const Effect* zone = effect_of(found, "dead_zone", "reference_rate_radps");
+  expect_coefficient(zone, -1.0);
+  // Rates within 2 % of the edge are passed by once or twice in the record.
+  EXPECT_NEAR(parameter(*zone, "half_width"), kHalfWidth, 0.05 * kHalfWidth);
+  EXPECT_DOUBLE_EQ(found.after.at("rms_10s_radps"), found.before.at("rms_10s_radps"));
+}
+
+// At rest the error is less what the reference's own noise is: as if rotation as small as that were not seen.
+TEST(Grammar, TheNoiseOfAReferenceIsNoDeadZone) {
+  Sensor s(34);
+  s.turn([](double t) { return std::fmod(t, 100.0) < 70.0 ? 0.0 : swing(t); });
+  for (std::size_t i = 0; i < s.time.size(); ++i)
+    s.reference[i] += 0.2 * kWhite * gaussian(static_cast<std::uint32_t>(i), 340);
+  const Diagnosis found = diagnose({s.record()}, {});
+  EXPECT_TRUE(found.effects.empty()) << all_in_words(found);
+}
+
+// One passage is a knock.
+TEST(Grammar, OnePassageMakesNoDeadZone) {
+  Sensor s(35);
+  s.turn(swing);
+  for (std::size_t i = 2000; i < 2060; ++i)
+    if (std::abs(s.reference[i]) < 3e-4) s.rate[i] -= s.reference[i];
+  EXPECT_EQ(effect_of(diagnose({s.record()}, {}), "dead_zone", "reference_rate_radps"), nullptr);
+}
+
+TEST(Grammar, ASoftLimitIsCalledSaturation) {
+  Sensor s(36);
+  s.turn([](double t) { return 0.5 * std::sin(2.0 * M_PI * t / 50.0); });
+  for (std::size_t i = 0; i < s.time.size(); ++i)
+    s.rate[i] += 40.0 * std::tanh(s.reference[i] / 40.0) - s.reference[i];
+  const Diagnosis found = diagnose({s.record()}, {});
+  const Effect* effect = effect_of(found, "cubic", "reference_rate_radps");
+  ASSERT_NE(effect, nullptr) << all_in_words(found);
+  // To first order w^3 / (3 limit^2) is missing: 52 ppm at full scale.
+  EXPECT_NE(effect->meaning.find("reads 52 ppm too small at 28.6 °/s"), std::string::npos) << effect->meaning;
+  EXPECT_NE(effect->meaning.find("saturation"), std::string::npos);
 }
 
 }  // namespace

@@ -162,13 +162,22 @@ TEST(SampleEffects, AreRampsThenLinesWithTheirShareOfTheVariance) {
   line.frequency_hz = 4.0;
   line.cosine = 0.6;
   line.ratio = 40.0;
-  const std::vector<FoundEffect> found = sample_effects({ramp}, {{0, line}}, errors, "z");
-  ASSERT_EQ(found.size(), 2U);
+  FoundZone zone;
+  zone.zone.half_width = 0.2;
+  zone.zone.coefficient = -1.0;
+  zone.channel = "reference_rate_radps";
+  zone.rates = {std::vector<double>(1000)};
+  for (std::size_t i = 0; i < 1000; ++i) zone.rates[0][i] = i % 4 == 0 ? 0.1 : i % 4 == 1 ? -0.1 : 0.5;
+  const std::vector<FoundEffect> found = sample_effects({ramp}, zone, {{0, line}}, errors, "z");
+  ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].effect.form, "lookup");
   EXPECT_NEAR(found[0].variance_explained, 0.25, 1e-12);
-  EXPECT_EQ(found[1].effect.form, "line");
-  EXPECT_NEAR(found[1].variance_explained, 0.18, 1e-12);  // a^2 / 2
-  EXPECT_EQ(found[1].likelihood_ratio, 80.0);
+  EXPECT_EQ(found[1].effect.form, "dead_zone");
+  EXPECT_NEAR(found[1].variance_explained, 0.005, 1e-12);  // half of the samples, 0.1^2
+  EXPECT_EQ(found[1].effect.parameters[0].unit, "rad/s/(rad/s)");
+  EXPECT_EQ(found[2].effect.form, "line");
+  EXPECT_NEAR(found[2].variance_explained, 0.18, 1e-12);  // a^2 / 2
+  EXPECT_EQ(found[2].likelihood_ratio, 80.0);
   for (const FoundEffect& each : found) EXPECT_EQ(each.effect.axis, "z");
 }
 

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A candidate as an effect of the model, and what its form costs.
+#include "filters/diagnosis/regression/candidates.h"
+#include "filters/effects/meaning.h"
+
+namespace ifog {
+namespace {
+
+double complexity_of_form(const Candidate& candidate) {
+  switch (candidate.form) {
+    case Form::kLinear:
+      return 0.0;
+    case Form::kQuadratic:
+    case Form::kAbsolute:
+    case Form::kCosine:
+    case Form::kSine:
+    case Form::kRateRamp:
+      return 2.0;
+    case Form::kSecondRate:
+      return 20.0;  // with its bandwidth free it stands in for most things that change; rarely is it the
+                    // thing
+    case Form::kQuintic:
+      return 5.0;
+    case Form::kSeptic:
+      return 6.0;
+    case Form::kWarmUp:
+      return 8.0;
+    case Form::kProduct:  // a scale factor that depends on a channel, or its nonlinearity that does
+      return candidate.with_form == Form::kLinear ? 4.0 : 8.0;
+    default:
+      return 4.0;
+  }
+}
+
+}  // namespace
+
+double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
+
+Effect effect_of(const BlockData& data, const Candidate& candidate) {
+  Effect effect;
+  effect.form = name_of(candidate.form);
+  if (candidate.channel != Candidate::kNone) {
+    effect.channel = data.channels[candidate.channel].name;
+    effect.reference = reference_of(effect.channel);
+    effect.period = candidate.period;
+  }
+  if (candidate.form == Form::kProduct) {
+    effect.with_form = name_of(candidate.with_form);
+    effect.with_channel = data.channels[candidate.with_channel].name;
+    effect.with_reference = reference_of(effect.with_channel);
+  }
+  if (candidate.form == Form::kLine) {
+    effect.parameters = {{"cosine", 0.0, 0.0, "rad/s"}, {"sine", 0.0, 0.0, "rad/s"}};
+    effect.parameters.push_back({"frequency_hz", candidate.frequency_hz, 0.0, "Hz"});
+  } else {
+    effect.parameters = {{"coefficient", 0.0, 0.0, coefficient_unit(effect)}};
+  }
+  if (candidate.searched()) {
+    effect.parameters.push_back(
+        {std::string(time_constant_name(effect)), candidate.time_constant_s, 0.0, "s"});
+  }
+  if (candidate.second_time_constant_s > 0.0) {
+    effect.parameters.push_back({"second_lag_s", candidate.second_time_constant_s, 0.0, "s"});
+  }
+  if (candidate.form == Form::kStep) effect.parameters.push_back({"time_s", candidate.time_s, 0.0, "s"});
+  if (candidate.first_reading != FirstReading::kError && candidate.form == Form::kLinear)
+    effect.form = name_of(Form::kEarthRate);
+  effect.shown_only = candidate.first_reading == FirstReading::kEarthRateShown;
+  effect.meaning =
+      candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
+  return effect;
+}
+
+}  // namespace ifog

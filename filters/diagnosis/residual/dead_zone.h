@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rate below which the sensor sees none: what it says there is its bias, and the error is the rotation that
+// it missed. A turn passes through in a few samples, so it is sought in the samples themselves, in what the
+// effects of block means leave.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/record/even_error.h"
+
+namespace ifog {
+
+struct DeadZone {
+  double half_width = 0.0;  // rad/s
+  double half_width_error = 0.0;
+  double coefficient = 0.0;  // error over rate inside: -1 where nothing is seen
+  double coefficient_error = 0.0;
+  double ratio = 0.0;  // twice the log-likelihood gained
+  double p_value = 1.0;
+};
+
+// errors: what is left, `after`. rates: true ones on the same grid of sample_s, by record; NaN missing.
+// Nothing where chance, one passage alone, or a scale factor and its nonlinearity would do as well, or where
+// the coefficient is another than -1.
+std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
+                                       const std::vector<std::vector<double>>& rates, double sample_s,
+                                       double significance);
+
+// What the zone makes of a rate, sample by sample; zero where that is missing.
+std::vector<double> hidden_by(const DeadZone& zone, const std::vector<double>& rate);
+
+// Out of the rest of the errors, and of the means over the grid's blocks.
+void take_out(const DeadZone& zone, const std::vector<std::vector<double>>& rates, BlockGrid& grid,
+              std::vector<EvenError>& errors);
+
+}  // namespace ifog
