@@ -185,15 +185,10 @@ double Shape::slope(double value) const noexcept {
   return (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
 }
 
-double Shape::tangent(const Reach& channel) const noexcept {
-  return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
-}
-
 double Shape::at(const Reach& channel) const noexcept {
   if (is_periodic(settings_.form)) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
-  if (settings_.form == Form::kQuadratic) return at(channel.value);
-  return tangent(channel);
+  return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
@@ -209,7 +204,7 @@ double Shape::left_behind(const Reach& channel) const noexcept {
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
   if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {
-    return std::abs(at(channel.value) - tangent(channel)) + std::abs(slope(channel.edge) * channel.beyond);
+    return std::abs(at(channel.value) - at(channel)) + std::abs(slope(channel.edge) * channel.beyond);
   }
   const double tau = std::max(settings_.time_constant_s, 1e-3);
   switch (settings_.form) {

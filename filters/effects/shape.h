@@ -52,7 +52,7 @@ class Shape {
   // Likewise, going on beyond the range as far as a fit may.
   [[nodiscard]] double at(const Reach& channel) const noexcept;
   // By how much the shape may be wrong outside the range, per unit of its coefficient: what it does not
-  // follow, and of a power the difference between it and its tangent, whichever of them it goes on by.
+  // follow, and of a higher power the difference between the power and its tangent.
   [[nodiscard]] double left_behind(const Reach& channel) const noexcept;
   // Likewise by a curvature that the fit could not see, per unit of the coefficient's standard error. Over a
   // range of width S evenly visited a linear term is known to s/(S sqrt(n/12)) and a quadratic one,
@@ -67,7 +67,6 @@ class Shape {
  private:
   [[nodiscard]] double table(double value) const noexcept;
   [[nodiscard]] double slope(double value) const noexcept;
-  [[nodiscard]] double tangent(const Reach& channel) const noexcept;  // at the edge
   [[nodiscard]] bool goes_on() const noexcept { return settings_.form != Form::kLookup; }
 
   ShapeSettings settings_;

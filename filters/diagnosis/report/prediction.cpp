@@ -137,7 +137,7 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     }
     on.gradient.col(at) = column;
     on.total += coefficient * column;
-    const bool tangent = power_of(candidate->form) > 2 || candidate->form == Form::kLookup;
+    const bool tangent = power_of(candidate->form) > 1 || candidate->form == Form::kLookup;
     on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
     if (!candidate->searched()) continue;
     const Columns by_logarithm =

@@ -286,16 +286,6 @@ TEST(Compensator, AHigherPowerGoesOnByItsTangent) {
   EXPECT_NEAR(out.variance_rad2ps2[0], std::pow(1e-8 * (25.0 * 25.0 * 25.0 - tangent), 2), 1e-16);
 }
 
-// A turning point's curvature was measured all over the range; what doubts it is told by the tangent.
-TEST(Compensator, AQuadraticGoesOnAsItIsForOneMoreSpanAndIsThenHeld) {
-  Compensator compensator(fitted_from_10_to_40("quadratic", 1e-8, 0.0), {""});
-  const auto out = step(compensator, 0.0, {60.0});
-  EXPECT_NEAR(out.correction_radps[0], 1e-8 * 35.0 * 35.0, 1e-17);
-  const double tangent = 15.0 * 15.0 + 2.0 * 15.0 * 20.0;
-  EXPECT_NEAR(out.variance_rad2ps2[0], std::pow(1e-8 * (35.0 * 35.0 - tangent), 2), 1e-22);
-  EXPECT_NEAR(step(compensator, 0.0, {90.0}).correction_radps[0], 1e-8 * 45.0 * 45.0, 1e-17);
-}
-
 // An even spread over the zone has a third of the square of its half width; nothing is given back.
 TEST(Compensator, WhatADeadZoneHidesIsInTheVariance) {
   Model model;
