@@ -1,70 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/capture.h"
 
-#include <array>
-#include <charconv>
-#include <cmath>
+#include <algorithm>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "drivers/capture/column_names.h"
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/csv_writer.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
 
-void append(std::string& out, double value) {
-  if (std::isnan(value)) {
-    out += "nan";
-    return;
-  }
-  std::array<char, 40> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  (void)error;  // 40 characters hold any double
-  out.append(text.data(), end);
-}
-
-std::vector<std::string> names_of(const Table& table) {
-  std::vector<std::string> names{"time_s"};
+Capture as_capture(Table table, const std::string& path) {
+  std::vector<std::string> names;
   for (const CaptureColumn& column : table.columns) names.push_back(column.name);
-  return names;
+  const CaptureShape shape = capture_shape(names, path, table);
+  Capture capture;
+  capture.notices = std::move(table.notices);
+  capture.faults = std::move(table.faults);
+  for (std::string_view rest = table.comments; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    capture.comments.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(end + 1);
+  }
+  capture.time_s = std::move(table.time_s);
+  capture.axes = shape.axes;
+  capture.rate_radps.resize(shape.axes.size());
+  capture.reference_rate_radps.resize(shape.axes.size());
+  using Kind = CaptureShape::Place::Kind;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const CaptureShape::Place& place = shape.places[c];
+    if (place.kind == Kind::rate)
+      capture.rate_radps[place.at] = std::move(table.columns[c].values);
+    else if (place.kind == Kind::reference)
+      capture.reference_rate_radps[place.at] = std::move(table.columns[c].values);
+    else
+      capture.channels.push_back(std::move(table.columns[c]));
+  }
+  return capture;
 }
 
 }  // namespace
 
-Capture read_capture(const std::string& path) { return parse_capture(read_text_file(path), path); }
-
-Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  Table table = parse_table(text, path, layout);
-  Capture capture;
-  capture.notices = std::move(table.notices);
-  capture.faults = std::move(table.faults);
-  capture.comments = std::move(table.comments);
-  capture.time_s = std::move(table.time_s);
+CaptureShape capture_shape(const std::vector<std::string>& names, const std::string& path,
+                           const RowNotes& notes) {
+  CaptureShape shape;
   std::string axis;
-  for (const CaptureColumn& column : table.columns)
-    if (axis_of(column.name, "rate", axis)) capture.axes.push_back(axis);
-  if (capture.axes.empty())
-    refuse_header(path, table.header_line, "no rate column, expected 'rate_radps' or 'rate_x_radps', …",
-                  names_of(table));
-  capture.rate_radps.resize(capture.axes.size());
-  capture.reference_rate_radps.resize(capture.axes.size());
+  for (const std::string& name : names)
+    if (axis_of(name, "rate", axis)) shape.axes.push_back(axis);
+  if (shape.axes.empty()) {
+    std::vector<std::string> all{"time_s"};
+    all.insert(all.end(), names.begin(), names.end());
+    refuse_header(path, notes.header_line, "no rate column, expected 'rate_radps' or 'rate_x_radps', …", all);
+  }
   const auto index_of = [&](const std::string& name) {
-    for (std::size_t i = 0; i < capture.axes.size(); ++i)
-      if (capture.axes[i] == name) return i;
-    fail_at(path, table.header_line,
+    for (std::size_t i = 0; i < shape.axes.size(); ++i)
+      if (shape.axes[i] == name) return i;
+    fail_at(path, notes.header_line,
             "reference column of axis " + in_quotes(name) + " has no rate column beside it");
   };
-  for (CaptureColumn& column : table.columns) {
-    if (axis_of(column.name, "rate", axis))
-      capture.rate_radps[index_of(axis)] = std::move(column.values);
-    else if (axis_of(column.name, "reference_rate", axis))
-      capture.reference_rate_radps[index_of(axis)] = std::move(column.values);
+  using Kind = CaptureShape::Place::Kind;
+  for (const std::string& name : names) {
+    if (axis_of(name, "rate", axis))
+      shape.places.push_back({Kind::rate, index_of(axis)});
+    else if (axis_of(name, "reference_rate", axis))
+      shape.places.push_back({Kind::reference, index_of(axis)});
     else
-      capture.channels.push_back(std::move(column));
+      shape.places.push_back({Kind::channel, shape.channels++});
   }
-  return capture;
+  return shape;
+}
+
+Capture read_capture(const std::string& path) {
+  InputFile file(path);
+  return read_capture(file);
+}
+
+Capture read_capture(InputFile& file, const CsvLayout& layout) {
+  return as_capture(read_table(file, layout), file.path());
+}
+
+Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout) {
+  return as_capture(parse_table(text, path, layout), path);
 }
 
 void write_capture(const Capture& capture, const std::string& path) {
@@ -80,19 +99,19 @@ void write_capture(const Capture& capture, const std::string& path) {
       columns.emplace_back(named("reference_rate", capture.axes[i]), &capture.reference_rate_radps[i]);
   for (const CaptureColumn& channel : capture.channels) columns.emplace_back(channel.name, &channel.values);
 
-  std::string out;
-  out.reserve(capture.size() * columns.size() * 16 + 256);
-  for (const std::string& comment : capture.comments) out += "# " + comment + "\n";
-  for (std::size_t c = 0; c < columns.size(); ++c) out += (c == 0 ? "" : ",") + columns[c].first;
-  out += '\n';
-  for (std::size_t row = 0; row < capture.size(); ++row) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (c != 0) out += ',';
-      append(out, (*columns[c].second)[row]);
-    }
-    out += '\n';
+  std::vector<std::string> names;
+  for (const auto& column : columns) names.push_back(column.first);
+  std::string comments;
+  for (const std::string& comment : capture.comments) comments += comment + '\n';
+  CsvWriter file(path, comments, names);
+  constexpr std::size_t kRows = std::size_t{1} << 14U;
+  std::vector<std::span<const double>> piece(columns.size());
+  for (std::size_t row = 0; row < capture.size(); row += kRows) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      piece[c] = std::span(*columns[c].second).subspan(row, std::min(kRows, capture.size() - row));
+    file.rows(piece);
   }
-  write_text_file(path, out);
+  file.finish();
 }
 
 }  // namespace ifog

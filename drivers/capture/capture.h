@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "drivers/capture/csv_layout.h"
+#include "drivers/capture/input_file.h"
+#include "drivers/capture/row_sink.h"
 
 namespace ifog {
 
@@ -35,33 +37,38 @@ struct Capture {
 
 // The columns as they stand in the file, whatever they are called; `ifog denoise` writes such a file without
 // a rate.
-struct Table {
-  std::vector<std::string> comments;
+struct Table : RowNotes {
   std::vector<double> time_s;
   std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
-  std::size_t header_line = 0;         // 0: not read from a text
-  std::vector<std::size_t> skipped;    // for each comment or blank line behind the header, the rows before it
-  std::vector<std::string> notices;    // of the reading: what may be meant otherwise
-  std::vector<std::string>
-      faults;  // cells that no sensor can have measured, taken for missing: one line a column
 };
-
-// Refuses what read_capture refuses, but needs no rate column.
-Table read_table(const std::string& path);
-
-// The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
-std::size_t line_of_row(const Table& table, std::size_t row);
 
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
 // Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line
 // with another number of cells, a .gz that ends early, a column of which more than one cell in a hundred says
 // what no sensor measures. Fewer such cells are missing, see measurable.h, and told in `faults`.
+// `layout` says what a file means that is no capture by its header; where a header is nearly one, the message
+// has the options to type.
 Capture read_capture(const std::string& path);
+Capture read_capture(InputFile& file, const CsvLayout& layout = {});
 
-// The same of a text already at hand; `path` stands for the file in messages. `layout` says what a file means
-// that is no capture by its header; where a header is nearly one, the message has the options to type.
+// The same of a text already at hand; `path` stands for the file in messages. A table needs no rate column.
+Table read_table(InputFile& file, const CsvLayout& layout = {});
 Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {});
+
+// What the columns of these names are to a capture.
+struct CaptureShape {
+  struct Place {
+    enum class Kind { rate, reference, channel } kind;
+    std::size_t at;  // axis, or channel
+  };
+  std::vector<std::string> axes;
+  std::vector<Place> places;  // by column
+  std::size_t channels = 0;
+};
+// notes: for messages. Throws std::runtime_error with one line: no rate, a reference without its rate.
+CaptureShape capture_shape(const std::vector<std::string>& names, const std::string& path,
+                           const RowNotes& notes);
 
 // Shortest text that reads back as the same double. Writes beside the target, fsyncs, renames.
 void write_capture(const Capture& capture, const std::string& path);

@@ -77,17 +77,17 @@ void CaptureBuilder::begin_anew(const ifog_sample& sample) {
   const double rate_hz = description_.nominal_rate_hz;
   const double least_s = rate_hz > 0.0 ? 1.0 / rate_hz : 1e-6;
   const bool known = sample.arrival_ns != 0 && last_.arrival_ns != 0;
-  offset_s_ += capture_.time_s.back() + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
+  offset_s_ += last_s_ + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
   last_.valid_axes = 0;  // no difference of angles over it
 }
 
 void CaptureBuilder::refuse(double now) const {
-  throw std::runtime_error(
-      "sample " + std::to_string(capture_.size() + 1) + ": its time is " + std::to_string(now) + " s by " +
-      (clock_ == Clock::device    ? "the device's clock"
-       : clock_ == Clock::counter ? "its counter"
-                                  : "its arrival") +
-      ", expected more than the " + std::to_string(capture_.time_s.back()) + " s of the sample before");
+  throw std::runtime_error("sample " + std::to_string(taken_ + capture_.size() + 1) + ": its time is " +
+                           std::to_string(now) + " s by " +
+                           (clock_ == Clock::device    ? "the device's clock"
+                            : clock_ == Clock::counter ? "its counter"
+                                                       : "its arrival") +
+                           ", expected more than the " + std::to_string(last_s_) + " s of the sample before");
 }
 
 void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double period) {
@@ -109,7 +109,7 @@ void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double
 }
 
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
-  const bool first = capture_.time_s.empty();
+  const bool first = taken_ + capture_.size() == 0;
   if (first) choose_clock(sample);
   bool anew = broken_ && !first;
   const std::uint64_t steps = first || anew ? 0 : steps_to(sample);
@@ -118,18 +118,19 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   if (anew) begin_anew(sample);
   broken_ = false;
   double now = seconds(sample);
-  if (!first && now <= capture_.time_s.back()) {
+  if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
-    if (now == capture_.time_s.back()) return;
+    if (now == last_s_) return;
     anew = true;
     begin_anew(sample);
     now = seconds(sample);
   }
-  const double elapsed = first ? kMissing : now - capture_.time_s.back();
+  const double elapsed = first ? kMissing : now - last_s_;
   double period = elapsed / static_cast<double>(std::max<std::uint64_t>(steps, 1));
   if ((first || anew) && description_.nominal_rate_hz > 0.0) period = 1.0 / description_.nominal_rate_hz;
 
   capture_.time_s.push_back(now);
+  last_s_ = now;
   add_rates(sample, elapsed, period);
   for (std::uint32_t i = 0; i < description_.environments; ++i)
     capture_.channels[i].values.push_back((sample.environment_fresh & 1U << i) != 0 ? sample.environment[i]
@@ -139,6 +140,22 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
     capture_.channels[i].values.push_back(o < outside.size() ? outside[o] : kMissing);
   }
   last_ = sample;
+}
+
+std::vector<std::string> CaptureBuilder::names() const {
+  std::vector<std::string> out;
+  for (const std::string& axis : capture_.axes)
+    out.push_back(axis.empty() ? "rate_radps" : "rate_" + axis + "_radps");
+  for (const CaptureColumn& channel : capture_.channels) out.push_back(channel.name);
+  return out;
+}
+
+void CaptureBuilder::next_rows(RowBlock& rows) {
+  taken_ += capture_.size();
+  rows.columns.clear();
+  rows.time_s = std::exchange(capture_.time_s, {});
+  for (std::vector<double>& rate : capture_.rate_radps) rows.columns.push_back(std::exchange(rate, {}));
+  for (CaptureColumn& channel : capture_.channels) rows.columns.push_back(std::exchange(channel.values, {}));
 }
 
 Capture CaptureBuilder::finish() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "drivers/capture/row_sink.h"
 #include "drivers/ifog/driver.h"
 
 namespace ifog {
@@ -37,6 +38,12 @@ class CaptureBuilder {
   // else neither can be told from a wrong driver, and is refused.
   void allow_restarts() { restarts_ = true; }
 
+  // The columns in the order of next_rows(): rates by axis, then channels.
+  [[nodiscard]] std::vector<std::string> names() const;
+  // Rows that wait to be taken away, and their taking: for who does not want the whole at the end.
+  [[nodiscard]] std::size_t waiting() const { return capture_.size(); }
+  void next_rows(RowBlock& rows);
+
   // Leaves out axes and channels that never had a value. Throws std::runtime_error if nothing is left.
   Capture finish();
 
@@ -58,8 +65,36 @@ class CaptureBuilder {
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
   std::size_t missing_ = 0;
+  std::size_t taken_ = 0;  // rows, by next_rows()
+  double last_s_ = 0.0;    // time of the last row
   bool broken_ = false, restarts_ = false;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
+};
+
+// Hands what a builder has made to a sink, some thousand rows at a time.
+class BuiltRows {
+ public:
+  BuiltRows(CaptureBuilder& builder, RowSink& sink) : builder_(builder), sink_(sink) {
+    sink_.begin(builder.names());
+  }
+  // After each sample.
+  void added() {
+    if (builder_.waiting() >= kRows) hand_on();
+  }
+  void finish() {
+    if (builder_.waiting() > 0) hand_on();
+  }
+
+ private:
+  static constexpr std::size_t kRows = std::size_t{1} << 14U;
+  void hand_on() {
+    builder_.next_rows(rows_);
+    sink_.take(rows_);
+  }
+
+  CaptureBuilder& builder_;
+  RowSink& sink_;
+  RowBlock rows_;
 };
 
 }  // namespace ifog

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/ifog/quoted.h"
 
@@ -45,22 +46,26 @@ double sample_rate_hz(const Capture& capture) {
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = capture.time_s[i + 1] - capture.time_s[i];
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  // Decimal times are not evenly spaced in binary: 1 / (0.015 − 0.010) is not quite 200.
-  return std::strtod(seven_digits(1.0 / *middle).c_str(), nullptr);
+  return sample_rate_hz(*middle);
 }
 
-DriverSettings with_rate_of(const Capture& capture, const Plugin& plugin, DriverSettings settings) {
+double sample_rate_hz(double median_step_s) {
+  // Decimal times are not evenly spaced in binary: 1 / (0.015 − 0.010) is not quite 200.
+  return std::strtod(seven_digits(1.0 / median_step_s).c_str(), nullptr);
+}
+
+DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings settings) {
   const ifog_option* option = plugin.table().options;
   while (option->key != nullptr && std::string(option->key) != "rate_hz") ++option;
-  if (option->key != nullptr && capture.size() > 1)
-    settings.try_emplace("rate_hz", seven_digits(sample_rate_hz(capture)));
+  if (option->key != nullptr && rate_hz != 0.0) settings.try_emplace("rate_hz", seven_digits(rate_hz));
   return settings;
 }
 
-CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, const std::string& axis)
+CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, double rate_hz,
+                               const std::string& axis)
     : capture_(capture), driver_(driver), angle_(capture.axes.size(), 0.0) {
   const ifog_description& d = driver.description();
-  rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : sample_rate_hz(capture);
+  rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
   if (capture.axes.size() == 1) {
     const std::string& own = capture.axes.front();
     const bool by_own_name = axis.empty() && !own.empty() && d.axes > 1;
@@ -97,14 +102,17 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, c
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }
 
+void CaptureEncoder::go_on() { rows_before_ += std::exchange(row_, 0); }
+
 ifog_sample CaptureEncoder::next_sample() {
   const ifog_description& d = driver_.description();
   const double now = capture_.time_s[row_];
-  const double elapsed = row_ == 0 ? 1.0 / rate_hz_ : now - capture_.time_s[row_ - 1];
+  const bool first = rows_done() == 0;
+  const double elapsed = first ? 1.0 / rate_hz_ : now - before_s_;
   const double periods = elapsed * rate_hz_;
   // Below one and a half it is jitter of the recorded times, not a missing row.
   const std::uint64_t steps = periods < 1.5 ? 1 : static_cast<std::uint64_t>(std::llround(periods));
-  if (row_ != 0) count_ += steps;
+  if (!first) count_ += steps;
 
   sample_.arrival_ns = std::llround(now * 1e9);
   sample_.device_time_ns = sample_.arrival_ns;
@@ -162,7 +170,7 @@ bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const 
       refuse(error);
     }
   }
-  ++row_;
+  before_s_ = capture_.time_s[row_++];
   return true;
 }
 

@@ -15,9 +15,12 @@ namespace ifog {
 // Samples a second: one over the median time step, to seven digits. 0 for a single row.
 double sample_rate_hz(const Capture& capture);
 
-// The driver's settings with `rate_hz` set from the capture, where the driver has that option and nobody set
-// it.
-DriverSettings with_rate_of(const Capture& capture, const Plugin& plugin, DriverSettings settings);
+// The same of a median step that is known.
+double sample_rate_hz(double median_step_s);
+
+// The driver's settings with `rate_hz` set from the capture's, where that is known (not 0), the driver has
+// that option and nobody set it.
+DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings settings);
 
 // Rows become samples in order. The rate is turned into the driver's kind: a delta angle over the sample
 // period, or an angle that sums up and wraps. The counter counts sample periods, so that missing rows are a
@@ -26,7 +29,12 @@ class CaptureEncoder {
  public:
   // A capture of one axis goes to the driver's axis `axis`, or to its first when that is empty; several axes
   // go by their names. Throws std::runtime_error: an axis the driver does not have. Keeps references to both.
-  CaptureEncoder(const Capture& capture, DriverInstance& driver, const std::string& axis = {});
+  // rate_hz: sample_rate_hz() of the capture, or of all that it is to be a piece of.
+  CaptureEncoder(const Capture& capture, DriverInstance& driver, double rate_hz,
+                 const std::string& axis = {});
+
+  // The capture's columns hold the rows that follow now.
+  void go_on();
 
   // One line for each column that the format has no place for, and for each that it has but the capture
   // lacks.
@@ -37,7 +45,7 @@ class CaptureEncoder {
   bool next(std::vector<std::uint8_t>& bytes);
   bool next(std::vector<ifog_can_frame>& frames);
 
-  [[nodiscard]] std::size_t rows_done() const { return row_; }
+  [[nodiscard]] std::size_t rows_done() const { return rows_before_ + row_; }
   // Rows without a rate, in a format that cannot say so: sent as nothing, which is a gap in the counter.
   [[nodiscard]] std::size_t rows_left_out() const { return left_out_; }
 
@@ -54,6 +62,8 @@ class CaptureEncoder {
   std::vector<double> angle_;  // by the capture's axis
   ifog_sample sample_{};
   std::size_t row_ = 0;
+  std::size_t rows_before_ = 0;  // in pieces before this one
+  double before_s_ = 0.0;        // time of the row before
   std::size_t left_out_ = 0;
   std::uint64_t count_ = 0;
   double rate_hz_ = 0.0;

@@ -53,39 +53,52 @@ UnitConversion conversion_of(const CsvColumn& column) {
   return convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
 }
 
-void as_chosen(Table& table, const CsvLayout& layout, const std::string& path) {
+void convert(RowBlock& rows, const CsvLayout& layout, const RowNotes& notes, const std::string& path,
+             std::size_t first_row, double time_before) {
   if (layout.time)
-    for (std::size_t row = 0; row < table.time_s.size(); ++row) {
-      table.time_s[row] *= layout.time->unit_s;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      double& now = rows.time_s[row];
+      now *= layout.time->unit_s;
       // Two numbers that differ by their last digit may be one in seconds.
-      if (row > 0 && table.time_s[row] <= table.time_s[row - 1])
-        fail_at(path, line_of_row(table, row),
+      if (first_row + row > 0 && now <= time_before)
+        fail_at(path, notes.line_of_row(first_row + row),
                 printable(layout.time->header) + " is the same as in the row before, once it is in seconds");
+      time_before = now;
     }
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const UnitConversion conversion = conversion_of(layout.columns[i]);
+    for (double& value : rows.columns[i]) value = value * conversion.scale + conversion.offset;
+  }
+}
+
+void as_rates(RowBlock& all, const CsvLayout& layout, const RowNotes& notes, const std::string& path) {
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const CsvColumn& column = layout.columns[i];
-    const UnitConversion conversion = conversion_of(column);
-    std::vector<double>& values = table.columns[i].values;
-    for (double& value : values) value = value * conversion.scale + conversion.offset;
     if (!column.is_angle()) continue;
-    differentiate(values, table.time_s);
+    std::vector<double>& values = all.columns[i];
+    differentiate(values, all.time_s);
     // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)
-        fail_at(path, line_of_row(table, row),
+        fail_at(path, notes.line_of_row(row),
                 printable(column.header) + " has turned at " + shortest(values[row]) +
                     " rad/s since the row before, which no sensor measures");
   }
 }
 
-void notice_milliseconds(Table& table, const std::string& path) {
+void WholeTimes::take(const std::vector<double>& time_s) {
+  if (rows == 0) first_s = time_s.front();
+  rows += time_s.size();
+  last_s = time_s.back();
+  whole = whole && std::all_of(time_s.begin(), time_s.end(), [](double t) { return t == std::floor(t); });
+}
+
+std::optional<std::string> WholeTimes::notice(const std::string& path) const {
   constexpr std::size_t kFew = 10;
-  const std::vector<double>& time = table.time_s;
-  if (time.size() < kFew) return;
-  if (!std::all_of(time.begin(), time.end(), [](double t) { return t == std::floor(t); })) return;
-  const double step = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
-  table.notices.push_back(path + ": time_s is whole numbers, " + shortest(step) +
-                          " s apart in the mean; if these are milliseconds: --time time_s:ms");
+  if (rows < kFew || !whole) return std::nullopt;
+  const double step = (last_s - first_s) / static_cast<double>(rows - 1);
+  return path + ": time_s is whole numbers, " + shortest(step) +
+         " s apart in the mean; if these are milliseconds: --time time_s:ms";
 }
 
 }  // namespace ifog

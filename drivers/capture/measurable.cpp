@@ -56,19 +56,6 @@ std::string_view stated_unit(std::string_view column) {
   return {};
 }
 
-constexpr double kSlowest_s = 0.1;    // between samples
-constexpr double kStandstill = 0.01;  // of the leap, the most beside it
-
-double median_step(const std::vector<double>& time_s) {
-  constexpr std::size_t kEnough = 2001;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < std::min(time_s.size(), kEnough); ++i)
-    steps.push_back(time_s[i] - time_s[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 }  // namespace
 
 Measurable measurable(const std::string& column) {
@@ -85,22 +72,6 @@ Measurable measurable(const std::string& column) {
     return {converted(known.range.least), converted(known.range.most)};
   }
   return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
-}
-
-std::vector<std::size_t> take_out_leaps(const std::vector<double>& time_s, std::vector<double>& rate_radps) {
-  std::vector<std::size_t> rows;
-  if (time_s.size() < 3) return rows;
-  const double step_s = median_step(time_s);
-  if (step_s > kSlowest_s) return rows;
-  const double half_a_turn = std::numbers::pi / step_s;
-  for (std::size_t i = 1; i + 1 < rate_radps.size(); ++i) {
-    const double here = std::abs(rate_radps[i]);
-    if (!(here > half_a_turn)) continue;
-    const double beside = std::max(std::abs(rate_radps[i - 1]), std::abs(rate_radps[i + 1]));
-    if (beside < kStandstill * here) rows.push_back(i);
-  }
-  for (const std::size_t row : rows) rate_radps[row] = std::numeric_limits<double>::quiet_NaN();
-  return rows;
 }
 
 }  // namespace ifog

@@ -5,7 +5,6 @@
 
 #include <limits>
 #include <string>
-#include <vector>
 
 namespace ifog {
 
@@ -19,10 +18,5 @@ struct Measurable {
 // In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
 // can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.
 Measurable measurable(const std::string& column);
-
-// Rates at an even clock that say more than half a turn within one sample, from standstill to standstill:
-// missing (NaN) from here on. Slower than ten samples a second nothing is, for a table of dwells may well do
-// so. Returns the rows.
-std::vector<std::size_t> take_out_leaps(const std::vector<double>& time_s, std::vector<double>& rate_radps);
 
 }  // namespace ifog

@@ -9,6 +9,8 @@
 
 namespace ifog {
 
+constexpr std::size_t kPiece = std::size_t{1} << 20U;  // bytes
+
 FileKind file_kind(const std::string& path) {
   std::string_view name(path);
   if (name.ends_with(".gz")) name.remove_suffix(3);
@@ -51,8 +53,9 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     counts.cut_off = log.cut_off;
     for (const ifog_can_frame& frame : log.frames) driver.decode_can(frame, take);
   } else {
-    const std::string bytes = file.bytes();
-    driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, 0, take);
+    std::vector<char> bytes(kPiece);
+    while (const std::size_t n = file.read(bytes.data(), bytes.size()))
+      driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), n}, 0, take);
   }
   // What the driver still waited for will never come.
   const std::uint64_t before = driver.counters().bytes_skipped;

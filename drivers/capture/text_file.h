@@ -2,16 +2,42 @@
 // Whole files, plain or gzip by their first bytes. Reading gives the content; writing is all or nothing.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "drivers/capture/input_file.h"
+#include "drivers/capture/output_file.h"
+
+struct z_stream_s;  // zlib's
 
 namespace ifog {
 
 // InputFile's text() and bytes(); "-" is standard input.
 std::string read_text_file(const std::string& path);
 std::string read_bytes_file(const std::string& path);
+
+// A text that is written while it is made. Compresses when the name ends in .gz; the bytes are the same
+// however the text is cut. "-" is standard output. Throws as OutputFile does.
+class TextOutput {
+ public:
+  explicit TextOutput(const std::string& path);
+  ~TextOutput();
+  TextOutput(const TextOutput&) = delete;
+  TextOutput& operator=(const TextOutput&) = delete;
+
+  void write(std::string_view text);
+  // Without it a regular file stays as it was.
+  void finish();
+
+ private:
+  void deflate(std::string_view text, bool last);
+
+  OutputFile file_;
+  std::unique_ptr<z_stream_s> stream_;  // null: as it is
+  std::vector<unsigned char> block_;
+};
 
 // Compresses when the name ends in .gz; "-" is standard output. Throws as OutputFile does.
 void write_text_file(const std::string& path, std::string_view text);

@@ -16,6 +16,10 @@ constexpr int kFinest = 6;
 
 std::size_t angles_of(int level) { return std::size_t{1} << static_cast<unsigned>(level); }
 
+double mean_of(std::span<const double> part) {
+  return std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(part.size());
+}
+
 // Generalised covariance of the rate samples, for one unit of N, B and K.
 TermVariances covariance_of_rate(std::size_t lag) {
   const auto t = static_cast<double>(lag);
@@ -61,32 +65,32 @@ std::vector<LevelCovariance> all_levels() {
 
 }  // namespace
 
-AngleMeans::AngleMeans(std::span<const double> angle) : angle_(angle) {
-  stored_.reserve(angle.size() / angles_of(kStored));
-  for (std::size_t i = 0; (i + 1) * angles_of(kStored) <= angle.size(); ++i) {
-    const auto part = angle.subspan(i * angles_of(kStored), angles_of(kStored));
-    stored_.push_back(std::accumulate(part.begin(), part.end(), 0.0) /
-                      static_cast<double>(angles_of(kStored)));
-  }
+AngleMeans::AngleMeans(const SeriesView& angle, std::size_t first, std::size_t angles)
+    : angle_(angle), first_(first), angles_(angles) {
+  static_assert(kSeriesPiece % (std::size_t{1} << kStored) == 0);
+  constexpr std::size_t kMany = std::size_t{1} << kStored;
+  stored_.reserve(angles / kMany);
+  for_each_piece(angle, first, first + angles, [&](std::span<const double> values, std::size_t) {
+    for (std::size_t i = 0; i + kMany <= values.size(); i += kMany)
+      stored_.push_back(mean_of(values.subspan(i, kMany)));
+  });
 }
 
 std::size_t AngleMeans::rates(int level) const {
-  const std::size_t means = angle_.size() / angles_of(level);
+  const std::size_t means = angles_ / angles_of(level);
   return means > 0 ? means - 1 : 0;
 }
 
-double AngleMeans::mean(int level, std::size_t i) const {
-  const std::span<const double> from = level < kStored ? angle_ : std::span<const double>(stored_);
-  const std::size_t many = angles_of(level < kStored ? level : level - kStored);
-  const auto part = from.subspan(i * many, many);
-  return std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(many);
-}
-
 void AngleMeans::rates(int level, std::size_t begin, std::span<double> rate) const {
+  const bool fine = level < kStored;
+  const std::size_t many = angles_of(fine ? level : level - kStored), count = (rate.size() + 1) * many;
+  std::vector<double> room;
+  const std::span<const double> from = fine ? angle_.piece(first_ + begin * many, count, room)
+                                            : std::span(stored_).subspan(begin * many, count);
   const auto step = static_cast<double>(angles_of(level));
-  double before = mean(level, begin);
+  double before = mean_of(from.subspan(0, many));
   for (std::size_t i = 0; i < rate.size(); ++i) {
-    const double now = mean(level, begin + i + 1);
+    const double now = mean_of(from.subspan((i + 1) * many, many));
     rate[i] = (now - before) / step;
     before = now;
   }

@@ -12,22 +12,23 @@
 #include <vector>
 
 #include "filters/allan/power_law.h"
+#include "filters/series/series_view.h"
 
 namespace ifog {
 
 class AngleMeans {
  public:
-  // The angles of one stretch, which have to outlive this. Takes a thirty-second of their memory.
-  explicit AngleMeans(std::span<const double> angle);
+  // `angles` of them from `first` on: those of one stretch, which have to outlive this. Takes a thirty-second
+  // of their memory.
+  AngleMeans(const SeriesView& angle, std::size_t first, std::size_t angles);
 
   [[nodiscard]] std::size_t rates(int level) const;
   // rate[i] for i from `begin`, as many as fit; rad/s. Level 0: the samples themselves.
   void rates(int level, std::size_t begin, std::span<double> rate) const;
 
  private:
-  [[nodiscard]] double mean(int level, std::size_t i) const;
-
-  std::span<const double> angle_;
+  SeriesView angle_;
+  std::size_t first_, angles_;
   std::vector<double> stored_;
 };
 

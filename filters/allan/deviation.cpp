@@ -5,21 +5,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
+
+#include "filters/allan/two_sum.h"
+#include "filters/threads/share_out.h"
 
 namespace ifog {
 namespace {
 
-// a + b exactly, as a rounded sum and what the rounding left (Knuth, TAOCP vol. 2, 4.2.2 theorem B).
-inline void two_sum(double a, double b, double& sum, double& rest) {
-  sum = a + b;
-  const double t = sum - a;
-  rest = (a - (sum - t)) + (b - t);
-}
-
 // Places handled at a time: their angles stay in the second-level cache while every m passes over them, so
 // that of the three streams of a long τ only two come from memory.
-constexpr std::size_t kBlock = std::size_t{1} << 14U;
+constexpr std::size_t kBlock = kSeriesPiece;
+constexpr std::size_t kWorthThreads = std::size_t{1} << 22U;  // squares
 
 // Eight independent sums let the compiler use vector registers without changing the order of any addition.
 template <typename Difference>
@@ -39,60 +37,80 @@ double sum_of_squares(std::size_t n, Difference difference) {
   return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-double allan_block(const double* x, std::size_t m, std::size_t n) {
-  const double* x1 = x + m;
-  const double* x2 = x1 + m;
-  return sum_of_squares(n, [=](std::size_t i) { return (x2[i] - x1[i]) - (x1[i] - x[i]); });
+// Where a block's angles are: of its places, and one, two and three m later.
+using Streams = std::array<const double*, 4>;
+
+double allan_block(const Streams& x, std::size_t n) {
+  const double *x0 = x[0], *x1 = x[1], *x2 = x[2];
+  return sum_of_squares(n, [=](std::size_t i) { return (x2[i] - x1[i]) - (x1[i] - x0[i]); });
 }
 
-double hadamard_block(const double* x, std::size_t m, std::size_t n) {
-  const double* x1 = x + m;
-  const double* x2 = x1 + m;
-  const double* x3 = x2 + m;
-  return sum_of_squares(n, [=](std::size_t i) { return (x3[i] - x[i]) - 3.0 * (x2[i] - x1[i]); });
+double hadamard_block(const Streams& x, std::size_t n) {
+  const double *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
+  return sum_of_squares(n, [=](std::size_t i) { return (x3[i] - x0[i]) - 3.0 * (x2[i] - x1[i]); });
 }
 
-// The sum over m neighbouring second differences starts anew in every block, so that rounding cannot pile up
-// along the record. x needs n + 3m − 1 angles.
-double modified_block(const double* x, std::size_t m, std::size_t n) {
-  const auto z = [=](std::size_t i) { return (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]); };
-  double high = 0.0, low = 0.0;
-  const auto add = [&](double value) {
+// The mean of m neighbouring second differences, which moves along; its sum is carried in two doubles.
+class MovingMean {
+ public:
+  explicit MovingMean(std::size_t m) : m_(static_cast<double>(m)) {}
+  void add(double value) {
     double rest = 0.0;
-    two_sum(high, value, high, rest);
-    low += rest;
-  };
-  for (std::size_t i = 0; i < m; ++i) add(z(i));
+    two_sum(high_, value, high_, rest);
+    low_ += rest;
+  }
+  [[nodiscard]] double mean() const { return (high_ + low_) / m_; }
+
+ private:
+  double high_ = 0.0, low_ = 0.0, m_;
+};
+
+double second_difference(const Streams& x, std::size_t i, std::size_t from) {
+  return (x[from + 2][i] - x[from + 1][i]) - (x[from + 1][i] - x[from][i]);
+}
+
+// The sum starts anew in every block, so that rounding cannot pile up along the record. x needs n + 3m − 1
+// angles.
+double modified_block(const double* x, std::size_t m, std::size_t n) {
+  const Streams at{x, x + m, x + 2 * m, x + 3 * m};
+  MovingMean mean(m);
+  for (std::size_t i = 0; i < m; ++i) mean.add(second_difference(at, i, 0));
   double squares = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double mean = (high + low) / static_cast<double>(m);
-    squares += mean * mean;
+    squares += mean.mean() * mean.mean();
     if (i + 1 < n) {
-      add(-z(i));
-      add(z(i + m));
+      mean.add(-second_difference(at, i, 0));
+      mean.add(second_difference(at, i, 1));
     }
   }
   return squares;
 }
 
 struct Kind {
-  std::size_t span;  // angles a difference reaches over, in m
-  std::size_t less;  // subtracted from the number of places: the modified one reaches one angle less
-  double norm;       // variance = mean square / (norm·m²)
-  double (*block)(const double*, std::size_t, std::size_t);
+  Deviation which;
+  std::size_t span;     // angles a difference reaches over, in m
+  std::size_t less;     // subtracted from the number of places: the modified one reaches one angle less
+  double norm;          // variance = mean square / (norm·m²)
   std::size_t block_m;  // places a block in units of m, for the running sum of the modified one
+
+  [[nodiscard]] double block(const double* x, std::size_t m, std::size_t n) const {
+    const Streams at{x, x + m, x + 2 * m, x + (span > 2 ? 3 : 2) * m};
+    return which == Deviation::kModified   ? modified_block(x, m, n)
+           : which == Deviation::kHadamard ? hadamard_block(at, n)
+                                           : allan_block(at, n);
+  }
 };
 
 Kind kind_of(Deviation kind) {
   switch (kind) {
     case Deviation::kModified:
-      return {3, 1, 2.0, modified_block, 4};
+      return {kind, 3, 1, 2.0, 4};
     case Deviation::kHadamard:
-      return {3, 0, 6.0, hadamard_block, 0};
+      return {kind, 3, 0, 6.0, 0};
     case Deviation::kAllan:
       break;
   }
-  return {2, 0, 2.0, allan_block, 0};
+  return {kind, 2, 0, 2.0, 0};
 }
 
 std::size_t places(const Kind& kind, std::size_t angles, std::size_t m) {
@@ -100,110 +118,155 @@ std::size_t places(const Kind& kind, std::size_t angles, std::size_t m) {
   return angles > reach ? angles - reach : 0;
 }
 
-// A block of places of one part, with all m that have places there.
-struct Task {
-  std::size_t part, begin, size;
+// A sum of many squares, rounded once.
+class ExactSum {
+ public:
+  void add(double value) {
+    double error = 0.0;
+    two_sum(sum_, value, sum_, error);
+    rest_ += error;
+  }
+  [[nodiscard]] double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0.0, rest_ = 0.0;
 };
+
+// Angles of a part that are side by side in memory, moving along it.
+class Window {
+ public:
+  // reach: most that are asked for beyond the first of a place. ahead: read beyond that, so that what stays
+  // is moved seldom.
+  Window(const SeriesView& angle, const AngleSum::Part& part, std::size_t reach)
+      : angle_(angle), part_(part), room_(angle.in_memory().empty() ? reach + ahead(reach) : part.angles) {}
+  static std::size_t ahead(std::size_t reach) { return std::max(64 * kBlock, reach / 4); }
+
+  // From `begin` on; begin never goes back. As many as there is room for, or to the part's end.
+  std::span<const double> from(std::size_t begin) {
+    const std::size_t count = std::min(room_, part_.angles - begin);
+    if (!angle_.in_memory().empty()) return angle_.in_memory().subspan(part_.first + begin, count);
+    if (held_.size() < count) held_.resize(count);
+    const std::size_t kept = end_ > begin ? end_ - begin : 0;
+    if (kept > 0)
+      std::copy(held_.begin() + static_cast<std::ptrdiff_t>(begin - begin_),
+                held_.begin() + static_cast<std::ptrdiff_t>(end_ - begin_), held_.begin());
+    std::vector<double> room;
+    for (std::size_t at = kept; at < count; at += kSeriesPiece) {
+      const auto piece = angle_.piece(part_.first + begin + at, std::min(kSeriesPiece, count - at), room);
+      std::copy(piece.begin(), piece.end(), held_.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    begin_ = begin;
+    end_ = begin + count;
+    return std::span(held_).first(count);
+  }
+
+ private:
+  SeriesView angle_;
+  AngleSum::Part part_;
+  std::size_t room_, begin_ = 0, end_ = 0;
+  std::vector<double> held_;
+};
+
+// All m whose differences fit into the window, part by part. squares: by entry of m.
+void add_together(const AngleSum& sum, const Kind& kind, std::span<const std::size_t> m,
+                  std::vector<ExactSum>& squares) {
+  if (m.empty()) return;
+  const std::size_t longest_m = *std::max_element(m.begin(), m.end());
+  // The modified deviation starts each block with m additions, so its blocks grow with m.
+  const std::size_t block = std::max(kBlock, kind.block_m * longest_m);
+  const std::size_t reach = kind.span * longest_m + block;
+  for (const AngleSum::Part& part : sum.parts()) {
+    Window window(sum.angle(), part, reach);
+    for (std::size_t begin = 0; begin < part.angles;) {
+      const std::span<const double> x = window.from(begin);
+      const bool last = begin + x.size() == part.angles;
+      // Whole blocks, but at the end, of which every difference is in the window.
+      const std::size_t blocks = last ? (x.size() + block - 1) / block : (x.size() - reach) / block + 1;
+      std::vector<double> partial(blocks * m.size());
+      share_out(blocks, x.size() * m.size() > kWorthThreads ? 0 : 1, [&](std::size_t b) {
+        for (std::size_t k = 0; k < m.size(); ++k) {
+          const std::size_t all = places(kind, part.angles, m[k]), at = begin + b * block;
+          if (all > at)
+            partial[b * m.size() + k] = kind.block(x.data() + b * block, m[k], std::min(block, all - at));
+        }
+      });
+      for (std::size_t b = 0; b < blocks; ++b)
+        for (std::size_t k = 0; k < m.size(); ++k) squares[k].add(partial[b * m.size() + k]);
+      begin += blocks * block;
+    }
+  }
+}
+
+// One m by itself: its angles are read as streams m apart.
+double alone(const AngleSum& sum, const Kind& kind, std::size_t m) {
+  ExactSum squares;
+  std::array<std::vector<double>, 4> room;
+  for (const AngleSum::Part& part : sum.parts()) {
+    const SeriesView angle = sum.angle();
+    const std::size_t all = places(kind, part.angles, m);
+    const auto streams = [&](std::size_t begin, std::size_t count, std::size_t ms) {
+      Streams x{};
+      for (std::size_t s = 0; s <= ms; ++s)
+        x[s] = angle.piece(part.first + begin + s * m, count, room[s]).data();
+      return x;
+    };
+    MovingMean mean(m);
+    if (kind.which == Deviation::kModified && all > 0)
+      for (std::size_t begin = 0; begin < m; begin += kBlock) {
+        const std::size_t count = std::min(kBlock, m - begin);
+        const Streams x = streams(begin, count, 2);
+        for (std::size_t i = 0; i < count; ++i) mean.add(second_difference(x, i, 0));
+      }
+    for (std::size_t begin = 0; begin < all; begin += kBlock) {
+      const std::size_t count = std::min(kBlock, all - begin);
+      if (kind.which != Deviation::kModified) {
+        const Streams x = streams(begin, count, kind.span);
+        squares.add(kind.which == Deviation::kHadamard ? hadamard_block(x, count) : allan_block(x, count));
+        continue;
+      }
+      // Behind the last place the mean does not move on.
+      const std::size_t moves = begin + count < all ? count : count - 1;
+      const Streams x = streams(begin, moves, 3);
+      double block = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        block += mean.mean() * mean.mean();
+        if (i == moves) break;
+        mean.add(-second_difference(x, i, 0));
+        mean.add(second_difference(x, i, 1));
+      }
+      squares.add(block);
+    }
+  }
+  return squares.value();
+}
 
 }  // namespace
 
-AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
-  find_mean(rate_radps, stretches);
-  sum_up(rate_radps, stretches);
-}
-
-AngleSum::AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches) {
-  find_mean(rate_radps, stretches);
-  const std::size_t n = rate_radps.size();
-  if (stretches.size() != 1 || stretches[0].size() != n || rate_radps.capacity() == n) {
-    sum_up(rate_radps, stretches);
-    rate_radps = {};
-    return;
-  }
-  angle_ = std::move(rate_radps);
-  parts_.push_back({0, n + 1});
-  angle_.push_back(0.0);
-  double high = 0.0, low = 0.0, error = 0.0, rate = angle_[0];
-  angle_[0] = 0.0;
-  for (std::size_t i = 1; i <= n; ++i) {
-    two_sum(high, rate - mean_, high, error);
-    low += error;
-    rate = std::exchange(angle_[i], high + low);
-  }
-}
-
-void AngleSum::find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
-  std::size_t total = 0;
-  double sum = 0.0, rest = 0.0, error = 0.0;
-  for (const Stretch& s : stretches) {
-    total += s.size();
-    for (std::size_t i = s.begin; i < s.end; ++i) {
-      two_sum(sum, rate_radps[i], sum, error);
-      rest += error;
-    }
-  }
-  mean_ = total > 0 ? (sum + rest) / static_cast<double>(total) : 0.0;
-}
-
-void AngleSum::sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
-  std::size_t total = stretches.size();
-  for (const Stretch& s : stretches) total += s.size();
-  angle_.reserve(total);
-  for (const Stretch& s : stretches) {
-    parts_.push_back({angle_.size(), s.size() + 1});
-    double high = 0.0, low = 0.0, error = 0.0;
-    angle_.push_back(0.0);
-    for (std::size_t i = s.begin; i < s.end; ++i) {
-      // The mean is rounded; what it is off by is a constant, which no second difference sees.
-      two_sum(high, rate_radps[i] - mean_, high, error);
-      low += error;
-      angle_.push_back(high + low);
-    }
-  }
-}
-
-std::size_t AngleSum::longest() const {
-  std::size_t n = 0;
-  for (const Part& part : parts_) n = std::max(n, part.angles - 1);
-  return n;
-}
-
-std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m, Deviation which) {
+std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m, Deviation which,
+                                      std::size_t angles_at_once) {
   const Kind kind = kind_of(which);
-  // The modified deviation starts each block with m additions, so its blocks grow with m.
-  const std::size_t longest_m = m.empty() ? 1 : *std::max_element(m.begin(), m.end());
-  const std::size_t block = std::max(kBlock, kind.block_m * longest_m);
-  std::vector<Task> tasks;
-  for (std::size_t p = 0; p < sum.parts().size(); ++p)
-    for (std::size_t begin = 0; begin < sum.parts()[p].angles; begin += block)
-      tasks.push_back({p, begin, std::min(block, sum.parts()[p].angles - begin)});
-
-  std::vector<double> partial(tasks.size() * m.size());
-  for (std::size_t t = 0; t < tasks.size(); ++t) {
-    const Task& task = tasks[t];
-    const AngleSum::Part& part = sum.parts()[task.part];
-    const double* x = sum.angle().data() + part.first + task.begin;
-    for (std::size_t k = 0; k < m.size(); ++k) {
-      const std::size_t all = places(kind, part.angles, m[k]);
-      if (all <= task.begin) continue;
-      partial[t * m.size() + k] = kind.block(x, m[k], std::min(task.size, all - task.begin));
-    }
+  std::vector<std::size_t> together, apart,
+      in_window;  // places in m; and those of the first as averaging times
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    const bool fits = !sum.angle().in_memory().empty() || (kind.span + kind.block_m) * m[k] <= angles_at_once;
+    (fits ? together : apart).push_back(k);
+    if (fits) in_window.push_back(m[k]);
   }
+  std::vector<ExactSum> sums(together.size());
+  add_together(sum, kind, in_window, sums);
+  std::vector<double> squares(m.size());
+  for (std::size_t i = 0; i < together.size(); ++i) squares[together[i]] = sums[i].value();
+  share_out(apart.size(), 0, [&](std::size_t i) { squares[apart[i]] = alone(sum, kind, m[apart[i]]); });
 
   std::vector<DeviationPoint> points(m.size());
   for (std::size_t k = 0; k < m.size(); ++k) {
     DeviationPoint& point = points[k];
     point.m = m[k];
     for (const AngleSum::Part& part : sum.parts()) point.terms += places(kind, part.angles, m[k]);
-    double squares = 0.0, rest = 0.0, error = 0.0;
-    for (std::size_t t = 0; t < tasks.size(); ++t) {
-      two_sum(squares, partial[t * m.size() + k], squares, error);
-      rest += error;
-    }
     const double samples = static_cast<double>(m[k]);
-    point.variance = point.terms == 0 ? std::numeric_limits<double>::quiet_NaN()
-                                      : (squares + rest) / static_cast<double>(point.terms) /
-                                            (kind.norm * samples * samples);
+    point.variance = point.terms == 0
+                         ? std::numeric_limits<double>::quiet_NaN()
+                         : squares[k] / static_cast<double>(point.terms) / (kind.norm * samples * samples);
   }
   return points;
 }

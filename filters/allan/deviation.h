@@ -9,40 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "filters/allan/stretches.h"
+#include "filters/allan/angle_sum.h"
 
 namespace ifog {
-
-// The angle at each instant, in units of (rad/s × sample): running sum of the rate less its mean, each
-// stretch starting at zero. The sum is carried in two doubles, so that every entry is rounded once, however
-// long the record: 10⁸ samples with a bias a million times their noise keep nine digits of the deviation at
-// one sample.
-class AngleSum {
- public:
-  // No NaN inside a stretch. Takes 8 bytes a sample.
-  AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches);
-  // The same in the samples' own memory, where one stretch covers them all and the vector has room for one
-  // more; else by a copy, and the samples are freed afterwards.
-  AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches);
-
-  struct Part {
-    std::size_t first;   // index of its first angle
-    std::size_t angles;  // one more than its samples
-  };
-  [[nodiscard]] const std::vector<double>& angle() const { return angle_; }
-  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  [[nodiscard]] double mean_radps() const { return mean_; }
-  [[nodiscard]] std::size_t samples() const { return angle_.size() - parts_.size(); }
-  [[nodiscard]] std::size_t longest() const;  // samples of the longest stretch
-
- private:
-  void find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches);
-  void sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches);
-
-  std::vector<double> angle_;
-  std::vector<Part> parts_;
-  double mean_ = 0.0;
-};
 
 enum class Deviation {
   kAllan,     // second differences of the angle
@@ -60,9 +29,15 @@ struct DeviationPoint {
 // The longest averaging time at which a difference fits into a stretch of so many samples; 0 if none does.
 [[nodiscard]] std::size_t longest_average(Deviation kind, std::size_t samples);
 
-// One point per entry of m (each >= 1), in that order.
+// Angles of a long series that are in memory at a time, 128 MiB: the m whose differences fit into so many are
+// found in one pass over the file together, longer ones each in a pass of its own.
+inline constexpr std::size_t kAnglesAtOnce = std::size_t{1} << 24U;
+
+// One point per entry of m (each >= 1), in that order; on all processors. The same to rounding wherever the
+// angles are.
 [[nodiscard]] std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m,
-                                                    Deviation kind = Deviation::kAllan);
+                                                    Deviation kind = Deviation::kAllan,
+                                                    std::size_t angles_at_once = kAnglesAtOnce);
 
 // Averaging times in samples, `per_decade` to a factor of ten, without repeats, from 1 to longest.
 [[nodiscard]] std::vector<std::size_t> log_spaced(std::size_t longest, int per_decade);

@@ -253,8 +253,7 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   static const Segment kWhole(kSegment);
   Segment segment = sum.longest() >= kSegment ? kWhole : Segment(std::bit_floor(sum.longest()));
   std::vector<AngleMeans> means;
-  for (const AngleSum::Part& part : sum.parts())
-    means.emplace_back(std::span(sum.angle()).subspan(part.first, part.angles));
+  for (const AngleSum::Part& part : sum.parts()) means.emplace_back(sum.angle(), part.first, part.angles);
   for (int l = last_spectrum(sum.longest()); l >= 0; --l) {
     Level level(segment, l);
     for (std::size_t p = 0; p < means.size(); ++p) level.add(means[p], sum.parts()[p].angles - 1);

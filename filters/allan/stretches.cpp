@@ -10,71 +10,115 @@ namespace {
 
 constexpr double kGap = 1.5;  // in periods
 
-// A late stamp followed by an early one is jitter; a gap leaves all that follows late. The step is judged by
-// the mean of the two samples on either side, which halves what one bad stamp can do.
-bool is_gap(std::span<const double> time_s, std::size_t i, double period) {
-  const double step = time_s[i + 1] - time_s[i];
-  if (step <= kGap * period) return false;
-  const std::size_t low = i >= 2 ? i - 2 : 0;
-  const std::size_t high = std::min(i + 3, time_s.size() - 1);
-  const double across = (time_s[high] - time_s[low]) / period;
-  return across - static_cast<double>(high - low) > kGap - 1.0;
+// Some steps of the time with the samples around them.
+class Steps {
+ public:
+  Steps(std::span<const double> time_s, std::size_t first, std::size_t samples)
+      : time_s_(time_s), first_(first), samples_(samples) {}
+
+  // From sample i to the next.
+  [[nodiscard]] double step(std::size_t i) const { return at(i + 1) - at(i); }
+  // A late stamp followed by an early one is jitter; a gap leaves all that follows late. The step is judged
+  // by the mean of the two samples on either side, which halves what one bad stamp can do.
+  [[nodiscard]] bool is_gap(std::size_t i, double period) const {
+    if (step(i) <= kGap * period) return false;
+    const std::size_t low = i >= kBeside ? i - kBeside : 0;
+    const std::size_t high = std::min(i + 1 + kBeside, samples_ - 1);
+    const double across = (at(high) - at(low)) / period;
+    return across - static_cast<double>(high - low) > kGap - 1.0;
+  }
+
+  static constexpr std::size_t kBeside = 2;
+
+ private:
+  [[nodiscard]] double at(std::size_t i) const { return time_s_[i - first_]; }
+
+  std::span<const double> time_s_;
+  std::size_t first_, samples_;
+};
+
+// use(steps, i) for every step i in order.
+template <typename Use>
+void for_each_step(const SeriesView& time_s, Use use) {
+  const std::size_t samples = time_s.size();
+  std::vector<double> room;
+  for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
+    const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
+    const std::size_t low = begin - std::min(begin, Steps::kBeside);
+    const std::size_t high = std::min(end + 1 + Steps::kBeside, samples);
+    const Steps steps(time_s.piece(low, high - low, room), low, samples);
+    for (std::size_t i = begin; i < end; ++i) use(steps, i);
+  }
 }
 
 }  // namespace
 
-SampleClock sample_clock(std::span<const double> time_s) {
+SampleClock sample_clock(const SeriesView& time_s) {
   if (time_s.size() < 2) throw std::invalid_argument("a sample time needs two samples");
-  const std::size_t steps = time_s.size() - 1;
-  // The median of a hundred thousand steps is as good as that of all and needs no copy of the record.
+  const std::size_t count = time_s.size() - 1;
+  // The median of a hundred thousand steps is as good as that of all.
   std::vector<double> some;
-  const std::size_t stride = steps / 100'000 + 1;
-  some.reserve(steps / stride + 1);
-  for (std::size_t i = 0; i < steps; i += stride) some.push_back(time_s[i + 1] - time_s[i]);
+  const std::size_t stride = count / 100'000 + 1;
+  some.reserve(count / stride + 1);
+  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+    if (i % stride == 0) some.push_back(steps.step(i));
+  });
   std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2), some.end());
   double period = some[some.size() / 2];
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
   SampleClock clock;
+  const double all_s = time_s.at(count) - time_s.at(0);
   // Coarse stamps make the median one tick too short or too long; a second round with the mean settles it.
   for (int round = 0; round < 2; ++round) {
     clock = {};
     double gaps_s = 0.0;
-    for (std::size_t i = 0; i < steps; ++i) {
-      if (!is_gap(time_s, i, period)) continue;
+    for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+      if (!steps.is_gap(i, period)) return;
       if (clock.gaps++ == 0) clock.first_gap = i;
-      gaps_s += time_s[i + 1] - time_s[i];
-    }
-    if (clock.gaps == steps) throw std::invalid_argument("no two samples are one sample time apart");
-    period = (time_s.back() - time_s.front() - gaps_s) / static_cast<double>(steps - clock.gaps);
+      gaps_s += steps.step(i);
+    });
+    if (clock.gaps == count) throw std::invalid_argument("no two samples are one sample time apart");
+    period = (all_s - gaps_s) / static_cast<double>(count - clock.gaps);
   }
   clock.period_s = period;
-  for (std::size_t i = 0; i < steps; ++i) {
-    const double step = time_s[i + 1] - time_s[i];
-    if (is_gap(time_s, i, period))
+  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+    const double step = steps.step(i);
+    if (steps.is_gap(i, period))
       clock.missing += static_cast<std::size_t>(std::max(0.0, std::round(step / period) - 1.0));
     else
       clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(step - period));
-  }
+  });
   return clock;
 }
 
-std::vector<Stretch> stretches(std::span<const double> time_s, std::span<const double> rate_radps,
+std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
                                const SampleClock& clock) {
+  // The last samples before a hole.
+  std::vector<std::size_t> gaps;
+  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+    if (steps.is_gap(i, clock.period_s)) gaps.push_back(i);
+  });
   std::vector<Stretch> found;
   Stretch now;
   const auto close = [&](std::size_t next) {
     if (now.size() > 0) found.push_back(now);
     now = {next, next};
   };
-  for (std::size_t i = 0; i < rate_radps.size(); ++i) {
-    if (std::isnan(rate_radps[i])) {
-      close(i + 1);
-      continue;
+  auto gap = gaps.begin();
+  for_each_piece(rate_radps, 0, rate_radps.size(), [&](std::span<const double> rate, std::size_t first) {
+    for (std::size_t k = 0; k < rate.size(); ++k) {
+      const std::size_t i = first + k;
+      const bool last = gap != gaps.end() && *gap == i;
+      if (last) ++gap;
+      if (std::isnan(rate[k])) {
+        close(i + 1);
+        continue;
+      }
+      now.end = i + 1;
+      if (last) close(i + 1);
     }
-    now.end = i + 1;
-    if (!time_s.empty() && i + 1 < time_s.size() && is_gap(time_s, i, clock.period_s)) close(i + 1);
-  }
+  });
   close(rate_radps.size());
   return found;
 }

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "filters/series/series_view.h"
+
 namespace ifog {
 
 // Samples begin … end − 1, evenly spaced and all present.
@@ -26,10 +28,10 @@ struct SampleClock {
 // time_s strictly increasing, at least two samples; throws std::invalid_argument otherwise. The median step
 // decides what a gap is, so up to half of the steps may be gaps. Time stamps rounded to coarse ticks
 // alternate between steps of k and k + 1 ticks; a step counts as a gap only if the stamps stay late after it.
-[[nodiscard]] SampleClock sample_clock(std::span<const double> time_s);
+[[nodiscard]] SampleClock sample_clock(const SeriesView& time_s);
 
 // The runs without gap or NaN, in order. time_s may be empty: then only NaNs part them.
-[[nodiscard]] std::vector<Stretch> stretches(std::span<const double> time_s,
-                                             std::span<const double> rate_radps, const SampleClock& clock);
+[[nodiscard]] std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
+                                             const SampleClock& clock);
 
 }  // namespace ifog

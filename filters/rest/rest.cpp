@@ -172,15 +172,21 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
 }  // namespace
 
 Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
+  return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), period_s);
+}
+
+Rest find_rest(std::span<const SeriesView> axes, double period_s) {
   const std::size_t samples = axes.empty() ? 0 : axes.front().size();
   const auto window = std::max(kLeastWindow, static_cast<std::size_t>(std::lround(kWindow_s / period_s)));
   const std::size_t count = samples / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
   if (count < kFewestWindows || period_s > kSlowest_s) return as_samples(state, window, samples);
   std::vector<std::vector<Window>> windows;
-  for (const std::span<const double> rate : axes) {
+  std::vector<double> room;
+  for (const SeriesView& rate : axes) {
     std::vector<Window>& of_axis = windows.emplace_back();
-    for (std::size_t i = 0; i < count; ++i) of_axis.push_back(window_of(rate.subspan(i * window, window)));
+    for (std::size_t i = 0; i < count; ++i)
+      of_axis.push_back(window_of(rate.piece(i * window, window, room)));
     mark_axis(of_axis, static_cast<double>(window) * period_s, state);
   }
   widen(state);

@@ -3,15 +3,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
-#include <thread>
 
+#include "filters/threads/share_out.h"
 #include "filters/tune/candidate.h"
 #include "filters/tune/maximum.h"
 #include "filters/tune/spectrum.h"
@@ -172,30 +171,6 @@ Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& s
       covariance_at(objective, found.information, candidate.reach(spectrum.samples), found.theta, known);
   model.figures = figures_with_errors(candidate, found.theta, data.scale, errors, known);
   return {std::move(model), std::move(found.theta), std::move(found.information)};
-}
-
-// Work shared among threads, one item at a time, in order.
-template <class Work>
-void share_out(std::size_t items, unsigned threads, const Work& work) {
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex guard;
-  const auto run = [&] {
-    for (std::size_t i = next++; i < items; i = next++) {
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(guard);
-        failure = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::thread> others;
-  for (unsigned i = 1; i < std::min<std::size_t>(threads, items); ++i) others.emplace_back(run);
-  run();
-  for (std::thread& other : others) other.join();
-  if (failure) std::rethrow_exception(failure);
 }
 
 // Fits the model to the first half, from where the whole record has its optimum, and judges it on the second.

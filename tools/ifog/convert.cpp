@@ -28,12 +28,10 @@ void Convert::run() const {
   // Standard output has no ending: it takes what the capture is not.
   const bool to_csv =
       file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_csv && input.has_driver()));
-  if (from_csv && !to_csv) return write_recording(input.parse(file.text(), from), from, to, input, axis);
+  if (from_csv && !to_csv) return write_recording(input.read_long_csv(file), from, to, input, axis);
   if (!to_csv)
     throw CLI::ValidationError(to, "expected a .csv or .csv.gz file, or a capture in .csv to convert from");
-  const Capture capture = input.read(file);
-  write_capture(capture, to);
-  say("%s: %zu samples\n", to.c_str(), capture.size());
+  write_csv(input.read_long(file), from, to);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
@@ -58,7 +59,7 @@ void run(const Arguments& a) {
   options.part.from_s = a.from_s;
   options.keep_motion = true;  // what was denoised is shown, moving or not
   std::vector<AllanRecord> records;
-  for (AllanRecord& record : allan_records(a.log, table, options))
+  for (AllanRecord& record : allan_records(a.log, long_table(table), options))
     if (record.signal == "raw" || record.signal == "denoised") records.push_back(std::move(record));
   // The noise terms are the sensor's; what a filter has been over has none.
   for (AllanRecord& record : records)

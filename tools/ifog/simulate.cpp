@@ -9,6 +9,7 @@
 #include "drivers/capture/text_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
+#include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
@@ -39,7 +40,7 @@ struct Simulate {
       write_capture(made.capture, output);
       say("%s: %zu samples\n", output.c_str(), made.capture.size());
     } else {
-      write_recording(made.capture, scenario, output, encoding, axis);
+      write_recording(long_table(made.capture), scenario, output, encoding, axis);
     }
     if (truth.empty()) return;
     if (file_kind(truth) == FileKind::capture)

@@ -21,7 +21,7 @@ TEST(AngleMeans, AreDifferencesOfMeansOverTheStep) {
   ifog::simulate::Draw draw(3, 1);
   std::vector<double> angle(1000);
   for (double& a : angle) a = draw.normal();
-  const ifog::AngleMeans means(angle);
+  const ifog::AngleMeans means(angle, 0, angle.size());
   for (int level = 0; level <= 8; ++level) {
     const std::size_t step = std::size_t{1} << static_cast<unsigned>(level);
     ASSERT_EQ(means.rates(level), angle.size() / step - 1);

@@ -99,8 +99,8 @@ TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
       ifog::parse_table("# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n", "t.csv");
   EXPECT_EQ(table.header_line, 3U);
   const std::size_t lines[] = {4, 6, 9, 10};
-  for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(ifog::line_of_row(table, row), lines[row]);
-  EXPECT_EQ(ifog::line_of_row(ifog::Table{}, 7), 0U);
+  for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.line_of_row(row), lines[row]);
+  EXPECT_EQ(ifog::Table{}.line_of_row(7), 0U);
 }
 
 }  // namespace

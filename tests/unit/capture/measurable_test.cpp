@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/capture.h"
+#include "drivers/capture/leaps.h"
 
 namespace ifog {
 namespace {
@@ -114,6 +115,14 @@ TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
             "a.csv:3: time_s is '1e30', which no sensor measur");
 }
 
+std::size_t leaps(const std::vector<double>& time_s, const std::vector<double>& rate_radps) {
+  Leaps found({0}, [](RowBlock&) {});
+  RowBlock rows{time_s, {rate_radps}};
+  found.take(rows);
+  found.finish();
+  return found.found()[0].count;
+}
+
 // 999 rad/s for a tenth of a second are 16 turns, from standstill to standstill.
 TEST(Measurable, ARateThatLeapsOverHalfATurnIsMissing) {
   const Capture read = parse_capture(capture("rate_radps,reference_rate_radps", 2, 70, 0, "-999"), "a.csv");
@@ -127,13 +136,13 @@ TEST(Measurable, ARateThatLeapsOverHalfATurnIsMissing) {
     time.push_back(0.01 * i);
     spin.push_back(i < 40 || i > 60 ? 0.0 : 900.0);
   }
-  EXPECT_TRUE(take_out_leaps(time, spin).empty());
+  EXPECT_EQ(leaps(time, spin), 0U);
   // Dwells of a rate table, a row each.
   for (int i = 0; i < 100; ++i) {
     time[static_cast<std::size_t>(i)] = 5.0 * i;
     spin[static_cast<std::size_t>(i)] = i % 2 == 0 ? 0.0 : 3.0;
   }
-  EXPECT_TRUE(take_out_leaps(time, spin).empty());
+  EXPECT_EQ(leaps(time, spin), 0U);
 }
 
 }  // namespace

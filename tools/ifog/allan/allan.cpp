@@ -23,23 +23,6 @@ struct Arguments {
   std::string estimator = "overlapping", gaps = "part", moving = "leave-out", json, picture;
 };
 
-// Read through a driver, a recording becomes the columns that a CSV capture of it would have.
-Table as_table(Capture capture) {
-  Table table;
-  table.time_s = std::move(capture.time_s);
-  for (std::size_t i = 0; i < capture.axes.size(); ++i)
-    table.columns.push_back({capture.axes[i].empty() ? "rate_radps" : "rate_" + capture.axes[i] + "_radps",
-                             std::move(capture.rate_radps[i])});
-  return table;
-}
-
-Table table_of(const Arguments& a, const std::string& path) {
-  InputFile file(path);
-  if (a.input.kind(file) == FileKind::capture && !a.input.has_driver())
-    return a.input.parse_columns(file.text(), path);
-  return as_table(a.input.read(file));
-}
-
 void run(Arguments& a) {
   will_write("--json", a.json);
   will_write("--plot", a.picture);
@@ -52,7 +35,9 @@ void run(Arguments& a) {
   {
     Progress progress("Allan", a.captures.size());
     for (std::size_t i = 0; i < a.captures.size(); ++i) {
-      for (AllanRecord& record : allan_records(a.captures[i], table_of(a, a.captures[i]), a.options))
+      InputFile file(a.captures[i]);
+      const LongTable table = a.input.read_long(file, allan_wants);
+      for (AllanRecord& record : allan_records(a.captures[i], table, a.options))
         records.push_back(std::move(record));
       progress.at(i + 1);
     }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/rest/rest.h"
 
@@ -107,40 +108,37 @@ void note_what_was_left_out(const std::string& column, AllanRecord& record) {
 // Where a row stands in its file: "file:line", or the sample's number where the file is no text.
 class Gaps {
  public:
-  Gaps(std::string file, const Table& table, std::size_t first_row)
-      : file_(std::move(file)), first_row_(first_row) {
-    lines_.header_line = table.header_line;
-    lines_.skipped = table.skipped;
-  }
+  Gaps(std::string file, const RowNotes& lines, std::size_t first_row)
+      : file_(std::move(file)), lines_(lines), first_row_(first_row) {}
   [[nodiscard]] std::string place(std::size_t row) const {
-    const std::size_t line = line_of_row(lines_, row + first_row_);
+    const std::size_t line = lines_.line_of_row(row + first_row_);
     return line > 0 ? file_ + ":" + std::to_string(line)
                     : file_ + ": sample " + std::to_string(row + first_row_);
   }
 
  private:
   std::string file_;
-  Table lines_;  // without its columns
+  const RowNotes& lines_;
   std::size_t first_row_;
 };
 
 // All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
 // rates.
-Rest rest_of(const std::string& name, const Table& table, const SampleClock& clock,
-             const AllanOptions& options) {
-  std::vector<std::span<const double>> axes;
+Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Rows& rows,
+             const SampleClock& clock, const AllanOptions& options) {
+  std::vector<SeriesView> axes;
   std::string signal, axis;
-  for (const CaptureColumn& column : table.columns)
+  for (const LongColumn& column : table.columns)
     if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw"))
-      axes.emplace_back(column.values);
+      axes.push_back(SeriesView(column.values).part(rows.begin, rows.end));
   Rest all;
-  all.samples = table.time_s.size();
+  all.samples = rows.end - rows.begin;
   all.at_rest = {{0, all.samples}};
   // Against a reference the sensor may turn.
   if (options.keep_motion || options.minus_reference || axes.empty()) return all;
   Rest rest = find_rest(axes, clock.period_s);
   try {
-    require_rest(rest, clock.period_s, table.time_s.front());
+    require_rest(rest, clock.period_s, SeriesView(table.time_s).at(rows.begin));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(name + ": " + error.what() + ", or --moving keep");
   }
@@ -148,7 +146,7 @@ Rest rest_of(const std::string& name, const Table& table, const SampleClock& clo
 }
 
 AllanRecord analyse(const std::string& name, const std::string& signal, const std::string& axis,
-                    std::span<const double> time_s, std::vector<double> rate, const SampleClock& clock,
+                    const SeriesView& time_s, const SeriesView& rate, const SampleClock& clock,
                     const Gaps& gaps, const Rest& rest, const AllanOptions& options) {
   AllanRecord record;
   record.capture = name;
@@ -161,20 +159,23 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   const std::string column = signal + (axis.empty() ? "" : "_" + axis);
 
   std::size_t nans = 0, first_nan = 0;
-  for (std::size_t i = 0; i < rate.size(); ++i)
-    if (std::isnan(rate[i]) && nans++ == 0) first_nan = i;
+  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isnan(values[i]) && nans++ == 0) first_nan = first + i;
+  });
   record.missing = nans + clock.missing;
   if (clock.gaps > 0) {
     const std::string what = std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
                              " in the time column (" + std::to_string(clock.missing) +
-                             " samples missing), the first after " + number(time_s[clock.first_gap]) + " s";
+                             " samples missing), the first after " + number(time_s.at(clock.first_gap)) +
+                             " s";
     if (options.refuse_gaps)
       throw std::runtime_error(gaps.place(clock.first_gap) + ": " + what + ", expected none");
     record.notes.push_back(gaps.place(clock.first_gap) + ": " + what);
   }
   if (nans > 0) {
     const std::string what = column + " is missing in " + std::to_string(nans) +
-                             (nans == 1 ? " row" : " rows") + ", first at " + number(time_s[first_nan]) +
+                             (nans == 1 ? " row" : " rows") + ", first at " + number(time_s.at(first_nan)) +
                              " s";
     if (options.refuse_gaps)
       throw std::runtime_error(gaps.place(first_nan) + ": " + what + ", expected none");
@@ -187,7 +188,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
 
   const std::vector<Stretch> parts = common(stretches(time_s, rate, clock), rest.at_rest);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const AngleSum sum(std::move(rate), parts);
+  const AngleSum sum(rate, parts);
   record.samples = sum.samples();
   record.longest = sum.longest();
   record.mean_radps = sum.mean_radps();
@@ -224,43 +225,64 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   return record;
 }
 
+LongSeries less_reference(const std::string& name, const LongTable& table, const SeriesView& rate,
+                          const std::string& axis) {
+  const std::string wanted = axis.empty() ? "reference_rate_radps" : "reference_rate_" + axis + "_radps";
+  const auto column = std::find_if(table.columns.begin(), table.columns.end(),
+                                   [&](const LongColumn& c) { return c.name == wanted; });
+  if (column == table.columns.end())
+    throw std::runtime_error(name + ": no column " + wanted + ", expected one for --minus-reference");
+  const SeriesView reference = column->values;
+  LongSeries error;
+  std::vector<double> room;
+  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
+    const std::span<const double> there = reference.piece(first, values.size(), room);
+    for (std::size_t i = 0; i < values.size(); ++i) error.add(values[i] - there[i]);
+  });
+  return error;
+}
+
 }  // namespace
 
 std::string AllanRecord::label() const {
   return signal == "rate" ? axis : axis.empty() ? signal : signal + " " + axis;
 }
 
-std::vector<AllanRecord> allan_records(const std::string& name, Table table, const AllanOptions& options) {
-  const std::size_t first_row = options.part.cut(table, name);
-  if (table.time_s.size() < 3)
-    throw std::runtime_error(name + ": " + std::to_string(table.time_s.size()) +
-                             " samples, expected at least 3");
+bool allan_wants(const std::string& column) {
+  std::string signal, axis;
+  return signal_of(column, signal, axis) || axis_of(column, "reference_rate", axis);
+}
+
+std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,
+                                       const AllanOptions& options) {
+  const TimePart::Rows rows = options.part.rows(table.time_s, name);
+  const SeriesView time_s = SeriesView(table.time_s).part(rows.begin, rows.end);
+  if (time_s.size() < 3)
+    throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
   SampleClock clock;
   try {
-    clock = sample_clock(table.time_s);
+    clock = sample_clock(time_s);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(name + ": " + error.what());
   }
-  const Gaps gaps(name, table, first_row);
-  const Rest rest = rest_of(name, table, clock, options);
+  const Gaps gaps(name, table, rows.begin);
+  const Rest rest = rest_of(name, table, rows, clock, options);
   std::vector<AllanRecord> records;
   std::string signal, axis, known;
-  for (CaptureColumn& column : table.columns) {
+  for (const LongColumn& column : table.columns) {
     if (!signal_of(column.name, signal, axis)) continue;
     known += (known.empty() ? "" : ", ") + (axis.empty() ? "(none)" : axis);
     if (!options.axis.empty() && axis != options.axis) continue;
+    SeriesView rate = column.values;
+    LongSeries error;
     if (options.minus_reference && signal == "rate") {
-      const std::string wanted = axis.empty() ? "reference_rate_radps" : "reference_rate_" + axis + "_radps";
-      const auto reference = std::find_if(table.columns.begin(), table.columns.end(),
-                                          [&](const CaptureColumn& c) { return c.name == wanted; });
-      if (reference == table.columns.end())
-        throw std::runtime_error(name + ": no column " + wanted + ", expected one for --minus-reference");
-      for (std::size_t i = 0; i < column.values.size(); ++i) column.values[i] -= reference->values[i];
+      error = less_reference(name, table, rate, axis);
+      rate = error;
       signal = "error";
     }
     records.push_back(
-        analyse(name, signal, axis, table.time_s, std::move(column.values), clock, gaps, rest, options));
-    if (const std::string motion = in_words(rest, clock.period_s, table.time_s.front()); !motion.empty())
+        analyse(name, signal, axis, time_s, rate.part(rows.begin, rows.end), clock, gaps, rest, options));
+    if (const std::string motion = in_words(rest, clock.period_s, time_s.at(0)); !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }
   if (known.empty())

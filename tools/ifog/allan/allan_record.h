@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/allan/theo1.h"
+#include "tools/ifog/captures/long_table.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/report/coefficients.h"
 
@@ -54,7 +54,10 @@ struct AllanRecord {
 };
 
 // One record for each rate column of the file. Throws std::runtime_error with one line for people.
-std::vector<AllanRecord> allan_records(const std::string& name, Table table, const AllanOptions& options);
+std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,
+                                       const AllanOptions& options);
+// Whether a column takes part.
+bool allan_wants(const std::string& column);
 
 nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
 void print_allan(const AllanRecord& record, const AllanOptions& options);

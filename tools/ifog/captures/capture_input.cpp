@@ -4,12 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/capture/capture_builder.h"
+#include "drivers/capture/csv_rows.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -54,18 +57,15 @@ CsvLayout CaptureInput::layout() const {
   return out;
 }
 
-Capture CaptureInput::parse(std::string_view text, const std::string& path) const {
-  Capture capture = parse_capture(text, path, layout());
-  for (const std::string& notice : capture.notices) warn("%s\n", notice.c_str());
-  for (const std::string& fault : capture.faults) warn("%s\n", fault.c_str());
-  return capture;
+void CaptureInput::tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults) {
+  for (const std::string& notice : notices) warn("%s\n", notice.c_str());
+  for (const std::string& fault : faults) warn("%s\n", fault.c_str());
 }
 
-Table CaptureInput::parse_columns(std::string_view text, const std::string& path) const {
-  Table table = parse_table(text, path, layout());
-  for (const std::string& notice : table.notices) warn("%s\n", notice.c_str());
-  for (const std::string& fault : table.faults) warn("%s\n", fault.c_str());
-  return table;
+Capture CaptureInput::read_csv(InputFile& file) const {
+  Capture capture = read_capture(file, layout());
+  tell(capture.notices, capture.faults);
+  return capture;
 }
 
 void CaptureInput::add_driver_to(CLI::App& command) {
@@ -134,24 +134,15 @@ Capture CaptureInput::read_flight(InputFile& file) const {
   return flight.capture(instance);
 }
 
-Capture CaptureInput::read(InputFile& file) const {
+void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
+                         const std::function<void()>& added) const {
   const std::string& path = file.path();
-  const FileKind found = kind(file);
-  if (found == FileKind::capture) {
-    if (has_driver())
-      throw std::runtime_error(path + ": is a CSV capture, expected none of --driver and --dbc with it");
-    return parse(file.text(), path);
-  }
-  if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
-  if (found == FileKind::flight) return read_flight(file);
-  if (!has_driver())
-    throw std::runtime_error(path +
-                             ": is no CSV capture, expected --driver NAME (or --dbc FILE) to decode it with");
-  DriverInstance instance = make_driver();
-  CaptureBuilder builder(instance.description());
   RecordingCounts counts;
   try {
-    counts = for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
+    counts = for_each_sample(file, instance, [&](const ifog_sample& sample) {
+      builder.add(sample);
+      added();
+    });
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
@@ -159,7 +150,72 @@ Capture CaptureInput::read(InputFile& file) const {
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", path.c_str(), loss.c_str());
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter\n", path.c_str(), builder.missing());
+}
+
+FileKind CaptureInput::readable(const InputFile& file) const {
+  const FileKind found = kind(file);
+  if (found == FileKind::capture && has_driver())
+    throw std::runtime_error(file.path() + ": is a CSV capture, expected none of --driver and --dbc with it");
+  if ((found == FileKind::bytes || found == FileKind::candump || found == FileKind::unknown) && !has_driver())
+    throw std::runtime_error(file.path() +
+                             ": is no CSV capture, expected --driver NAME (or --dbc FILE) to decode it with");
+  return found;
+}
+
+Capture CaptureInput::read(InputFile& file) const {
+  const FileKind found = readable(file);
+  if (found == FileKind::capture) return read_csv(file);
+  if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
+  if (found == FileKind::flight) return read_flight(file);
+  DriverInstance instance = make_driver();
+  CaptureBuilder builder(instance.description());
+  build(file, instance, builder, [] {});
   return builder.finish();
+}
+
+RowNotes CaptureInput::csv_rows(InputFile& file, RowSink& sink) const {
+  RowNotes notes = read_csv_rows([&file](char* to, std::size_t most) { return file.read(to, most); },
+                                 file.path(), layout(), sink);
+  tell(notes.notices, notes.faults);
+  return notes;
+}
+
+LongTable CaptureInput::read_long_csv(InputFile& file, const LongTableSink::Wanted& wanted) const {
+  LongTable table;
+  LongTableSink sink(table, wanted);
+  static_cast<RowNotes&>(table) = csv_rows(file, sink);
+  return table;
+}
+
+RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
+  const FileKind found = readable(file);
+  if (found == FileKind::capture) return csv_rows(file, sink);
+  if (found == FileKind::lcm_log || (found == FileKind::flight && recorded_messages(file)))
+    return hand_on(read_lcm_log(file, channel), sink);
+  if (found == FileKind::flight) {
+    FlightInput flight(file);
+    DriverInstance instance = flight.make_driver(driver_name(), settings());
+    flight.rows(instance, sink);
+    return {};
+  }
+  DriverInstance instance = make_driver();
+  CaptureBuilder builder(instance.description());
+  BuiltRows rows(builder, sink);
+  build(file, instance, builder, [&rows] { rows.added(); });
+  rows.finish();
+  return {};
+}
+
+LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& wanted) const {
+  const FileKind found = kind(file);
+  const bool whole = found == FileKind::capture || found == FileKind::lcm_log ||
+                     (found == FileKind::flight && recorded_messages(file));
+  LongTable table;
+  LongTableSink sink(table, wanted);
+  static_cast<RowNotes&>(table) = read_rows(file, sink);
+  // A driver says what its device may send, not what it sent.
+  if (!whole) table.leave_out_unknown(file.path());
+  return table;
 }
 
 }  // namespace ifog::tools

@@ -10,10 +10,16 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/recording.h"
+#include "drivers/capture/row_sink.h"
 #include "drivers/host/driver_instance.h"
+#include "tools/ifog/captures/long_table.h"
 
 namespace CLI {
 class App;
+}
+
+namespace ifog {
+class CaptureBuilder;
 }
 
 namespace ifog::tools {
@@ -44,9 +50,8 @@ struct CaptureInput {
   // Likewise of the options of a CSV file.
   [[nodiscard]] CsvLayout layout() const;
   [[nodiscard]] bool has_layout() const { return !columns.empty() || !time.empty() || !separator.empty(); }
-  // A CSV text by them; what may be meant otherwise is told on standard error.
-  [[nodiscard]] Capture parse(std::string_view text, const std::string& path) const;
-  [[nodiscard]] Table parse_columns(std::string_view text, const std::string& path) const;
+  // A CSV file by them; what may be meant otherwise is told on standard error.
+  [[nodiscard]] Capture read_csv(InputFile& file) const;
 
   // Throws std::runtime_error with one line.
   [[nodiscard]] DriverInstance make_driver() const;
@@ -66,7 +71,20 @@ struct CaptureInput {
   [[nodiscard]] Capture read(InputFile& file) const;
   [[nodiscard]] Capture read(const std::string& path, std::string* sha256 = nullptr) const;
 
+  // Any kind in pieces, likewise; the one place that tells formats apart for it. CSV, raw bytes and flight
+  // recordings pass through; candump and LCM logs are read as a whole first.
+  RowNotes read_rows(InputFile& file, RowSink& sink) const;
+  // As a table of the columns wanted (all, where that is empty), whatever its length.
+  [[nodiscard]] LongTable read_long(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
+  // Of a CSV file, also beside a driver that is there to write with.
+  [[nodiscard]] LongTable read_long_csv(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
+
  private:
+  RowNotes csv_rows(InputFile& file, RowSink& sink) const;
+  [[nodiscard]] FileKind readable(const InputFile& file) const;
+  void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
+             const std::function<void()>& added) const;
+  static void tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults);
   [[nodiscard]] Capture read_flight(InputFile& file) const;
 };
 

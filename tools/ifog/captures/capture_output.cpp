@@ -9,53 +9,99 @@
 
 #include "drivers/capture/candump.h"
 #include "drivers/capture/capture_encoder.h"
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/csv_writer.h"
 #include "drivers/capture/text_file.h"
+#include "filters/series/series_view.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
-constexpr std::size_t kProgressStep = 4096;  // rows
+// Rows of a long table as one capture after the other, in the same place.
+class Pieces {
+ public:
+  Pieces(const LongTable& table, const CaptureShape& shape) : rows_(table, shape) { next(); }
+  [[nodiscard]] const Capture& piece() const { return piece_; }
+  bool next() {
+    if (!rows_.next()) return false;
+    rows_.as_capture(piece_);
+    return true;
+  }
 
-void to_bytes(CaptureEncoder& encoder, std::size_t rows, const std::string& to) {
+ private:
+  LongRows rows_;
+  Capture piece_;
+};
+
+void to_bytes(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const std::string& to) {
   std::vector<std::uint8_t> bytes;
+  std::size_t count = 0;
   Progress progress("encoding", rows);
-  while (encoder.next(bytes))
-    if (encoder.rows_done() % kProgressStep == 0) progress.at(encoder.rows_done());
-  write_text_file(to, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  say("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), bytes.size());
+  TextOutput file(to);
+  do {
+    while (encoder.next(bytes)) {
+    }
+    encoder.go_on();
+    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    count += bytes.size();
+    bytes.clear();
+    progress.at(encoder.rows_done());
+  } while (pieces.next());
+  file.finish();
+  say("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), count);
 }
 
-void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to, const CaptureInput& input) {
+void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const std::string& to,
+                const CaptureInput& input) {
   const std::string interface = input.channel.empty() ? "vcan0" : input.channel;
   std::string text;
   std::size_t count = 0;
   std::vector<ifog_can_frame> frames;
   std::array<char, kCandumpLineMax> line{};
   Progress progress("encoding", rows);
-  while (encoder.next(frames)) {
-    for (const ifog_can_frame& frame : frames)
-      text.append(line.data(), format_candump_line(frame, interface, line.data()));
-    count += frames.size();
-    frames.clear();
-    if (encoder.rows_done() % kProgressStep == 0) progress.at(encoder.rows_done());
-  }
-  write_text_file(to, text);
+  TextOutput file(to);
+  do {
+    while (encoder.next(frames)) {
+      for (const ifog_can_frame& frame : frames)
+        text.append(line.data(), format_candump_line(frame, interface, line.data()));
+      count += frames.size();
+      frames.clear();
+    }
+    encoder.go_on();
+    file.write(text);
+    text.clear();
+    progress.at(encoder.rows_done());
+  } while (pieces.next());
+  file.finish();
   say("%s: %zu samples in %zu frames on %s\n", to.c_str(), rows - encoder.rows_left_out(), count,
       interface.c_str());
 }
 
 }  // namespace
 
-void write_recording(const Capture& capture, const std::string& from, const std::string& to,
+void write_csv(const LongTable& table, const std::string& from, const std::string& to) {
+  const CaptureShape shape = capture_shape(table.names(), from, table);
+  LongRows rows(table, shape);
+  CsvWriter file(to, table.comments, rows.names());
+  Progress progress("writing", table.size());
+  for (std::size_t done = 0; rows.next(); progress.at(done)) {
+    file.rows(rows.rows());
+    done += rows.rows().front().size();
+  }
+  file.finish();
+  say("%s: %zu samples\n", to.c_str(), table.size());
+}
+
+void write_recording(const LongTable& table, const std::string& from, const std::string& to,
                      const CaptureInput& input, const std::string& axis) {
+  const CaptureShape shape = capture_shape(table.names(), from, table);
   if (!input.has_driver())
     throw CLI::ValidationError(to,
                                "is no CSV capture, expected --driver NAME (or --dbc FILE) to encode it with");
   const auto plugin = find_plugin(input.driver_name(), plugin_folders());
-  DriverInstance driver(plugin, with_rate_of(capture, *plugin, input.settings()));
+  const double rate_hz = table.size() > 1 ? sample_rate_hz(median_step(table.time_s)) : 0.0;
+  DriverInstance driver(plugin, with_rate(rate_hz, *plugin, input.settings()));
   const bool log = is_standard_output(to) ? driver.takes_can() : file_kind(to) == FileKind::candump;
   if (log != driver.takes_can())
     throw CLI::ValidationError(to,
@@ -63,12 +109,13 @@ void write_recording(const Capture& capture, const std::string& from, const std:
                                    (driver.takes_can() ? "CAN, expected a name ending in .log"
                                                        : "bytes, expected a name ending in .bin or .kvh"));
   try {
-    CaptureEncoder encoder(capture, driver, axis);
+    Pieces pieces(table, shape);
+    CaptureEncoder encoder(pieces.piece(), driver, rate_hz, axis);
     for (const std::string& notice : encoder.notices()) warn("%s: %s\n", from.c_str(), notice.c_str());
     if (log)
-      to_candump(encoder, capture.size(), to, input);
+      to_candump(encoder, pieces, table.size(), to, input);
     else
-      to_bytes(encoder, capture.size(), to);
+      to_bytes(encoder, pieces, table.size(), to);
     if (encoder.rows_left_out() != 0)
       warn("%s: %zu rows without a rate are left out: the format cannot say so\n", from.c_str(),
            encoder.rows_left_out());

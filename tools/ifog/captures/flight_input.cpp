@@ -115,34 +115,50 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
   });
 }
 
+void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
+                        const std::function<void(const RecordedSample&)>& added) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  builder.allow_restarts();
+  std::vector<ChannelValue> before(header().channels.size());
+  std::vector<double> fresh(before.size());
+  const RecordingCounts counts = for_each_sample(driver, {[&](const RecordedSample& recorded) {
+                                                            for (std::size_t i = 0; i < before.size(); ++i) {
+                                                              const ChannelValue& now = recorded.outside[i];
+                                                              fresh[i] =
+                                                                  now.same(before[i]) ? kNone : now.value;
+                                                              before[i] = now;
+                                                            }
+                                                            builder.add(recorded.sample, fresh);
+                                                            added(recorded);
+                                                          },
+                                                          [&] { builder.discontinuity(); }});
+  for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
+  if (builder.missing() != 0)
+    warn("%s: %zu samples are missing by the device's counter\n", file_.path().c_str(), builder.missing());
+}
+
 Capture FlightInput::capture(DriverInstance& driver) {
   return with_name([&] {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     CaptureBuilder builder(driver.description(), header().channels);
-    builder.allow_restarts();
-    std::vector<ChannelValue> before(header().channels.size());
-    std::vector<double> fresh(before.size());
     std::int64_t first_ns = 0;
-    const RecordingCounts counts =
-        for_each_sample(driver, {[&](const RecordedSample& recorded) {
-                                   if (first_ns == 0) first_ns = recorded.came_ns;
-                                   for (std::size_t i = 0; i < before.size(); ++i) {
-                                     const ChannelValue& now = recorded.outside[i];
-                                     fresh[i] = now.same(before[i]) ? kNone : now.value;
-                                     before[i] = now;
-                                   }
-                                   builder.add(recorded.sample, fresh);
-                                 },
-                                 [&] { builder.discontinuity(); }});
-    for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
-    if (builder.missing() != 0)
-      warn("%s: %zu samples are missing by the device's counter\n", file_.path().c_str(), builder.missing());
+    build(driver, builder, [&](const RecordedSample& sample) {
+      if (first_ns == 0) first_ns = sample.came_ns;
+    });
     Capture out = builder.finish();
     // Of the first file's header; who puts files of several power-ups behind one another is told by its
     // times.
     if (const auto powered_ns = header().powered_ns; powered_ns && first_ns >= *powered_ns)
       out.since_power_up_s = static_cast<double>(first_ns - *powered_ns) * 1e-9;
     return out;
+  });
+}
+
+void FlightInput::rows(DriverInstance& driver, RowSink& sink) {
+  with_name([&] {
+    CaptureBuilder builder(driver.description(), header().channels);
+    BuiltRows rows(builder, sink);
+    build(driver, builder, [&rows](const RecordedSample&) { rows.added(); });
+    rows.finish();
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include "daemon/config/config.h"
 #include "drivers/capture/capture.h"
+#include "drivers/capture/capture_builder.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/flight/decode.h"
@@ -42,12 +43,16 @@ class FlightInput {
   RecordingCounts for_each_sample(DriverInstance& driver, const RecordedSamples& sink);
   // As columns, channels from elsewhere, too.
   Capture capture(DriverInstance& driver);
+  // The same in pieces, with every axis and channel that there may be.
+  void rows(DriverInstance& driver, RowSink& sink);
   // What came as it came, for `ifog replay`: `bytes`, `can` and `message` entries.
   void for_each_entry(const std::function<void(const FlightEntry&)>& sink);
 
  private:
   template <typename Work>
   auto with_name(Work&& work) const;
+  void build(DriverInstance& driver, CaptureBuilder& builder,
+             const std::function<void(const RecordedSample&)>& added);
   void tell_losses() const;
 
   InputFile& file_;

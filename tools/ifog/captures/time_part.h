@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "filters/series/series_view.h"
 
 namespace CLI {
 class App;
@@ -23,9 +24,16 @@ struct TimePart {
   // Adds the two options to a command.
   void add_to(CLI::App& command);
 
+  struct Rows {
+    std::size_t begin, end;
+  };
+  // Those inside. name: for messages. Throws std::runtime_error with one line when there is none.
+  [[nodiscard]] Rows rows(const SeriesView& time_s, const std::string& name) const;
+  // The same refusal, of times that nobody kept.
+  [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
+
   // Rows outside are gone. Returns how many were before. name: for messages. Throws std::runtime_error with
   // one line when no row is inside.
-  std::size_t cut(Table& table, const std::string& name) const;
   std::size_t cut(Capture& capture, const std::string& name) const;
   // columns: as long as the times, or empty.
   std::size_t cut(std::vector<double>& time_s, std::span<std::vector<double>* const> columns,

@@ -2,9 +2,6 @@
 // ifog denoise: the daemon's signal chain over a capture or a recording.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -17,7 +14,6 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/capture/recording.h"
-#include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/smoother.h"
 #include "filters/model_file/kept_noise.h"
@@ -32,6 +28,7 @@
 #include "tools/ifog/console/installed.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
@@ -50,88 +47,33 @@ struct Options {
   bool smooth = false;
 };
 
-struct Series {
-  std::vector<double> raw, compensated, denoised, variance;
-  std::vector<double> smoothed, smoothed_variance;  // empty unless asked for
-};
-
-struct Columns {
-  std::vector<double> time_s, dt_s;
-  std::vector<Series> axes;
-  std::uint64_t gated = 0, stale = 0, out_of_range = 0, ramp_unknown = 0, unknown_noise = 0;
-};
-
-void append(std::string& text, double value) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
-}
-
-std::string as_text(const Columns& columns, const OfflineResult& result) {
-  std::string text = "time_s";
-  const bool smoothed = !columns.axes.empty() && !columns.axes[0].smoothed.empty();
-  for (const std::string& axis : result.axes) {
-    const std::string suffix = axis.empty() ? "" : "_" + axis;
-    text += ",raw" + suffix + "_radps,compensated" + suffix + "_radps,denoised" + suffix + "_radps,variance" +
-            suffix + "_rad2ps2";
-    if (smoothed) text += ",smoothed" + suffix + "_radps,smoothed_variance" + suffix + "_rad2ps2";
-  }
-  text += '\n';
-  for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
-    append(text, columns.time_s[i]);
-    for (const Series& axis : columns.axes)
-      for (const auto* const series : {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance,
-                                       &axis.smoothed, &axis.smoothed_variance}) {
-        if (series->empty()) continue;
-        text += ',';
-        append(text, (*series)[i]);
-      }
-    text += '\n';
-  }
-  return text;
-}
-
-// Mean and standard deviation of what is a number.
-std::pair<double, double> moments(const std::vector<double>& values) {
-  double n = 0.0, mean = 0.0, square = 0.0;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    n += 1.0;
-    const double difference = value - mean;
-    mean += difference / n;
-    square += difference * (value - mean);
-  }
-  return {mean, n > 1.0 ? std::sqrt(square / (n - 1.0)) : 0.0};
-}
-
-nlohmann::json summary(const Options& options, const Columns& columns, const OfflineResult& result) {
+nlohmann::json summary(const Options& options, const DenoisedRows& rows, const OfflineResult& result) {
   nlohmann::json axes = nlohmann::json::array();
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
-    const Series& series = columns.axes[a];
+    const DenoisedRows::AxisMoments& of_axis = rows.moments(a);
     nlohmann::json one{{"axis", result.axes[a]}};
-    for (const auto& [name, values] :
-         {std::pair{"raw", &series.raw}, std::pair{"compensated", &series.compensated},
-          std::pair{"denoised", &series.denoised}}) {
-      const auto [mean, deviation] = moments(*values);
-      one[std::string(name) + "_mean_radps"] = mean;
-      one[std::string(name) + "_std_radps"] = deviation;
+    for (const auto& [name, moments] :
+         {std::pair{"raw", &of_axis.raw}, std::pair{"compensated", &of_axis.compensated},
+          std::pair{"denoised", &of_axis.denoised}}) {
+      one[std::string(name) + "_mean_radps"] = moments->mean();
+      one[std::string(name) + "_std_radps"] = moments->deviation();
     }
     axes.push_back(std::move(one));
   }
   const FilterSettings& filter = result.filter;
   return {{"schema", "ifog.denoise/1"},
           {"capture", options.capture},
-          {"samples", columns.time_s.size()},
+          {"samples", rows.written()},
           {"sample_rate_hz", result.sample_rate_hz},
           {"model", result.model},
           {"gaps", result.counts.gaps},
           {"missing", result.counts.missing},
           {"invalid", result.counts.invalid},
-          {"gated", columns.gated},
-          {"stale_channel", columns.stale},
-          {"out_of_range", columns.out_of_range},
-          {"ramp_phase_unknown", columns.ramp_unknown},
-          {"samples_before_noise_known", columns.unknown_noise},
+          {"gated", rows.counts().gated},
+          {"stale_channel", rows.counts().stale},
+          {"out_of_range", rows.counts().out_of_range},
+          {"ramp_phase_unknown", rows.counts().ramp_unknown},
+          {"samples_before_noise_known", rows.counts().unknown_noise},
           {"filter",
            {{"rule", filter.rule},
             {"state", filter.state},
@@ -151,12 +93,12 @@ nlohmann::json summary(const Options& options, const Columns& columns, const Off
 }
 
 // A row an axis, one more where a model corrects it, with one time axis below all of them.
-void draw(const std::string& path, const Columns& columns, const OfflineResult& result) {
+void draw(const std::string& path, const DenoisedColumns& columns, const OfflineResult& result) {
   const report::TimeUnit unit = report::time_unit(columns.time_s.back() - columns.time_s.front());
   const std::vector<double> time = report::scaled(columns.time_s, 1.0 / unit.seconds);
   std::vector<report::PictureRow> rows;
   const auto row = [&](const std::string& title, const char* noisy, const std::vector<double>& values,
-                       const Series& axis, bool last) {
+                       const DenoisedAxis& axis, bool last) {
     // The same range for raw and compensated, so that they compare at a glance.
     report::Bounds range;
     for (const double value : axis.raw) range.take(value / kDegreePerHour, false);
@@ -173,7 +115,7 @@ void draw(const std::string& path, const Columns& columns, const OfflineResult& 
   const bool corrected = !result.model.empty();
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
     const bool last = a + 1 == result.axes.size();
-    const Series& axis = columns.axes[a];
+    const DenoisedAxis& axis = columns.axes[a];
     const std::string name = result.axes[a].empty() ? "" : "axis " + result.axes[a];
     row(name, "raw", axis.raw, axis, last && !corrected);
     if (corrected) row("", "compensated", axis.compensated, axis, last);
@@ -223,7 +165,7 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
   return out;
 }
 
-void tell(const Options& options, const Columns& columns, const OfflineResult& result) {
+void tell(const Options& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
   if (!result.noise_known)
@@ -231,7 +173,7 @@ void tell(const Options& options, const Columns& columns, const OfflineResult& r
         "%s: shorter than the start-up that would show its noise: denoised is the compensated rate; expected "
         "--process-noise and --measurement-noise, or a shorter --start-up\n",
         options.capture.c_str());
-  say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), columns.time_s.size(),
+  say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), rows.written(),
       result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
       static_cast<unsigned long long>(result.counts.missing));
   say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
@@ -241,35 +183,26 @@ void tell(const Options& options, const Columns& columns, const OfflineResult& r
   for (std::size_t a = 0; a < result.axes.size(); ++a)
     say("%s%sstd raw %.4g, compensated %.4g, denoised %.4g deg/h\n", result.axes[a].empty() ? "" : "axis ",
         result.axes[a].empty() ? "" : (result.axes[a] + ": ").c_str(),
-        moments(columns.axes[a].raw).second / kDegreePerHour,
-        moments(columns.axes[a].compensated).second / kDegreePerHour,
-        moments(columns.axes[a].denoised).second / kDegreePerHour);
+        rows.moments(a).raw.deviation() / kDegreePerHour,
+        rows.moments(a).compensated.deviation() / kDegreePerHour,
+        rows.moments(a).denoised.deviation() / kDegreePerHour);
 }
 
 // What the chain left out as invalid takes no part; what it compensated does, so that the same effects are
 // removed.
-void smooth(Columns& columns, const OfflineResult& result) {
+void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   if (!result.noise_known)
     throw std::runtime_error(
         "--smooth: the capture is shorter than the start-up that would show its noise; "
         "expected --process-noise and --measurement-noise");
   std::vector<std::vector<double>> rates;
-  for (const Series& axis : columns.axes) rates.push_back(axis.compensated);
+  for (const DenoisedAxis& axis : columns.axes) rates.push_back(axis.compensated);
   std::vector<Smoothed> smoothed =
       ifog::smooth(result.filter, rates, columns.dt_s, 1.0 / result.sample_rate_hz);
   for (std::size_t a = 0; a < columns.axes.size(); ++a) {
     columns.axes[a].smoothed = std::move(smoothed[a].rate_radps);
     columns.axes[a].smoothed_variance = std::move(smoothed[a].variance_rad2ps2);
   }
-}
-
-// What is wanted of the whole, which was filtered from its beginning: the part has the whole's bits.
-void keep(const Options& options, Columns& columns) {
-  std::vector<std::vector<double>*> all{&columns.dt_s};
-  for (Series& axis : columns.axes)
-    all.insert(all.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance, &axis.smoothed,
-                           &axis.smoothed_variance});
-  options.part.cut(columns.time_s, all, options.capture);
 }
 
 void run(Options options) {
@@ -281,24 +214,12 @@ void run(Options options) {
   std::optional<FlightInput> flight;
   if (kind == FileKind::flight && !recorded_messages(capture)) flight.emplace(capture);
   const OfflineSettings settings = settings_of(options, capture, flight ? &*flight : nullptr);
-  Columns columns;
-  columns.axes.resize(kMaxAxes);
-  const auto sink = [&](double time_s, const Increment& increment, const ChainOutput& out) {
-    columns.time_s.push_back(time_s);
-    columns.dt_s.push_back(increment.dt_s);
-    for (std::size_t a = 0; a < kMaxAxes; ++a) {
-      Series& axis = columns.axes[a];
-      axis.raw.push_back(increment.rate_radps[a]);
-      axis.compensated.push_back(out.compensated_radps[a]);
-      axis.denoised.push_back(out.estimate.denoised_radps[a]);
-      axis.variance.push_back(out.estimate.variance_rad2ps2[a]);
-    }
-    if ((out.estimate.flags & kGated) != 0) ++columns.gated;
-    if ((out.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) ++columns.stale;
-    if ((out.compensator_flags & kOutOfRange) != 0) ++columns.out_of_range;
-    if ((out.compensator_flags & kRampUnknown) != 0) ++columns.ramp_unknown;
-    if ((out.flags & kNoiseUnknown) != 0) ++columns.unknown_noise;
-  };
+  // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
+  DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
+  const OfflineSink sink{[&](const std::vector<std::string>& axes) { rows.begin(axes); },
+                         [&](double time_s, const Increment& increment, const ChainOutput& out) {
+                           rows.add(time_s, increment, out);
+                         }};
   OfflineResult result;
   if (flight) {
     DriverInstance driver = flight->make_driver(options.input.driver_name(), options.input.settings());
@@ -310,15 +231,13 @@ void run(Options options) {
     DriverInstance driver = options.input.make_driver();
     result = denoise_recording(options.input, capture, driver, settings, sink);
   } else {
-    result = denoise_capture(options.input.read(capture), settings, sink);
+    result = denoise_capture(options.input.read_long(capture), options.capture, settings, sink);
   }
-  columns.axes.resize(result.axes.size());
-  if (options.smooth) smooth(columns, result);
-  keep(options, columns);
-  write_text_file(options.output, as_text(columns, result));
-  tell(options, columns, result);
-  if (!options.json.empty()) write_json(options.json, summary(options, columns, result));
-  if (!options.picture.empty()) draw(options.picture, columns, result);
+  if (options.smooth) smooth(rows.columns(), result);
+  rows.finish(options.capture);
+  tell(options, rows, result);
+  if (!options.json.empty()) write_json(options.json, summary(options, rows, result));
+  if (!options.picture.empty()) draw(options.picture, rows.columns(), result);
 }
 
 }  // namespace

@@ -10,7 +10,9 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "drivers/capture/capture.h"
 #include "filters/model_file/channel_names.h"
+#include "filters/series/series_view.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -57,15 +59,6 @@ class Chain {
   OfflineResult result_;
 };
 
-double median_step_s(const std::vector<double>& time_s) {
-  if (time_s.size() < 2) throw std::runtime_error("the capture has fewer than 2 samples");
-  std::vector<double> steps(time_s.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time_s[i + 1] - time_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 bool used(const Model* model, const std::string& channel) {
   const auto names_it = [&](const std::string& of_effect) {
     const ChannelNames names = names_in(of_effect);
@@ -77,57 +70,84 @@ bool used(const Model* model, const std::string& channel) {
          });
 }
 
-// Columns that the chain can hold: all, or where they are too many, those the model uses.
-std::vector<const CaptureColumn*> chosen_channels(const Capture& capture, const Model* model) {
-  std::vector<const CaptureColumn*> out;
-  const bool all = capture.channels.size() <= static_cast<std::size_t>(kMaxChannels);
-  for (const CaptureColumn& column : capture.channels)
-    if (all || used(model, column.name)) out.push_back(&column);
+// Columns that the chain can hold, by their place: all channels, or where they are too many, those the model
+// uses.
+std::vector<std::size_t> chosen_channels(const LongTable& capture, const CaptureShape& shape,
+                                         const Model* model) {
+  std::vector<std::size_t> out;
+  const bool all = shape.channels <= static_cast<std::size_t>(kMaxChannels);
+  for (std::size_t c = 0; c < capture.columns.size(); ++c)
+    if (shape.places[c].kind == CaptureShape::Place::Kind::channel &&
+        (all || used(model, capture.columns[c].name)))
+      out.push_back(c);
+  return out;
+}
+
+ChainSettings chain_settings_of(const LongTable& capture, const CaptureShape& shape,
+                                const std::vector<std::size_t>& channels, const OfflineSettings& settings) {
+  ChainSettings out;
+  out.facts.axes = static_cast<int>(shape.axes.size());
+  if (capture.size() < 2 && settings.sensor.nominal_rate_hz <= 0.0)
+    throw std::runtime_error("the capture has fewer than 2 samples");
+  out.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz
+                                                                    : 1.0 / median_step(capture.time_s);
+  out.facts.frame_channels = out.facts.channels = static_cast<int>(channels.size());
+  out.axes = shape.axes;
+  for (const std::size_t c : channels) {
+    const std::string& name = capture.columns[c].name;
+    out.channels.push_back(name);
+    double max_age_s = kChannelMaxAge_s;
+    for (const ChannelConfig& channel : settings.sensor.channels)
+      if (channel.name == name) max_age_s = channel.max_age_s;
+    out.channel_max_age_s.push_back(max_age_s);
+  }
+  out.filter = settings.sensor.filter;
+  out.start_up_s = settings.sensor.start_up_s;
+  out.model = settings.model;
+  out.learned = settings.learned;
+  out.since_power_up_s = settings.since_power_up_s;
   return out;
 }
 
 }  // namespace
 
-OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& settings,
-                              const OfflineSink& sink) {
-  ChainSettings chain_settings;
-  const std::vector<const CaptureColumn*> channels = chosen_channels(capture, settings.model.get());
-  chain_settings.facts.axes = static_cast<int>(capture.axes.size());
-  chain_settings.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0
-                                             ? settings.sensor.nominal_rate_hz
-                                             : 1.0 / median_step_s(capture.time_s);
-  chain_settings.facts.frame_channels = chain_settings.facts.channels = static_cast<int>(channels.size());
-  chain_settings.axes = capture.axes;
-  for (const CaptureColumn* const column : channels) {
-    chain_settings.channels.push_back(column->name);
-    double max_age_s = kChannelMaxAge_s;
-    for (const ChannelConfig& channel : settings.sensor.channels)
-      if (channel.name == column->name) max_age_s = channel.max_age_s;
-    chain_settings.channel_max_age_s.push_back(max_age_s);
-  }
-  chain_settings.filter = settings.sensor.filter;
-  chain_settings.start_up_s = settings.sensor.start_up_s;
-  chain_settings.model = settings.model;
-  chain_settings.learned = settings.learned;
-  chain_settings.since_power_up_s = settings.since_power_up_s;
-  Chain chain(chain_settings, settings.first_sequence);
+OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
+                              const OfflineSettings& settings, const OfflineSink& sink) {
+  const CaptureShape shape = capture_shape(capture.names(), name, capture);
+  const std::vector<std::size_t> channels = chosen_channels(capture, shape, settings.model.get());
+  Chain chain(chain_settings_of(capture, shape, channels, settings), settings.first_sequence);
+  sink.begin(shape.axes);
+  // The time, the axes, the channels.
+  std::vector<SeriesView> views{capture.time_s};
+  views.resize(1 + shape.axes.size());
+  for (std::size_t c = 0; c < capture.columns.size(); ++c)
+    if (shape.places[c].kind == CaptureShape::Place::Kind::rate)
+      views[1 + shape.places[c].at] = capture.columns[c].values;
+  for (const std::size_t c : channels) views.emplace_back(capture.columns[c].values);
+  std::vector<std::vector<double>> room(views.size());
+  std::vector<std::span<const double>> now(views.size());
   Reading reading;
   ChainOutput out;
-  for (std::size_t i = 0; i < capture.size(); ++i) {
-    // The column's own times are the device's clock; from the first sample on, as a clock cannot be negative
-    // here.
-    reading.device_time_ns = std::llround((capture.time_s[i] - capture.time_s[0]) * 1e9);
-    reading.valid_axes = 0;
-    for (std::size_t axis = 0; axis < capture.axes.size(); ++axis) {
-      reading.value[axis] = capture.rate_radps[axis][i];
-      if (std::isfinite(reading.value[axis])) reading.valid_axes |= 1u << axis;
+  const double first_s = capture.size() > 0 ? views[0].at(0) : 0.0;
+  for (std::size_t begin = 0; begin < capture.size(); begin += kSeriesPiece) {
+    const std::size_t count = std::min(kSeriesPiece, capture.size() - begin);
+    for (std::size_t v = 0; v < views.size(); ++v) now[v] = views[v].piece(begin, count, room[v]);
+    for (std::size_t i = 0; i < count; ++i) {
+      // The column's own times are the device's clock; from the first sample on, as a clock cannot be
+      // negative here.
+      reading.device_time_ns = std::llround((now[0][i] - first_s) * 1e9);
+      reading.valid_axes = 0;
+      for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
+        reading.value[axis] = now[1 + axis][i];
+        if (std::isfinite(reading.value[axis])) reading.valid_axes |= 1u << axis;
+      }
+      reading.fresh_channels = 0;
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        reading.channel[c] = now[1 + shape.axes.size() + c][i];
+        if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
+      }
+      if (const Increment* const increment = chain.run(reading, out)) sink.sample(now[0][i], *increment, out);
     }
-    reading.fresh_channels = 0;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-      reading.channel[c] = channels[c]->values[i];
-      if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
-    }
-    if (const Increment* const increment = chain.run(reading, out)) sink(capture.time_s[i], *increment, out);
   }
   return chain.finish();
 }
@@ -138,6 +158,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
   chain_settings.learned = settings.learned;
   chain_settings.since_power_up_s = settings.since_power_up_s;
   const SensorFacts& facts = chain_settings.facts;
+  sink.begin(chain_settings.axes);
   Chain chain(chain_settings, settings.first_sequence);
   Reading reading;
   // Channels that did not come in the frames are not in the recording: never a value, for ever stale.
@@ -151,7 +172,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
     const Increment* const increment = chain.run(reading, out);
     if (increment == nullptr) return;
     if (!std::exchange(first, false)) time_s += increment->dt_s;
-    sink(time_s, *increment, out);
+    sink.sample(time_s, *increment, out);
   });
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
   return chain.finish();
@@ -164,6 +185,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
   chain_settings.since_power_up_s = settings.since_power_up_s;
   if (!settings.since_power_up_s) chain_settings.powered_ns = flight.header().powered_ns;
   const SensorFacts& facts = chain_settings.facts;
+  sink.begin(chain_settings.axes);
   const std::vector<ChannelConfig> outside = outside_channels(settings.sensor);
   // By name: the settings may be others than those it was recorded with.
   std::vector<std::size_t> recorded_at;
@@ -192,7 +214,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
                                   const Increment* const increment = chain.run(reading, out);
                                   if (increment == nullptr) return;
                                   if (!std::exchange(first, false)) time_s += increment->dt_s;
-                                  sink(time_s, *increment, out);
+                                  sink.sample(time_s, *increment, out);
                                 },
                                 [&] { chain.discontinuity(); }};
   const RecordingCounts counts = flight.for_each_sample(driver, samples);

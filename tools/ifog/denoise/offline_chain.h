@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/capture.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/long_table.h"
 
 namespace ifog::tools {
 
@@ -28,8 +28,13 @@ struct OfflineSettings {
   std::optional<double> since_power_up_s;  // ChainSettings::since_power_up_s
 };
 
-// One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step times.
-using OfflineSink = std::function<void(double time_s, const Increment&, const ChainOutput&)>;
+struct OfflineSink {
+  // Once, before the first sample: the sensor's axes.
+  std::function<void(const std::vector<std::string>& axes)> begin;
+  // One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step
+  // times.
+  std::function<void(double time_s, const Increment&, const ChainOutput&)> sample;
+};
 
 struct OfflineResult {
   std::vector<std::string> axes;
@@ -43,8 +48,9 @@ struct OfflineResult {
 };
 
 // All throw std::runtime_error or std::invalid_argument with one line.
-OfflineResult denoise_capture(const Capture& capture, const OfflineSettings& settings,
-                              const OfflineSink& sink);
+// name: of the capture, for messages.
+OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
+                              const OfflineSettings& settings, const OfflineSink& sink);
 // The samples, times and channels that the daemon had.
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
                              const OfflineSink& sink);

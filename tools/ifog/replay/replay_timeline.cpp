@@ -98,10 +98,11 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   if (!source.input.has_driver())
     throw std::runtime_error(source.path +
                              ": a CSV capture needs --driver NAME, whose frames its rows become");
-  const Capture capture = source.input.parse(file.text(), source.path);
+  const Capture capture = source.input.read_csv(file);
+  const double rate_hz = sample_rate_hz(capture);
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
-  DriverInstance driver(plugin, with_rate_of(capture, *plugin, source.input.settings()));
-  CaptureEncoder encoder(capture, driver, source.axis);
+  DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
+  CaptureEncoder encoder(capture, driver, rate_hz, source.axis);
   for (const std::string& notice : encoder.notices()) warn("%s: %s\n", source.path.c_str(), notice.c_str());
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv_header.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "drivers/capture/chosen_columns.h"
+#include "drivers/capture/column_names.h"
+#include "drivers/capture/input_file.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMostAngle_rad = 1e9;  // beyond, a float32 resolves 64 rad
+
+std::vector<std::string> split(std::string_view line, char separator) {
+  std::vector<std::string> names;
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    names.emplace_back(unquoted(line.substr(0, end)));
+    if (end == std::string_view::npos) return names;
+    line.remove_prefix(end + 1);
+  }
+}
+
+void check_names(const std::vector<std::string>& names, const std::string& path, std::size_t line) {
+  if (names.front() != "time_s")
+    refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.empty()) fail_at(path, line, "a column has no name");
+    if (!seen.insert(name).second) fail_at(path, line, "column " + in_quotes(name) + " stands twice");
+  }
+}
+
+bool is_rate(const std::string& column) {
+  std::string axis;
+  return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
+}
+
+// Of the capture's column, before its conversion.
+Measurable in_file_unit(const Measurable& range, const UnitConversion& conversion) {
+  const double a = (range.least - conversion.offset) / conversion.scale;
+  const double b = (range.most - conversion.offset) / conversion.scale;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+// The place of a column that was asked for by its header.
+std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
+                     const std::string& path, std::size_t line) {
+  const auto count = std::count(names.begin(), names.end(), wanted);
+  if (count == 1)
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted) - names.begin());
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  fail_at(path, line,
+          (count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
+              printable(list, kLongestMessage));
+}
+
+// What of each column of the file is to be kept.
+void choose(const std::vector<std::string>& names, const CsvLayout& layout, const std::string& path,
+            CsvHeader& header) {
+  header.cells.resize(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) header.cells[i].name = names[i];
+  const CsvTime time = layout.time.value_or(CsvTime{});
+  header.time_place = place_of(time.header, names, path, header.line);
+  CsvCell& time_cell = header.cells[header.time_place];
+  time_cell.range = in_file_unit(measurable("time_s"), {time.unit_s, 0.0});
+  time_cell.column = CsvCell::kTime;
+  if (!layout.chooses()) {
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      header.cells[i] = {names[i], measurable(names[i]), is_rate(names[i]), i - 1};
+      header.names.push_back(names[i]);
+    }
+    return;
+  }
+  std::vector<CsvColumn> columns = layout.columns;
+  if (columns.empty())  // --time alone: the others stand under their own names
+    for (const std::string& name : names)
+      if (name != time.header) columns.push_back({name, name, ""});
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const CsvColumn& column = columns[i];
+    CsvCell& chosen = header.cells[place_of(column.header, names, path, header.line)];
+    if (chosen.column != CsvCell::kPassedOver)
+      fail_at(path, header.line, "column " + in_quotes(column.header) + " is chosen twice");
+    const Measurable range =
+        column.is_angle() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
+    chosen.range = in_file_unit(range, conversion_of(column));
+    chosen.rate = is_rate(column.name);
+    chosen.column = i;
+    header.names.push_back(column.name);
+  }
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view cell) {
+  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
+  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
+    cell.remove_suffix(1);
+  return cell;
+}
+
+std::string_view unquoted(std::string_view cell) {
+  cell = trimmed(cell);
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
+  return cell;
+}
+
+bool Lines::next(std::string_view& line) {
+  if (rest_.empty()) return false;
+  const std::size_t end = rest_.find('\n');
+  line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  ++number_;
+  return true;
+}
+
+bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& layout, CsvHeader& header) {
+  std::vector<std::string> names;
+  std::string_view line;
+  while (names.empty() && lines.next(line)) {
+    if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
+    if (trimmed(line).empty()) continue;
+    if (line.front() == '#')
+      header.comments.append(trimmed(line.substr(1))) += '\n';
+    else
+      names = split(line, layout.separator);
+  }
+  if (names.empty()) return false;
+  header.line = lines.number();
+  if (const std::string separator = suggested_separator(std::string(line));
+      layout.separator == ',' && !separator.empty())
+    fail_at(path, header.line,
+            "no comma in the header " + in_quotes(line) + "; expected commas, or " + separator);
+  if (!layout.chooses()) check_names(names, path, header.line);
+  choose(names, layout, path, header);
+  return true;
+}
+
+void refuse_long_line(const std::string& path, std::size_t line, std::string_view begins) {
+  fail_at(path, line,
+          "a line of more than " + std::to_string(kLongestLine) + " bytes, begins " +
+              in_quotes(begins.substr(0, kLongestQuote)));
+}
+
+}  // namespace ifog

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv_piece.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "drivers/capture/column_names.h"
+#include "drivers/capture/input_file.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell,
+              bool decimal_comma) {
+  cell = unquoted(cell);
+  if (cell.empty()) return kMissing;
+  std::array<char, 64> with_point{};
+  std::string_view digits = cell;
+  if (const std::size_t comma = cell.find(',');
+      decimal_comma && comma < cell.size() && cell.size() <= with_point.size()) {
+    std::copy(cell.begin(), cell.end(), with_point.begin());
+    with_point[comma] = '.';
+    digits = {with_point.data(), cell.size()};
+  }
+  if (digits.front() == '+') digits.remove_prefix(1);  // from_chars takes no plus sign
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range)
+    fail_at(path, line, printable(column) + " is " + in_quotes(cell) + ", outside what a double holds");
+  if (error != std::errc() || end != digits.data() + digits.size())
+    fail_at(path, line,
+            printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing");
+  if (std::isinf(value))
+    fail_at(path, line, printable(column) + " is infinite, expected a finite number, 'nan' or nothing");
+  return value;
+}
+
+std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
+  for (; place > 0; --place) line.remove_prefix(line.find(separator) + 1);
+  return trimmed(line.substr(0, line.find(separator)));
+}
+
+// One row after the other, into the columns of a piece.
+class Rows {
+ public:
+  Rows(CsvPiece& piece, const CsvHeader& header, char separator, const std::string& path)
+      : piece_(piece), header_(header), separator_(separator), path_(path) {
+    piece_.rows.columns.resize(header.names.size());
+    piece_.impossible.resize(header.cells.size());
+    for (std::size_t i = 0; i < header.cells.size(); ++i)
+      to_.push_back(header.cells[i].column == CsvCell::kTime ? &piece_.rows.time_s
+                    : header.cells[i].column == CsvCell::kPassedOver
+                        ? nullptr
+                        : &piece_.rows.columns[header.cells[i].column]);
+  }
+
+  void reserve(std::size_t rows) {
+    for (std::vector<double>* const column : to_)
+      if (column != nullptr) column->reserve(rows);
+  }
+
+  void add(std::string_view line, std::size_t number) {
+    std::size_t place = 0;
+    for (std::string_view rest = line;;) {
+      const std::size_t end = rest.find(separator_);
+      if (place == to_.size())
+        fail_at(path_, number,
+                "more cells than the " + std::to_string(to_.size()) + " columns of the header");
+      if (to_[place] != nullptr) take(place, rest.substr(0, end), number);
+      ++place;
+      if (end == std::string_view::npos) break;
+      rest.remove_prefix(end + 1);
+    }
+    if (place != to_.size())
+      fail_at(
+          path_, number,
+          std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
+  }
+
+ private:
+  void take(std::size_t place, std::string_view text, std::size_t line) {
+    const CsvCell& cell = header_.cells[place];
+    const double value = number(path_, line, cell.name, text, separator_ != ',');
+    const bool possible = std::isnan(value) || cell.range.holds(value);
+    to_[place]->push_back(possible ? value : kMissing);
+    if (possible) return;
+    ImpossibleCells& impossible = piece_.impossible[place];
+    if (impossible.count++ > 0) return;
+    impossible.first_line = line;
+    impossible.first = unquoted(text);
+  }
+
+  CsvPiece& piece_;
+  const CsvHeader& header_;
+  char separator_;
+  const std::string& path_;
+  std::vector<std::vector<double>*> to_;
+};
+
+}  // namespace
+
+CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
+                         const std::string& path, std::size_t lines_before, double time_before) {
+  CsvPiece piece;
+  Rows rows(piece, header, separator, path);
+  // Rows are about as long as the first, and have at least a separator a column.
+  const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
+  rows.reserve(text.size() / length + text.size() / length / 16 + 1);
+  Lines lines(text, lines_before);
+  std::string_view line;
+  std::size_t skipped = 0;
+  const CsvCell& time = header.cells[header.time_place];
+  const std::vector<double>& times = piece.rows.time_s;
+  while (lines.next(line)) {
+    if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
+    if (trimmed(line).empty() || line.front() == '#') {
+      if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
+      ++skipped;
+      if (piece.skipped.empty() || piece.skipped.back().row != times.size())
+        piece.skipped.push_back({times.size(), skipped});
+      piece.skipped.back().lines = skipped;
+      continue;
+    }
+    rows.add(line, lines.number());
+    const auto said = [&] { return cell_at(line, header.time_place, separator); };
+    if (piece.impossible[header.time_place].count > 0)
+      fail_at(path, lines.number(), what_no_sensor_measures(time, piece.impossible[header.time_place].first));
+    if (times.size() == 1) piece.decimals = said().find('.') != std::string_view::npos;
+    if (std::isnan(times.back()))
+      fail_at(path, lines.number(), printable(time.name) + " is missing, expected a time");
+    const double before = times.size() > 1 ? times[times.size() - 2] : time_before;
+    if (times.back() <= before)
+      fail_at(path, lines.number(),
+              printable(time.name) + " is " + printable(said()) + ", expected more than in the row before");
+  }
+  piece.lines = lines.number() - lines_before;
+  return piece;
+}
+
+std::string what_no_sensor_measures(const CsvCell& cell, const std::string& said) {
+  return printable(cell.name) + " is " + in_quotes(said) + ", which no sensor measures, expected " +
+         shortest(cell.range.least) + " to " + shortest(cell.range.most);
+}
+
+}  // namespace ifog

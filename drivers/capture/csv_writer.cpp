@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv_writer.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace ifog {
+namespace {
+
+void append(std::string& out, double value) {
+  if (std::isnan(value)) {
+    out += "nan";
+    return;
+  }
+  std::array<char, 40> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  (void)error;  // 40 characters hold any double
+  out.append(text.data(), end);
+}
+
+}  // namespace
+
+CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
+                     const std::vector<std::string>& names)
+    : file_(path) {
+  for (std::string_view rest = comments; !rest.empty();) {
+    const std::size_t end = rest.find('\n') + 1;
+    text_.append("# ").append(rest.substr(0, end));
+    rest.remove_prefix(end);
+  }
+  for (std::size_t c = 0; c < names.size(); ++c) text_ += (c == 0 ? "" : ",") + names[c];
+  text_ += '\n';
+  file_.write(text_);
+}
+
+void CsvWriter::rows(std::span<const std::span<const double>> columns) {
+  text_.clear();
+  for (std::size_t row = 0; row < columns.front().size(); ++row) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c != 0) text_ += ',';
+      append(text_, columns[c][row]);
+    }
+    text_ += '\n';
+  }
+  file_.write(text_);
+}
+
+}  // namespace ifog

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A capture's text, written while its rows come.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/text_file.h"
+
+namespace ifog {
+
+// Shortest text that reads back as the same double.
+class CsvWriter {
+ public:
+  // comments: as in RowNotes. Throws as OutputFile does, all of it.
+  CsvWriter(const std::string& path, const std::string& comments, const std::vector<std::string>& names);
+
+  // By column, in the order of the names, all of one length.
+  void rows(std::span<const std::span<const double>> columns);
+  // Without it a regular file stays as it was.
+  void finish() { file_.finish(); }
+
+ private:
+  TextOutput file_;
+  std::string text_;
+};
+
+}  // namespace ifog

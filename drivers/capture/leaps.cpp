@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/leaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace ifog {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSlowest_s = 0.1;     // between samples
+constexpr double kStandstill = 0.01;   // of the leap, the most beside it
+constexpr std::size_t kEnough = 2001;  // rows that show the sample time
+
+double median_step(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < std::min(time_s.size(), kEnough); ++i)
+    steps.push_back(time_s[i] - time_s[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+void append(RowBlock& to, RowBlock& rows) {
+  if (to.size() == 0) return std::swap(to, rows);
+  to.time_s.insert(to.time_s.end(), rows.time_s.begin(), rows.time_s.end());
+  for (std::size_t c = 0; c < to.columns.size(); ++c)
+    to.columns[c].insert(to.columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
+}
+
+}  // namespace
+
+Leaps::Leaps(std::vector<std::size_t> rates, Next next)
+    : rates_(std::move(rates)),
+      next_(std::move(next)),
+      found_(rates_.size()),
+      before_(rates_.size(), kMissing) {}
+
+void Leaps::take(RowBlock& rows) {
+  append(held_, rows);
+  if (held_.size() < kEnough) return;
+  judge();
+  hand_on(held_.size() - 1);
+}
+
+void Leaps::finish() {
+  if (held_.size() == 0) return;
+  if (rows_before_ + held_.size() >= 3) judge();
+  hand_on(held_.size());
+}
+
+void Leaps::judge() {
+  if (!std::exchange(judged_, true)) {
+    const double step_s = median_step(held_.time_s);
+    half_a_turn_ = step_s > kSlowest_s ? 0.0 : std::numbers::pi / step_s;
+  }
+  if (half_a_turn_ > 0.0)
+    for (std::size_t r = 0; r < rates_.size(); ++r) look_at(r);
+}
+
+// All rows but the last and the record's first.
+void Leaps::look_at(std::size_t r) {
+  std::vector<double>& rate = held_.columns[rates_[r]];
+  double before = before_[r];
+  for (std::size_t i = 0; i + 1 < rate.size(); ++i) {
+    const double here = rate[i], after = rate[i + 1];
+    const bool first = rows_before_ + i == 0;
+    if (!first && std::abs(here) > half_a_turn_ &&
+        std::max(std::abs(before), std::abs(after)) < kStandstill * std::abs(here)) {
+      if (found_[r].count++ == 0) found_[r].first_row = rows_before_ + i;
+      rate[i] = kMissing;
+    }
+    before = here;
+  }
+  before_[r] = before;
+}
+
+void Leaps::hand_on(std::size_t rows) {
+  RowBlock kept;
+  kept.columns.resize(held_.columns.size());
+  const auto cut = [rows](std::vector<double>& from, std::vector<double>& to) {
+    to.assign(from.begin() + static_cast<std::ptrdiff_t>(rows), from.end());
+    from.resize(rows);
+  };
+  cut(held_.time_s, kept.time_s);
+  for (std::size_t c = 0; c < kept.columns.size(); ++c) cut(held_.columns[c], kept.columns[c]);
+  rows_before_ += rows;
+  if (rows > 0) next_(held_);
+  held_ = std::move(kept);
+}
+
+}  // namespace ifog

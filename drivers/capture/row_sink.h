@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A capture on its way in pieces: what reads one hands blocks of rows to what works on them, so that no
+// command has to hold the whole. Every format is read through this.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace ifog {
+
+// Rows that follow one another, by column.
+struct RowBlock {
+  std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN
+  std::vector<std::vector<double>>
+      columns;  // in the order of the names, each as long as time_s; NaN: missing
+
+  [[nodiscard]] std::size_t size() const { return time_s.size(); }
+};
+
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  // Once, before the first rows: the columns beside the time, as in a capture's header (rate_x_radps, …).
+  virtual void begin(const std::vector<std::string>& names) = 0;
+  // The next rows, at least one; the sink may keep or spoil them.
+  virtual void take(RowBlock& rows) = 0;
+};
+
+// What the reading says besides the rows; whole once the last of them was taken.
+struct RowNotes {
+  // Comment and blank lines behind the header: so many all together before this row and those that follow.
+  struct Skipped {
+    std::size_t row, lines;
+  };
+
+  std::string comments;         // without the '#', each with a line's end behind it
+  std::size_t header_line = 0;  // 0: not read from a text
+  std::vector<Skipped> skipped;
+  std::vector<std::string> notices;  // of the reading: what may be meant otherwise
+  std::vector<std::string> faults;   // cells taken for missing, one line a column
+
+  // The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
+  [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
+};
+
+}  // namespace ifog

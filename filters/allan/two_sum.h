@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace ifog {
+
+// a + b exactly, as a rounded sum and what the rounding left (Knuth, TAOCP vol. 2, 4.2.2 theorem B).
+inline void two_sum(double a, double b, double& sum, double& rest) {
+  sum = a + b;
+  const double t = sum - a;
+  rest = (a - (sum - t)) + (b - t);
+}
+
+}  // namespace ifog

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers in order, as many as there are: in memory at first, and beyond a limit in a file without a name,
+// which nothing is left of when the program ends however it ends.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ifog {
+
+class LongSeries {
+ public:
+  // 8 MiB of numbers: a dozen columns in memory together are a hundredth of a small computer's.
+  static constexpr std::size_t kInMemory = std::size_t{1} << 20U;
+
+  // in_memory: numbers kept there before the file is begun, in $TMPDIR or else /var/tmp or /tmp.
+  explicit LongSeries(std::size_t in_memory = kInMemory) : most_(in_memory) {}
+  ~LongSeries();
+  LongSeries(LongSeries&& other) noexcept;
+  LongSeries& operator=(LongSeries&& other) noexcept;
+  LongSeries(const LongSeries&) = delete;
+  LongSeries& operator=(const LongSeries&) = delete;
+
+  // Both throw std::runtime_error with one line: no room for the file, an error of its device.
+  void add(double value);
+  void add(std::span<const double> values);
+
+  [[nodiscard]] std::size_t size() const { return filed_ + recent_.size(); }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  // The whole where it is in memory; what is not in the file yet otherwise.
+  [[nodiscard]] const std::vector<double>& recent() const { return recent_; }
+  [[nodiscard]] std::size_t filed() const { return filed_; }  // numbers in the file, the first ones
+  // to: as many as are wanted, all of them there. Several threads may read at once.
+  void read(std::size_t first, std::span<double> to) const;
+
+ private:
+  void file_recent();
+
+  std::size_t most_;
+  std::vector<double> recent_;
+  std::size_t filed_ = 0;
+  int fd_ = -1;
+};
+
+}  // namespace ifog

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Work shared among threads, one item at a time.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace ifog {
+
+// work(i) for all i below `items`, begun in order; threads 0: as many as there are processors. What one of
+// them throws comes out when all have ended.
+template <typename Work>
+void share_out(std::size_t items, unsigned threads, const Work& work) {
+  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex guard;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < items; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(guard);
+        failure = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> others;
+  for (unsigned i = 1; i < std::min<std::size_t>(threads, items); ++i) others.emplace_back(run);
+  run();
+  for (std::thread& other : others) other.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace ifog

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv_rows.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+#include "drivers/capture/input_file.h"
+
+namespace {
+
+using ifog::CsvLayout;
+using ifog::RowBlock;
+
+// All that was handed over, put together.
+struct Gathered final : ifog::RowSink {
+  std::vector<std::string> names;
+  RowBlock rows;
+  std::size_t blocks = 0;
+
+  void begin(const std::vector<std::string>& given) override {
+    names = given;
+    rows.columns.resize(names.size());
+  }
+  void take(RowBlock& next) override {
+    ASSERT_GT(next.size(), 0U);
+    ++blocks;
+    rows.time_s.insert(rows.time_s.end(), next.time_s.begin(), next.time_s.end());
+    ASSERT_EQ(next.columns.size(), names.size());
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      ASSERT_EQ(next.columns[c].size(), next.size());
+      rows.columns[c].insert(rows.columns[c].end(), next.columns[c].begin(), next.columns[c].end());
+    }
+  }
+};
+
+struct Reading {
+  Gathered got;
+  ifog::RowNotes notes;
+  std::string refused;
+};
+
+Reading in_pieces(const std::string& text, std::size_t piece, const CsvLayout& layout = {}) {
+  Reading out;
+  std::size_t at = 0;
+  const auto read = [&](char* to, std::size_t most) {
+    const std::size_t n = std::min(most, text.size() - at);
+    std::memcpy(to, text.data() + at, n);
+    at += n;
+    return n;
+  };
+  try {
+    out.notes = ifog::read_csv_rows(read, "a.csv", layout, out.got, piece);
+  } catch (const std::runtime_error& error) {
+    out.refused = error.what();
+  }
+  return out;
+}
+
+void expect_same(const Reading& a, const Reading& b, std::size_t piece) {
+  SCOPED_TRACE(piece);
+  EXPECT_EQ(a.refused, b.refused);
+  if (!a.refused.empty()) return;
+  EXPECT_EQ(a.got.names, b.got.names);
+  EXPECT_EQ(a.got.rows.time_s, b.got.rows.time_s);
+  for (std::size_t c = 0; c < a.got.names.size(); ++c) {
+    ASSERT_EQ(a.got.rows.columns[c].size(), b.got.rows.columns[c].size());
+    // Bit for bit, missing cells as well.
+    EXPECT_EQ(0, std::memcmp(a.got.rows.columns[c].data(), b.got.rows.columns[c].data(),
+                             a.got.rows.columns[c].size() * sizeof(double)));
+  }
+  EXPECT_EQ(a.notes.comments, b.notes.comments);
+  for (std::size_t row = 0; row < a.got.rows.size(); ++row)
+    ASSERT_EQ(a.notes.line_of_row(row), b.notes.line_of_row(row));
+  EXPECT_EQ(a.notes.header_line, b.notes.header_line);
+  EXPECT_EQ(a.notes.faults, b.notes.faults);
+  EXPECT_EQ(a.notes.notices, b.notes.notices);
+}
+
+constexpr std::size_t kWhole = std::size_t{1} << 24U;
+constexpr std::array<std::size_t, 9> kPieces{1, 2, 7, 31, 100, 1000, 4096, 65536, std::size_t{1} << 20U};
+
+// Comments, holes, missing cells, cells that no sensor measures, leaps, carriage returns, no end of the last
+// line.
+std::string long_text(std::size_t rows) {
+  std::mt19937 random(11);
+  std::string text =
+      "\xEF\xBB\xBF# a gyro\r\n\n# of two axes\ntime_s,rate_x_radps,rate_y_radps,temp_degC\r\n";
+  for (std::size_t i = 0; i < rows; ++i) {
+    if (i % 997 == 5) text += i % 2 == 0 ? "# somebody came in\n" : "\n";
+    char line[128];
+    const double leap = i % 5003 == 4000 ? 900.0 : 0.0;
+    std::snprintf(line, sizeof line, "%.3f,%.9g,%s,%s%s",
+                  0.01 * static_cast<double>(i + (i > rows / 2 ? 40 : 0)),
+                  leap + 1e-6 * static_cast<double>(random() % 2000), i % 11 == 3 ? "nan" : "1e-5",
+                  i == 1234     ? "-300"
+                  : i % 50 == 0 ? "25.5"
+                                : "",
+                  i + 1 < rows ? (i % 3 == 0 ? "\r\n" : "\n") : "");
+    text += line;
+  }
+  return text;
+}
+
+TEST(CsvRows, PiecesOfEverySizeAreTheWhole) {
+  const std::string text = long_text(12000);
+  const Reading whole = in_pieces(text, kWhole);
+  ASSERT_EQ(whole.refused, "");
+  EXPECT_EQ(whole.got.rows.size(), 12000U);
+  EXPECT_EQ(whole.notes.faults.size(), 2U);
+  EXPECT_TRUE(std::isnan(whole.got.rows.columns[0][4000]));
+  EXPECT_TRUE(std::isnan(whole.got.rows.columns[0][9003]));
+  for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece), piece);
+  // Long enough for threads, and not all at once.
+  const Reading threaded = in_pieces(text, std::size_t{200} << 10U);
+  expect_same(whole, threaded, 0);
+  EXPECT_GT(threaded.got.blocks, 1U);
+}
+
+TEST(CsvRows, ChosenColumnsAndAnglesAreTheWholesToo) {
+  std::string text = "n;t;GyroX;Angle\n";
+  for (int i = 0; i < 5000; ++i) {
+    char line[96];
+    std::snprintf(line, sizeof line, "x;%d;%d,25;%d\n", 10 * i, i % 7, (i * 3) % 360);
+    text += line;
+  }
+  CsvLayout layout;
+  layout.separator = ';';
+  layout.time = ifog::CsvTime::parse("t:ms");
+  layout.columns = {ifog::CsvColumn::parse("rate_x_radps=GyroX:deg/s"),
+                    ifog::CsvColumn::parse("rate_y_radps=Angle:deg")};
+  const Reading whole = in_pieces(text, kWhole, layout);
+  ASSERT_EQ(whole.refused, "");
+  EXPECT_NEAR(whole.got.rows.columns[0][8], 1.25 * std::numbers::pi / 180.0, 1e-15);
+  // Three degrees in ten milliseconds, also where the angle begins again.
+  EXPECT_NEAR(whole.got.rows.columns[1][120], 300.0 * std::numbers::pi / 180.0, 1e-9);
+  for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece, layout), piece);
+}
+
+TEST(CsvRows, SaysWhatIsWrongWithItsLineWhereverThePieceEnds) {
+  const std::string text = long_text(6000);
+  const auto with = [&](std::size_t line, const std::string& instead) {
+    std::size_t at = 0;
+    for (std::size_t i = 1; i < line; ++i) at = text.find('\n', at) + 1;
+    return text.substr(0, at) + instead + text.substr(text.find('\n', at));
+  };
+  for (const auto& [bad, said] :
+       {std::pair<std::string, std::string>{
+            "5,1,warm,3", "a.csv:4321: rate_y_radps is 'warm', expected a number, 'nan' or nothing"},
+        {"5,1,2", "a.csv:4321: 3 cells, expected 4 (a truncated line?)"},
+        {"5,1,2,3,4", "a.csv:4321: more cells than the 4 columns of the header"},
+        {"0.5,1,2,3", "a.csv:4321: time_s is 0.5, expected more than in the row before"},
+        {",1,2,3", "a.csv:4321: time_s is missing, expected a time"}}) {
+    const std::string wrong = with(4321, bad);
+    for (const std::size_t piece : kPieces) EXPECT_EQ(in_pieces(wrong, piece).refused, said) << piece;
+  }
+  // A header may be far down, and wrong there.
+  std::string late;
+  for (int i = 0; i < 3000; ++i) late += "# a long word of somebody\n";
+  for (const std::size_t piece : kPieces) {
+    EXPECT_EQ(in_pieces(late, piece).refused, "a.csv: no header line, expected 'time_s,rate_radps,…'");
+    EXPECT_EQ(in_pieces(late + "time_s,a_V,a_V\n0,1,2\n", piece).refused,
+              "a.csv:3001: column 'a_V' stands twice");
+    EXPECT_EQ(in_pieces(late + "time_s,a_V\n", piece).refused, "a.csv: no rows after the header");
+  }
+}
+
+TEST(CsvRows, ALineThatNobodyWroteIsRefusedWithItsNumber) {
+  const std::string text = "time_s,a_V\n0,1\n1," + std::string(ifog::kLongestLine + 10, '1');
+  for (const std::string end : {"", "\n2,1\n"})
+    for (const std::size_t piece : {std::size_t{1000}, std::size_t{1} << 20U, kWhole})
+      EXPECT_EQ(in_pieces(text + end, piece).refused.substr(0, 46),
+                "a.csv:3: a line of more than 1048576 bytes, be");
+}
+
+TEST(CsvRows, ATruncatedPackedFileIsSaid) {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("ifog-rows-" + std::to_string(getpid()) + ".csv.gz");
+  const std::string text = long_text(60000);
+  gzFile file = gzopen(path.c_str(), "wb");
+  ASSERT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
+  gzclose(file);
+  const auto refused = [&] {
+    ifog::InputFile input(path.string());
+    Gathered got;
+    try {
+      (void)ifog::read_csv_rows([&](char* to, std::size_t most) { return input.read(to, most); }, "a.csv", {},
+                                got, std::size_t{1} << 16U);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return "rows: " + std::to_string(got.rows.size());
+  };
+  EXPECT_EQ(refused(), "rows: 60000");
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) * 3 / 4);
+  EXPECT_EQ(refused(), path.string() + ": cannot read: the gzip stream ends early (truncated file)");
+  std::filesystem::remove(path);
+}
+
+}  // namespace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/long_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace ifog::tools {
+
+using Kind = CaptureShape::Place::Kind;
+
+std::vector<std::string> LongTable::names() const {
+  std::vector<std::string> out;
+  for (const LongColumn& column : columns) out.push_back(column.name);
+  return out;
+}
+
+void LongTable::leave_out_unknown(const std::string& path) {
+  const bool any = std::any_of(columns.begin(), columns.end(), [](const LongColumn& column) {
+    return column.known && column.name.starts_with("rate");
+  });
+  if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
+  std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
+}
+
+void LongTableSink::begin(const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (wanted_ && !wanted_(names[i])) continue;
+    table_.columns.push_back({names[i], LongSeries(), false});
+    from_.push_back(i);
+  }
+}
+
+void LongTableSink::take(RowBlock& rows) {
+  table_.time_s.add(rows.time_s);
+  for (std::size_t c = 0; c < from_.size(); ++c) {
+    LongColumn& column = table_.columns[c];
+    const std::vector<double>& values = rows.columns[from_[c]];
+    column.values.add(values);
+    column.known =
+        column.known || std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
+  }
+}
+
+LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
+    : table_(table), shape_(shape), names_{"time_s"}, views_{table.time_s} {
+  for (const Kind kind : {Kind::rate, Kind::reference, Kind::channel}) {
+    const std::size_t many = kind == Kind::channel ? shape.channels : shape.axes.size();
+    for (std::size_t at = 0; at < many; ++at)
+      for (std::size_t c = 0; c < shape.places.size(); ++c)
+        if (shape.places[c].kind == kind && shape.places[c].at == at) {
+          names_.push_back(table.columns[c].name);
+          views_.emplace_back(table.columns[c].values);
+          from_.push_back(c);
+        }
+  }
+  room_.resize(views_.size());
+  rows_.resize(views_.size());
+}
+
+bool LongRows::next() {
+  const std::size_t count = std::min(kSeriesPiece, table_.size() - at_);
+  if (count == 0) return false;
+  for (std::size_t i = 0; i < views_.size(); ++i) rows_[i] = views_[i].piece(at_, count, room_[i]);
+  at_ += count;
+  return true;
+}
+
+void LongRows::as_capture(Capture& piece) const {
+  const auto put = [](std::span<const double> from, std::vector<double>& to) {
+    to.assign(from.begin(), from.end());
+  };
+  piece.axes = shape_.axes;
+  piece.rate_radps.resize(shape_.axes.size());
+  piece.reference_rate_radps.resize(shape_.axes.size());
+  piece.channels.resize(shape_.channels);
+  put(rows_[0], piece.time_s);
+  for (std::size_t i = 0; i < from_.size(); ++i) {
+    const CaptureShape::Place& place = shape_.places[from_[i]];
+    if (place.kind == Kind::channel) piece.channels[place.at].name = names_[i + 1];
+    put(rows_[i + 1], place.kind == Kind::rate        ? piece.rate_radps[place.at]
+                      : place.kind == Kind::reference ? piece.reference_rate_radps[place.at]
+                                                      : piece.channels[place.at].values);
+  }
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// A capture of any length: its columns in memory while they are short, and beyond in files without a name.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/capture.h"
+#include "drivers/capture/row_sink.h"
+#include "filters/series/long_series.h"
+#include "filters/series/series_view.h"
+
+namespace ifog::tools {
+
+struct LongColumn {
+  std::string name;
+  LongSeries values;
+  bool known = false;  // ever a value
+};
+
+struct LongTable : RowNotes {
+  LongSeries time_s;
+  std::vector<LongColumn> columns;  // all but time_s, in the capture's order
+
+  [[nodiscard]] std::size_t size() const { return time_s.size(); }
+  [[nodiscard]] std::vector<std::string> names() const;
+  // Of a recording: axes and channels that never had a value. Throws std::runtime_error where nothing is
+  // left.
+  void leave_out_unknown(const std::string& path);
+};
+
+// Puts rows into a table: the columns that `wanted` says yes to, all where it is empty.
+class LongTableSink final : public RowSink {
+ public:
+  using Wanted = std::function<bool(const std::string& name)>;
+  explicit LongTableSink(LongTable& table, Wanted wanted = {}) : table_(table), wanted_(std::move(wanted)) {}
+
+  void begin(const std::vector<std::string>& names) override;
+  void take(RowBlock& rows) override;
+
+ private:
+  LongTable& table_;
+  Wanted wanted_;
+  std::vector<std::size_t> from_;  // by column of the table: that of the rows
+};
+
+// Some rows of a table's columns at a time, in the order in which a capture is written: rates, references,
+// channels.
+class LongRows {
+ public:
+  // Both have to outlive this.
+  LongRows(const LongTable& table, const CaptureShape& shape);
+
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // time_s first
+  // The next rows, by name; false at the end. Valid until the next call.
+  bool next();
+  [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
+  // The same as a capture of so many rows, whose columns keep their places.
+  void as_capture(Capture& piece) const;
+
+ private:
+  const LongTable& table_;
+  const CaptureShape& shape_;
+  std::vector<std::string> names_;
+  std::vector<SeriesView> views_;
+  std::vector<std::size_t> from_;  // by name but the first: the table's column
+  std::vector<std::vector<double>> room_;
+  std::vector<std::span<const double>> rows_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace ifog::tools

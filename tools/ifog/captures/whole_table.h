@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is there as a whole, for what works on pieces.
+#pragma once
+
+#include "drivers/capture/capture.h"
+#include "tools/ifog/captures/long_table.h"
+
+namespace ifog::tools {
+
+RowNotes hand_on(Capture capture, RowSink& sink);
+LongTable long_table(Capture capture);
+LongTable long_table(Table whole);
+
+}  // namespace ifog::tools

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/denoise/denoised_rows.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace ifog::tools {
+
+constexpr std::size_t kTogether = std::size_t{1} << 20U;  // bytes written at once
+
+void Moments::add(double value) {
+  if (!std::isfinite(value)) return;
+  n_ += 1.0;
+  const double difference = value - mean_;
+  mean_ += difference / n_;
+  square_ += difference * (value - mean_);
+}
+
+double Moments::deviation() const { return n_ > 1.0 ? std::sqrt(square_ / (n_ - 1.0)) : 0.0; }
+
+DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
+    : output_(std::move(output)), part_(part), keep_(keep || smooth), smooth_(smooth) {}
+
+void DenoisedRows::begin(const std::vector<std::string>& axes) {
+  axes_ = axes;
+  moments_.resize(axes.size());
+  columns_.axes.resize(axes.size());
+  write_header();
+}
+
+void DenoisedRows::write_header() {
+  text_ = "time_s";
+  for (const std::string& axis : axes_) {
+    const std::string suffix = axis.empty() ? "" : "_" + axis;
+    text_ += ",raw" + suffix + "_radps,compensated" + suffix + "_radps,denoised" + suffix +
+             "_radps,variance" + suffix + "_rad2ps2";
+    if (smooth_) text_ += ",smoothed" + suffix + "_radps,smoothed_variance" + suffix + "_rad2ps2";
+  }
+  text_ += '\n';
+}
+
+void DenoisedRows::append(double value) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text_.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
+}
+
+void DenoisedRows::flush(std::size_t beyond) {
+  if (text_.size() <= beyond) return;
+  output_.write(text_);
+  text_.clear();
+}
+
+void DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
+  if ((out.estimate.flags & kGated) != 0) ++counts_.gated;
+  if ((out.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) ++counts_.stale;
+  if ((out.compensator_flags & kOutOfRange) != 0) ++counts_.out_of_range;
+  if ((out.compensator_flags & kRampUnknown) != 0) ++counts_.ramp_unknown;
+  if ((out.flags & kNoiseUnknown) != 0) ++counts_.unknown_noise;
+  if (rows_++ == 0) first_s_ = time_s;
+  last_s_ = time_s;
+  if (keep_) {
+    columns_.time_s.push_back(time_s);
+    columns_.dt_s.push_back(increment.dt_s);
+  }
+  over_ = over_ || (time_s >= part_.from_s && time_s >= part_.to_s);
+  const bool inside = time_s >= part_.from_s && !over_;
+  if (inside) {
+    ++written_;
+    if (!smooth_) append(time_s);
+  }
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const double raw = increment.rate_radps[a], compensated = out.compensated_radps[a],
+                 denoised = out.estimate.denoised_radps[a], variance = out.estimate.variance_rad2ps2[a];
+    if (keep_) {
+      DenoisedAxis& axis = columns_.axes[a];
+      axis.raw.push_back(raw);
+      axis.compensated.push_back(compensated);
+      axis.denoised.push_back(denoised);
+      axis.variance.push_back(variance);
+    }
+    if (!inside) continue;
+    moments_[a].raw.add(raw);
+    moments_[a].compensated.add(compensated);
+    moments_[a].denoised.add(denoised);
+    if (smooth_) continue;
+    for (const double value : {raw, compensated, denoised, variance}) {
+      text_ += ',';
+      append(value);
+    }
+  }
+  if (!inside || smooth_) return;
+  text_ += '\n';
+  flush(kTogether);
+}
+
+void DenoisedRows::finish(const std::string& name) {
+  if (written_ == 0 && rows_ > 0) part_.refuse_empty(first_s_, last_s_, name);
+  if (keep_) {
+    std::vector<std::vector<double>*> all{&columns_.dt_s};
+    for (DenoisedAxis& axis : columns_.axes)
+      all.insert(all.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance, &axis.smoothed,
+                             &axis.smoothed_variance});
+    part_.cut(columns_.time_s, all, name);
+  }
+  for (std::size_t i = 0; smooth_ && i < columns_.time_s.size(); ++i) {
+    append(columns_.time_s[i]);
+    for (const DenoisedAxis& axis : columns_.axes)
+      for (const auto* const series : {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance,
+                                       &axis.smoothed, &axis.smoothed_variance}) {
+        text_ += ',';
+        append((*series)[i]);
+      }
+    text_ += '\n';
+    flush(kTogether);
+  }
+  flush(0);
+  output_.finish();
+}
+
+}  // namespace ifog::tools

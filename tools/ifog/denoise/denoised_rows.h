@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the chain says of each sample, on its way into the file: written as it comes, and kept only where
+// something looks at all of it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/text_file.h"
+#include "filters/chain/incrementer.h"
+#include "filters/chain/signal_chain.h"
+#include "tools/ifog/captures/time_part.h"
+
+namespace ifog::tools {
+
+// Mean and standard deviation of what is a number.
+class Moments {
+ public:
+  void add(double value);
+  [[nodiscard]] double mean() const { return mean_; }
+  [[nodiscard]] double deviation() const;
+
+ private:
+  double n_ = 0.0, mean_ = 0.0, square_ = 0.0;
+};
+
+struct DenoisedAxis {
+  std::vector<double> raw, compensated, denoised, variance;
+  std::vector<double> smoothed, smoothed_variance;  // empty unless asked for
+};
+
+// Whole columns, for a picture and for smoothing.
+struct DenoisedColumns {
+  std::vector<double> time_s, dt_s;
+  std::vector<DenoisedAxis> axes;
+};
+
+class DenoisedRows {
+ public:
+  struct Counts {
+    std::uint64_t gated = 0, stale = 0, out_of_range = 0, ramp_unknown = 0, unknown_noise = 0;
+  };
+  struct AxisMoments {
+    Moments raw, compensated, denoised;
+  };
+
+  // Writes what of it is in `part`. keep: the columns as well; smooth: write nothing before finish().
+  DenoisedRows(std::string output, TimePart part, bool keep, bool smooth);
+
+  // Once, before the first sample.
+  void begin(const std::vector<std::string>& axes);
+  void add(double time_s, const Increment& increment, const ChainOutput& out);
+  // What was kept, of all rows: smoothing fills its last two columns. After the last sample.
+  [[nodiscard]] DenoisedColumns& columns() { return columns_; }
+  // Of the rows in the part from here on. name: of the capture. Throws std::runtime_error with one line when
+  // there are none, or as OutputFile does.
+  void finish(const std::string& name);
+
+  [[nodiscard]] std::size_t written() const { return written_; }
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+  [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
+
+ private:
+  void write_header();
+  void append(double value);
+  void flush(std::size_t beyond);
+
+  TextOutput output_;
+  TimePart part_;
+  bool keep_, smooth_;
+  std::vector<std::string> axes_;
+  std::string text_;
+  DenoisedColumns columns_;
+  std::vector<AxisMoments> moments_;
+  Counts counts_;
+  std::size_t rows_ = 0, written_ = 0;
+  double first_s_ = 0.0, last_s_ = 0.0;
+  bool over_ = false;  // beyond the part
+};
+
+}  // namespace ifog::tools
