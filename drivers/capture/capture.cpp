@@ -11,9 +11,8 @@
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
-namespace {
 
-Capture as_capture(Table table, const std::string& path) {
+Capture capture_of(Table table, const std::string& path) {
   std::vector<std::string> names;
   for (const CaptureColumn& column : table.columns) names.push_back(column.name);
   const CaptureShape shape = capture_shape(names, path, table);
@@ -41,8 +40,6 @@ Capture as_capture(Table table, const std::string& path) {
   }
   return capture;
 }
-
-}  // namespace
 
 CaptureShape capture_shape(const std::vector<std::string>& names, const std::string& path,
                            const RowNotes& notes) {
@@ -79,11 +76,11 @@ Capture read_capture(const std::string& path) {
 }
 
 Capture read_capture(InputFile& file, const CsvLayout& layout) {
-  return as_capture(read_table(file, layout), file.path());
+  return capture_of(read_table(file, layout), file.path());
 }
 
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  return as_capture(parse_table(text, path, layout), path);
+  return capture_of(parse_table(text, path, layout), path);
 }
 
 void write_capture(const Capture& capture, const std::string& path) {

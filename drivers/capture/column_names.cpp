@@ -27,7 +27,7 @@ std::string shortest(double value) {
 }
 
 void fail_at(const std::string& path, std::size_t line, const std::string& what) {
-  throw std::runtime_error(path + ":" + std::to_string(line) + ": " + what);
+  throw std::runtime_error(path + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what);
 }
 
 void refuse_header(const std::string& path, std::size_t line_number, const std::string& what,

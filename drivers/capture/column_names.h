@@ -15,7 +15,7 @@ bool axis_of(const std::string& name, std::string_view prefix, std::string& axis
 // Shortest text that reads back the same.
 std::string shortest(double value);
 
-// Throws std::runtime_error: "PATH:LINE: WHAT".
+// Throws std::runtime_error: "PATH:LINE: WHAT"; without the line where it is 0, as of a file that has none.
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
 // The same of a header, with the options that read it as it is where its names tell them.
 [[noreturn]] void refuse_header(const std::string& path, std::size_t line, const std::string& what,

@@ -98,6 +98,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
     throw std::runtime_error(path_ + ": cannot open: " + reason());
   }
   gzbuffer(file_.get(), 1U << 18U);
+  if (S_ISREG(info.st_mode)) total_ = static_cast<std::size_t>(info.st_size);
   if (S_ISREG(info.st_mode) && gzdirect(file_.get()) == 0)
     most_ = std::max(kGrowthFree, static_cast<std::size_t>(info.st_size) * kMostGrowth);
   held_.resize(kHead);
@@ -111,6 +112,9 @@ InputFile::InputFile(std::string path, std::deque<std::string> files)
 }
 
 void InputFile::begin() {
+  std::error_code unknown;
+  for (const std::string& file : more_)
+    if (const auto bytes = std::filesystem::file_size(file, unknown); !unknown) total_ += bytes;
   open_next();
   held_.resize(kHead);
   held_.resize(unpack(held_.data(), kHead));
@@ -128,6 +132,7 @@ bool InputFile::open_next() {
   if (fd < 0 && errno == ENOENT && path.ends_with(kOpenEnding))
     fd = opened(path.substr(0, path.size() - kOpenEnding.size()));
   if (fd < 0) throw std::runtime_error(path + ": cannot open: " + reason());
+  if (file_) behind_ += static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get())));
   file_.reset(gzdopen(fd, "rb"));
   if (!file_) {
     ::close(fd);
@@ -142,6 +147,8 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
     const auto wanted = static_cast<unsigned>(std::min<std::size_t>(most - done, 1U << 30U));
     const int n = gzread(file_.get(), to + done, wanted);
     if (n > 0) done += static_cast<std::size_t>(n);
+    if (told_ && total_ > 0)
+      told_(behind_ + static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get()))), total_);
     if (n > 0 && most_ > 0 && (unpacked_ += static_cast<std::size_t>(n)) > most_)
       throw std::runtime_error(path_ + ": grows to more than " + std::to_string(most_ >> 20U) + " MiB, " +
                                std::to_string(kMostGrowth) +

@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 struct gzFile_s;  // zlib's
 
@@ -42,6 +44,15 @@ class InputFile {
   std::string bytes();
   std::string text();
 
+  // From here on `told` hears how many bytes of the file, as it lies on the disk, have been read, and of how
+  // many; 0 where that is not known. Nothing ends it.
+  using Told = std::function<void(std::size_t done, std::size_t total)>;
+  void tell(Told told) { told_ = std::move(told); }
+  // By who reads the file in a way of its own.
+  void told(std::size_t done, std::size_t total) const {
+    if (told_) told_(done, total);
+  }
+
   // Whether path() opened again gives the same bytes: a regular file that is not packed. For libraries that
   // want a name.
   [[nodiscard]] bool reopens() const { return reopens_; }
@@ -60,6 +71,8 @@ class InputFile {
   std::string held_;              // at hand: the head, or all of a given text
   std::size_t taken_ = 0;
   bool reopens_ = false;
+  Told told_;
+  std::size_t total_ = 0, behind_ = 0;   // bytes of all files, and of those that were read to their end
   std::size_t unpacked_ = 0, most_ = 0;  // most_ 0: as much as comes
 };
 

@@ -11,10 +11,32 @@ namespace ifog {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20U;  // bytes
 
+namespace {
+
+std::string_view unpacked_name(std::string_view path) {
+  if (path.ends_with(".gz")) path.remove_suffix(3);
+  return path;
+}
+
+bool begins_as_hdf5(std::string_view head) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1A\n";
+  for (const std::size_t at : {0U, 512U, 1024U, 2048U})
+    if (head.substr(std::min<std::size_t>(at, head.size())).starts_with(kSignature)) return true;
+  return false;
+}
+
+}  // namespace
+
+bool is_hdf5(const std::string& path) {
+  const std::string_view name = unpacked_name(path);
+  return name.ends_with(".h5") || name.ends_with(".hdf5");
+}
+
+bool is_hdf5(const InputFile& file) { return is_hdf5(file.path()) || begins_as_hdf5(file.head()); }
+
 FileKind file_kind(const std::string& path) {
-  std::string_view name(path);
-  if (name.ends_with(".gz")) name.remove_suffix(3);
-  if (name.ends_with(".csv")) return FileKind::capture;
+  const std::string_view name = unpacked_name(path);
+  if (name.ends_with(".csv") || is_hdf5(path)) return FileKind::capture;
   if (name.ends_with(".log") || name.ends_with(".candump")) return FileKind::candump;
   if (name.ends_with(".lcm")) return FileKind::lcm_log;
   if (name.ends_with(".ifr")) return FileKind::flight;
@@ -28,6 +50,7 @@ FileKind file_kind(const InputFile& file) {
   if (by_name != FileKind::unknown) return by_name;
   std::string_view head = file.head();
   if (head.starts_with("\xF1IFR")) return FileKind::flight;
+  if (begins_as_hdf5(head)) return FileKind::capture;
   // lcm-logger's own names end in a number. Each event begins with this word.
   if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
   // Comments may stand before a capture's header and between a log's lines.

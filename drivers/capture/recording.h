@@ -15,7 +15,7 @@
 namespace ifog {
 
 enum class FileKind {
-  capture,  // .csv
+  capture,  // .csv; .h5, .hdf5
   candump,  // .log, .candump
   bytes,    // .bin, .kvh, .raw, .dat, .txt
   lcm_log,  // begins with an LCM event, or is called .lcm
@@ -26,8 +26,13 @@ enum class FileKind {
 // By the ending (before .gz); `unknown` where it does not tell. For a file that is to be written.
 FileKind file_kind(const std::string& path);
 // The same, and where the name does not tell by the first bytes: an LCM event, a line of candump, a header
-// that begins with time_s.
+// that begins with time_s, HDF5's signature.
 FileKind file_kind(const InputFile& file);
+
+// Which of the two a capture is, by its ending and, of a file that is there, by its first bytes: HDF5 begins
+// so, or behind the 512 bytes to 2 KiB that another program (MATLAB) has put before it.
+bool is_hdf5(const std::string& path);
+bool is_hdf5(const InputFile& file);
 
 struct RecordingCounts {
   std::size_t samples = 0;

@@ -50,6 +50,13 @@ Table whole(const ReadBytes& read, std::size_t bytes, const std::string& path, c
 
 }  // namespace
 
+Table table_of(const std::function<RowNotes(RowSink&)>& read) {
+  Table table;
+  TableSink sink(table, 0);
+  static_cast<RowNotes&>(table) = read(sink);
+  return table;
+}
+
 Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout) {
   std::string_view rest = text;
   const auto read = [&rest](char* to, std::size_t most) {

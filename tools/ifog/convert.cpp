@@ -24,14 +24,18 @@ struct Convert {
 void Convert::run() const {
   will_write("TO", to);
   InputFile file(from);
-  const bool from_csv = input.has_layout() || file_kind(file) == FileKind::capture;
+  const bool from_columns = input.has_layout() || file_kind(file) == FileKind::capture;
   // Standard output has no ending: it takes what the capture is not.
-  const bool to_csv =
-      file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_csv && input.has_driver()));
-  if (from_csv && !to_csv) return write_recording(input.read_long_csv(file), from, to, input, axis);
-  if (!to_csv)
-    throw CLI::ValidationError(to, "expected a .csv or .csv.gz file, or a capture in .csv to convert from");
-  write_csv(input.read_long(file), from, to);
+  const bool to_columns =
+      file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_columns && input.has_driver()));
+  if (from_columns && !to_columns)
+    return write_recording(input.read_long_columns(file), from, to, input, axis);
+  if (!to_columns)
+    throw CLI::ValidationError(to,
+                               "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");
+  const LongTable table = input.read_long(file);
+  write_columns(table, from, to);
+  say("%s: %zu samples\n", to.c_str(), table.size());
 }
 
 }  // namespace
@@ -43,10 +47,11 @@ void add_convert(CLI::App& app) {
   command
       ->add_option(
           "FROM", state->from,
-          "Capture (.csv, .csv.gz), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
+          "Capture (.csv, .csv.gz, .h5), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
           "log (.log), LCM log")
       ->required();
-  command->add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .bin, .kvh, .log")
+  command
+      ->add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log")
       ->required();
   state->input.add_to(*command);
   command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")

@@ -11,6 +11,7 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
 
@@ -29,22 +30,23 @@ struct Simulate {
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
     simulate::Simulation made;
     try {
-      made = simulate::simulate(s);
+      Progress progress("simulating", 0);
+      made = simulate::simulate(s, progress.teller());
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(scenario + ": " + error.what());
     }
     if (file_kind(output) == FileKind::capture || (is_standard_output(output) && !encoding.has_driver())) {
       if (encoding.has_driver())
-        throw CLI::ValidationError(output,
-                                   "is a CSV capture, which no driver encodes; expected .kvh, .bin or .log");
-      write_capture(made.capture, output);
+        throw CLI::ValidationError(
+            output, "is a capture in columns, which no driver encodes; expected .kvh, .bin or .log");
+      write_columns(long_table(made.capture), scenario, output);
       say("%s: %zu samples\n", output.c_str(), made.capture.size());
     } else {
       write_recording(long_table(made.capture), scenario, output, encoding, axis);
     }
     if (truth.empty()) return;
     if (file_kind(truth) == FileKind::capture)
-      write_capture(simulate::truth_capture(made.truth, made.capture), truth);
+      write_columns(long_table(simulate::truth_capture(made.truth, made.capture)), scenario, truth);
     else
       write_text_file(truth, simulate::truth_json(made.truth));
     say("%s: the truth\n", truth.c_str());
@@ -59,11 +61,12 @@ void add_simulate(CLI::App& app) {
       app.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
   command->add_option("SCENARIO", state->scenario, "Scenario (.toml)")->required();
   command
-      ->add_option("--output", state->output, "Capture: .csv, .csv.gz; through a driver .kvh, .bin or .log")
+      ->add_option("--output", state->output,
+                   "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log")
       ->required();
-  command->add_option(
-      "--truth", state->truth,
-      "Write what the capture does not tell: .json the parameters, .csv the true rate and each effect");
+  command->add_option("--truth", state->truth,
+                      "Write what the capture does not tell: .json the parameters, .csv or .h5 the true rate "
+                      "and each effect");
   CLI::Option* seed = command->add_option("--seed", state->seed, "Instead of the scenario's");
   state->encoding.add_driver_to(*command);
   command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")

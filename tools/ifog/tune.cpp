@@ -235,6 +235,8 @@ void run(const Options& options) {
                              " rows, expected at least 200");
   const SampleClock clock = sample_clock(capture.time_s);
   const double period = clock.period_s;
+  Progress progress("fitting state models",
+                    options.states.empty() ? default_candidates().size() : options.states.size());
   const Rest rest = rest_of(capture, period, options.capture);
   std::vector<std::string> notes;
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
@@ -245,9 +247,7 @@ void run(const Options& options) {
   const std::vector<std::span<const double>> axes(columns.begin(), columns.end());
   TuneOptions tune_options;
   tune_options.states = options.states;
-  Progress progress("fitting state models",
-                    options.states.empty() ? default_candidates().size() : options.states.size());
-  tune_options.progress = [&](std::size_t done, std::size_t) { progress.at(done); };
+  tune_options.progress = progress.teller();
   Tuning tuning;
   try {
     tuning = tune(axes, period, tune_options);

@@ -55,7 +55,7 @@ def option_lines(options):
         if not option["positional"] and option["group"] not in ("Options", group):
             group = option["group"]
             out.append(f'.SS "{roff.inline(group)}"')
-        value = re.sub(r"^(\w+):", "", option["value"]) if option["choices"] else option["value"]
+        value = option["value"]
         name = option["positional"] or ", ".join(option["names"])
         term = f"`{name}`" + (f" *{value}*" if value and not option["positional"] else "") + (" ..." if option["repeats"] else "")
         remarks = ["required"] if option["required"] else []

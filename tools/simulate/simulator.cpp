@@ -16,6 +16,7 @@ namespace {
 constexpr std::uint32_t kChannelStream = 1000, kMotionStream = 2000, kEffectStream = 3000,
                         kNoiseStream = 4000, kRowStream = 5000, kReferenceStream = 6000;
 constexpr std::uint32_t kPerAxis = 100'000;
+constexpr std::size_t kToldEvery = 65'536;  // samples
 
 std::uint32_t stream(std::uint32_t block, std::size_t part, std::size_t axis) {
   return block + static_cast<std::uint32_t>(part) + kPerAxis * static_cast<std::uint32_t>(axis);
@@ -23,7 +24,7 @@ std::uint32_t stream(std::uint32_t block, std::size_t part, std::size_t axis) {
 
 class Simulator {
  public:
-  explicit Simulator(const Scenario& scenario) : s_(scenario) {
+  Simulator(const Scenario& scenario, const Told& told) : s_(scenario), told_(told) {
     if (!(s_.sample_rate_hz > 0.0)) throw std::invalid_argument("sample_rate_hz must be more than 0");
     if (!(s_.duration_s * s_.sample_rate_hz >= 2.0 && s_.duration_s * s_.sample_rate_hz <= 2e9))
       throw std::invalid_argument("duration_s × sample_rate_hz must be 2 to 2·10⁹ samples");
@@ -35,17 +36,22 @@ class Simulator {
     Simulation out;
     Truth& truth = out.truth;
     truth.scenario = s_;
-    for (std::size_t a = 0; a < s_.axes.size(); ++a) truth.true_rate_radps.push_back(motion(a));
+    for (std::size_t a = 0; a < s_.axes.size(); ++a) {
+      truth.true_rate_radps.push_back(motion(a));
+      made(s_.motions.size());
+    }
     for (std::size_t c = 0; c < s_.channels.size(); ++c) {
       const std::size_t axis =
           s_.channels[c].axis.empty() ? 0 : axis_index(s_.channels[c].axis, "channel " + s_.channels[c].name);
       channels_.push_back(channel_signal(s_.channels[c], grid_, truth.true_rate_radps[axis],
                                          Draw(s_.seed, stream(kChannelStream, c, 0))));
+      made(1);
     }
     Capture& capture = out.capture;
     capture.axes = s_.axes;
     for (std::size_t a = 0; a < s_.axes.size(); ++a) {
       truth.effect_radps.push_back(effects(a, truth.true_rate_radps));
+      made(s_.effects.size());
       capture.rate_radps.push_back(measured(a, truth));
       capture.reference_rate_radps.emplace_back();
       if (s_.reference) capture.reference_rate_radps.back() = reference(a, truth.true_rate_radps[a]);
@@ -110,11 +116,24 @@ class Simulator {
     return parts;
   }
 
-  std::vector<double> measured(std::size_t axis, const Truth& truth) const {
+  // So many signals more are whole.
+  void made(std::size_t signals) {
+    made_ += signals * grid_.samples;
+    tell(0);
+  }
+  void tell(std::size_t of_the_next) const {
+    const std::size_t an_axis = s_.motions.size() + s_.effects.size() + 1;  // its noise
+    if (told_) told_(made_ + of_the_next, (s_.axes.size() * an_axis + s_.channels.size()) * grid_.samples);
+  }
+
+  std::vector<double> measured(std::size_t axis, const Truth& truth) {
     std::vector<double> rate(grid_.samples);
     RateNoise source(s_.noise, s_.sample_rate_hz, grid_.duration(), s_.seed, stream(kNoiseStream, 0, axis));
-    for (std::size_t i = 0; i < rate.size(); ++i)
+    for (std::size_t i = 0; i < rate.size(); ++i) {
+      if (i % kToldEvery == 0) tell(i);
       rate[i] = truth.true_rate_radps[axis][i] + s_.bias_radps + source.next();
+    }
+    made(1);
     for (const auto& part : truth.effect_radps[axis])
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] += part[i];
     // The converter comes last: it rounds the sum of everything.
@@ -177,6 +196,8 @@ class Simulator {
   const Scenario& s_;
   Grid grid_;
   std::vector<ChannelSignal> channels_;
+  const Told& told_;
+  std::size_t made_ = 0;  // samples
 };
 
 nlohmann::ordered_json told(const Recipe& recipe) {
@@ -194,7 +215,7 @@ nlohmann::ordered_json told(const Recipe& recipe) {
 
 }  // namespace
 
-Simulation simulate(const Scenario& scenario) { return Simulator(scenario).run(); }
+Simulation simulate(const Scenario& scenario, const Told& told) { return Simulator(scenario, told).run(); }
 
 std::string truth_json(const Truth& truth) {
   const Scenario& s = truth.scenario;

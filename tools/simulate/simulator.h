@@ -2,7 +2,9 @@
 // A gyro in its surroundings: what it measures, what its channels log, and, apart from both, the truth.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,8 +47,10 @@ struct Simulation {
 
 // Same scenario, same bits. Each channel, motion, effect and noise term draws from a stream of its own, so
 // that taking one out leaves the others as they were. Throws std::invalid_argument: an effect of a channel or
-// axis that is not there, a length or rate that is not positive, fewer than two rows.
-[[nodiscard]] Simulation simulate(const Scenario& scenario);
+// axis that is not there, a length or rate that is not positive, fewer than two rows. `told` hears how many
+// samples of signals are made, and of how many.
+using Told = std::function<void(std::size_t done, std::size_t total)>;
+[[nodiscard]] Simulation simulate(const Scenario& scenario, const Told& told = {});
 
 // The truth for programs: the scenario with its drawn values and the RMS of each effect.
 [[nodiscard]] std::string truth_json(const Truth& truth);

@@ -61,6 +61,16 @@ class Checks:
             known = subprocess.run(["lexgrog", "-m", str(path)], capture_output=True, text=True, check=False)
             assert known.returncode == 0 and path.name.split(".")[0] in known.stdout, f"{path.name}: {known.stdout}{known.stderr}"
 
+    def check_options_are_told_in_plain_words(self):
+        """No type of a programming language, no name of a check, in help, manual and completion."""
+        foreign = re.compile(r"\b(TEXT|FLOAT|UINT|INT|BOOLEAN|NONNEGATIVE|POSITIVE)\b|:\{|:FILE\b| in \[")
+        for command in [[], *([name] for name in commands())]:
+            found = foreign.search(said(IFOG, *command, "--help"))
+            assert not found, f"ifog {' '.join(command)} --help: {found}"
+        for path in sorted(MANUAL.glob("man?/ifog*.gz")):
+            found = re.search(r"\b(TEXT|FLOAT|UINT|NONNEGATIVE)\b", gzip.decompress(path.read_bytes()).decode())
+            assert not found, f"{path.name}: {found}"
+
     def check_each_command_has_its_page_with_its_options(self):
         for command in commands():
             options = options_of_help(IFOG, command)

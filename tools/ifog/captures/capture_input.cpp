@@ -8,10 +8,12 @@
 
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/csv_rows.h"
+#include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/console/say.h"
 
@@ -36,11 +38,17 @@ void CaptureInput::add_to(CLI::App& command) {
   command
       .add_option(
           "--column", columns,
-          "Column of a CSV file with another header: rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes "
-          "its differences the rate. May stand several times; columns not named are passed over")
+          "Column of a CSV file with another header, or dataset of an HDF5 file: rate_x_radps=GyroX:deg/s; a "
+          "unit of angle (deg) makes its differences the rate. May stand several times; columns not named "
+          "are "
+          "passed over")
       ->type_name("NAME=HEADER[:UNIT]");
   command.add_option("--time", time, "Its time column: t:ms")->type_name("HEADER[:UNIT]");
-  command.add_option("--separator", separator, "What stands between its cells: ';' or tab")->type_name("C");
+  command.add_option("--separator", separator, "What stands between the cells of a CSV file: ';' or tab")
+      ->type_name("C");
+  command
+      .add_option("--group", group, "Group of an HDF5 file that holds the columns, or table of records: /imu")
+      ->type_name("PATH");
 }
 
 CsvLayout CaptureInput::layout() const {
@@ -62,10 +70,8 @@ void CaptureInput::tell(const std::vector<std::string>& notices, const std::vect
   for (const std::string& fault : faults) warn("%s\n", fault.c_str());
 }
 
-Capture CaptureInput::read_csv(InputFile& file) const {
-  Capture capture = read_capture(file, layout());
-  tell(capture.notices, capture.faults);
-  return capture;
+Capture CaptureInput::read_columns(InputFile& file) const {
+  return capture_of(table_of([&](RowSink& sink) { return column_rows(file, sink); }), file.path());
 }
 
 void CaptureInput::add_driver_to(CLI::App& command) {
@@ -155,16 +161,18 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
 FileKind CaptureInput::readable(const InputFile& file) const {
   const FileKind found = kind(file);
   if (found == FileKind::capture && has_driver())
-    throw std::runtime_error(file.path() + ": is a CSV capture, expected none of --driver and --dbc with it");
-  if ((found == FileKind::bytes || found == FileKind::candump || found == FileKind::unknown) && !has_driver())
     throw std::runtime_error(file.path() +
-                             ": is no CSV capture, expected --driver NAME (or --dbc FILE) to decode it with");
+                             ": is a capture in columns, expected none of --driver and --dbc with it");
+  if ((found == FileKind::bytes || found == FileKind::candump || found == FileKind::unknown) && !has_driver())
+    throw std::runtime_error(
+        file.path() + ": is no capture in columns, expected --driver NAME (or --dbc FILE) to decode it with");
   return found;
 }
 
 Capture CaptureInput::read(InputFile& file) const {
   const FileKind found = readable(file);
-  if (found == FileKind::capture) return read_csv(file);
+  const ReadingProgress progress(file);
+  if (found == FileKind::capture) return read_columns(file);
   if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
   if (found == FileKind::flight) return read_flight(file);
   DriverInstance instance = make_driver();
@@ -173,23 +181,32 @@ Capture CaptureInput::read(InputFile& file) const {
   return builder.finish();
 }
 
-RowNotes CaptureInput::csv_rows(InputFile& file, RowSink& sink) const {
-  RowNotes notes = read_csv_rows([&file](char* to, std::size_t most) { return file.read(to, most); },
-                                 file.path(), layout(), sink);
+RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
+  const bool hdf5 = is_hdf5(file);
+  if (hdf5 && !separator.empty())
+    throw CLI::ValidationError("--separator", "stands beside an HDF5 file, expected a CSV file");
+  if (!hdf5 && !group.empty())
+    throw CLI::ValidationError("--group",
+                               "stands beside " + in_quotes(file.path()) + ", expected an HDF5 file");
+  const ReadingProgress progress(file);
+  const auto read = [&file](char* to, std::size_t most) { return file.read(to, most); };
+  RowNotes notes =
+      hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(read, file.path(), layout(), sink);
   tell(notes.notices, notes.faults);
   return notes;
 }
 
-LongTable CaptureInput::read_long_csv(InputFile& file, const LongTableSink::Wanted& wanted) const {
+LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted) const {
   LongTable table;
   LongTableSink sink(table, wanted);
-  static_cast<RowNotes&>(table) = csv_rows(file, sink);
+  static_cast<RowNotes&>(table) = column_rows(file, sink);
   return table;
 }
 
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   const FileKind found = readable(file);
-  if (found == FileKind::capture) return csv_rows(file, sink);
+  const ReadingProgress progress(file);
+  if (found == FileKind::capture) return column_rows(file, sink);
   if (found == FileKind::lcm_log || (found == FileKind::flight && recorded_messages(file)))
     return hand_on(read_lcm_log(file, channel), sink);
   if (found == FileKind::flight) {

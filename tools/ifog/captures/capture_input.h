@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture of any kind as the commands take it: CSV as it is; raw bytes and candump logs through a driver;
-// flight recordings through the driver that they name, or another; LCM logs.
+// A capture of any kind as the commands take it: CSV and HDF5 as they are; raw bytes and candump logs through
+// a driver; flight recordings through the driver that they name, or another; LCM logs.
 #pragma once
 
 #include <functional>
@@ -30,10 +30,11 @@ struct CaptureInput {
   std::string dbc;                   // --dbc F: the driver option `dbc`
   std::string channel;  // --channel C: of a candump log the CAN interface, of an LCM log the channel
 
-  // Of a CSV file that is no capture by its header, see csv_layout.h.
+  // Of a CSV or HDF5 file that is no capture by its header, see csv_layout.h.
   std::vector<std::string> columns;  // --column NAME=HEADER:UNIT
   std::string time;                  // --time HEADER:UNIT
-  std::string separator;             // --separator C
+  std::string separator;             // --separator C, of CSV
+  std::string group;                 // --group PATH, of HDF5
 
   // Adds the options to a command that reads.
   void add_to(CLI::App& command);
@@ -47,11 +48,14 @@ struct CaptureInput {
   [[nodiscard]] std::string driver_name() const;
   [[nodiscard]] DriverSettings settings() const;
 
-  // Likewise of the options of a CSV file.
+  // Likewise of the options of a file of columns.
   [[nodiscard]] CsvLayout layout() const;
-  [[nodiscard]] bool has_layout() const { return !columns.empty() || !time.empty() || !separator.empty(); }
-  // A CSV file by them; what may be meant otherwise is told on standard error.
-  [[nodiscard]] Capture read_csv(InputFile& file) const;
+  [[nodiscard]] bool has_layout() const {
+    return !columns.empty() || !time.empty() || !separator.empty() || !group.empty();
+  }
+  // A file of columns (FileKind::capture) by them, CSV or HDF5, also beside a driver that is there to write
+  // with; what may be meant otherwise is told on standard error.
+  [[nodiscard]] Capture read_columns(InputFile& file) const;
 
   // Throws std::runtime_error with one line.
   [[nodiscard]] DriverInstance make_driver() const;
@@ -71,16 +75,16 @@ struct CaptureInput {
   [[nodiscard]] Capture read(InputFile& file) const;
   [[nodiscard]] Capture read(const std::string& path, std::string* sha256 = nullptr) const;
 
-  // Any kind in pieces, likewise; the one place that tells formats apart for it. CSV, raw bytes and flight
-  // recordings pass through; candump and LCM logs are read as a whole first.
+  // Any kind in pieces, likewise; the one place that tells formats apart for it. CSV, HDF5, raw bytes and
+  // flight recordings pass through; candump and LCM logs are read as a whole first.
   RowNotes read_rows(InputFile& file, RowSink& sink) const;
   // As a table of the columns wanted (all, where that is empty), whatever its length.
   [[nodiscard]] LongTable read_long(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
-  // Of a CSV file, also beside a driver that is there to write with.
-  [[nodiscard]] LongTable read_long_csv(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
+  // Of a file of columns, also beside a driver that is there to write with.
+  [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
  private:
-  RowNotes csv_rows(InputFile& file, RowSink& sink) const;
+  RowNotes column_rows(InputFile& file, RowSink& sink) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;
   void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
              const std::function<void()>& added) const;

@@ -4,14 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "drivers/capture/candump.h"
 #include "drivers/capture/capture_encoder.h"
-#include "drivers/capture/csv_writer.h"
 #include "drivers/capture/text_file.h"
 #include "filters/series/series_view.h"
+#include "tools/ifog/captures/column_writer.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -80,17 +81,16 @@ void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const
 
 }  // namespace
 
-void write_csv(const LongTable& table, const std::string& from, const std::string& to) {
+void write_columns(const LongTable& table, const std::string& from, const std::string& to) {
   const CaptureShape shape = capture_shape(table.names(), from, table);
   LongRows rows(table, shape);
-  CsvWriter file(to, table.comments, rows.names());
-  Progress progress("writing", table.size());
+  ColumnWriter file(to, table.comments, rows.names());
+  Progress progress("writing " + std::filesystem::path(to).filename().string(), table.size());
   for (std::size_t done = 0; rows.next(); progress.at(done)) {
     file.rows(rows.rows());
     done += rows.rows().front().size();
   }
   file.finish();
-  say("%s: %zu samples\n", to.c_str(), table.size());
 }
 
 void write_recording(const LongTable& table, const std::string& from, const std::string& to,
@@ -98,7 +98,7 @@ void write_recording(const LongTable& table, const std::string& from, const std:
   const CaptureShape shape = capture_shape(table.names(), from, table);
   if (!input.has_driver())
     throw CLI::ValidationError(to,
-                               "is no CSV capture, expected --driver NAME (or --dbc FILE) to encode it with");
+                               "is no .csv or .h5, expected --driver NAME (or --dbc FILE) to encode it with");
   const auto plugin = find_plugin(input.driver_name(), plugin_folders());
   const double rate_hz = table.size() > 1 ? sample_rate_hz(median_step(table.time_s)) : 0.0;
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, input.settings()));

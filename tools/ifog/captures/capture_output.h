@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture as a file: CSV, or the recording that a device would have left, by its driver's encoder.
+// A capture as a file: its columns, or the recording that a device would have left, by its driver's encoder.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace ifog::tools {
 
-// As a CSV capture. `name` is what messages call the table. Throws std::runtime_error with one line.
-void write_csv(const LongTable& table, const std::string& name, const std::string& to);
+// As a capture in columns: HDF5 where `to` ends so, else CSV. `name` is what messages call the table. Throws
+// std::runtime_error with one line.
+void write_columns(const LongTable& table, const std::string& name, const std::string& to);
 
 // `to` ends in .log for a CAN driver, in .bin or .kvh for one that speaks bytes. What the format has no place
 // for is told on standard error. Throws likewise, or CLI::ValidationError (usage) when driver and ending do

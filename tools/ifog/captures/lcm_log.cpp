@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
 #include <set>
@@ -21,6 +22,7 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -142,6 +144,13 @@ class SensorSeconds {
   std::int64_t start_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, shift_ns_ = 0;
 };
 
+std::size_t bytes_of(lcm::LogFile& log) {
+  std::fseek(log.getFilePtr(), 0, SEEK_END);
+  const long bytes = std::ftell(log.getFilePtr());
+  std::rewind(log.getFilePtr());
+  return static_cast<std::size_t>(std::max(0L, bytes));
+}
+
 using RateSink = std::function<void(const rate_t&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
@@ -152,10 +161,12 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
   lcm::LogFile log(chosen.source.name(), "r");
   std::size_t number = 0, axes = 0;
   SensorSeconds seconds;
+  Progress progress("reading " + std::filesystem::path(path).filename().string(), bytes_of(log));
   long end = 0;  // of the last whole message
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     ++number;
     end = std::ftell(log.getFilePtr());
+    progress.at(static_cast<std::size_t>(end));
     if (event->channel != wanted) {
       if (others)
         others(event->channel,

@@ -150,14 +150,14 @@ void run(const Options& options) {
   if (!options.model.empty()) base = read_model(options.model).filter.value_or(base);
   ComparisonOptions compare;
   compare.settings = settings_in_force(options.choice, base);
+  for (const RuleEntry& entry : rules()) compare.rules.emplace_back(entry.name);
+  Progress progress("comparing", compare.rules.size());
+  compare.progress = progress.teller();
   try {
     fill_noise(compare.settings, capture, in.period_s);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.capture + ": " + error.what());
   }
-  for (const RuleEntry& entry : rules()) compare.rules.emplace_back(entry.name);
-  Progress progress("comparing", compare.rules.size());
-  compare.progress = [&](std::size_t done, std::size_t) { progress.at(done); };
   const Comparison result = compare_rules(in, compare);
 
   const FilterSettings& s = compare.settings;

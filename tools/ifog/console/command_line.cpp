@@ -10,6 +10,7 @@
 #include "drivers/ifog/driver.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/describe.h"
+#include "tools/ifog/console/plain_words.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/console/usage_error.h"
 
@@ -48,6 +49,7 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
       },
       "Print every command with its options as JSON and exit");
   for (const AddCommand add : commands) add(app);
+  in_plain_words(app);
 
   int status = 0;
   try {

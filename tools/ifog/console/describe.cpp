@@ -2,6 +2,7 @@
 #include "tools/ifog/console/describe.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
@@ -11,16 +12,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The words of "TEXT:{auto,candump,bytes}", as the parser's own check of a choice writes them.
+// The words of "auto|candump|bytes", as a choice is written; what stands for a value is in capitals.
 std::vector<std::string> choices_of(std::string_view value) {
   std::vector<std::string> words;
-  const std::size_t open = value.find('{');
-  if (open == std::string_view::npos || !value.ends_with('}')) return words;
-  std::string_view rest = value.substr(open + 1, value.size() - open - 2);
-  while (!rest.empty()) {
-    const std::size_t comma = rest.find(',');
-    words.emplace_back(rest.substr(0, comma));
-    rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
+  const auto capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  if (value.find('|') == std::string_view::npos || std::any_of(value.begin(), value.end(), capital))
+    return words;
+  while (!value.empty()) {
+    const std::size_t end = value.find('|');
+    words.emplace_back(value.substr(0, end));
+    value = end == std::string_view::npos ? std::string_view{} : value.substr(end + 1);
   }
   return words;
 }

@@ -17,6 +17,7 @@
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/console/progress.h"
 
 namespace ifog::tools {
 namespace {
@@ -49,6 +50,7 @@ std::string formatted(const char* format, std::va_list arguments) {
 }
 
 void put(const std::string& text, std::FILE* where) {
+  clear_progress();
   if (std::fwrite(text.data(), 1, text.size(), where) != text.size() && where == stdout && failure == 0)
     failure = errno;
 }

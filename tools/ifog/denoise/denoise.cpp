@@ -22,6 +22,7 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/filter_options.h"
@@ -221,13 +222,14 @@ void run(Options options) {
                            rows.add(time_s, increment, out);
                          }};
   OfflineResult result;
+  const ReadingProgress progress(capture, "denoising");
   if (flight) {
     DriverInstance driver = flight->make_driver(options.input.driver_name(), options.input.settings());
     result = denoise_flight(*flight, driver, settings, sink);
   } else if (kind == FileKind::bytes || kind == FileKind::candump) {
     if (!options.input.has_driver())
-      throw std::runtime_error(options.capture +
-                               ": is no CSV capture, expected --driver NAME, --dbc FILE or --config F");
+      throw std::runtime_error(
+          options.capture + ": is no capture in columns, expected --driver NAME, --dbc FILE or --config F");
     DriverInstance driver = options.input.make_driver();
     result = denoise_recording(options.input, capture, driver, settings, sink);
   } else {
@@ -247,11 +249,14 @@ void add_denoise(CLI::App& app) {
       "denoise", "Denoise a capture as the daemon would, bit for bit with the same settings");
   auto options = std::make_shared<Options>();
   command
-      ->add_option("CAPTURE", options->capture,
-                   "CSV capture, flight recording (a file or its folder), raw bytes, candump or LCM log")
+      ->add_option(
+          "CAPTURE", options->capture,
+          "Capture (.csv, .csv.gz, .h5), flight recording (a file or its folder), raw bytes, candump or LCM "
+          "log")
       ->required();
   command
-      ->add_option("--output", options->output, "CSV: time_s, raw, compensated, denoised, variance by axis")
+      ->add_option("--output", options->output,
+                   "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis")
       ->required()
       ->type_name("FILE");
   options->input.add_to(*command);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/denoise/denoised_rows.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace ifog::tools {
 
-constexpr std::size_t kTogether = std::size_t{1} << 20U;  // bytes written at once
+constexpr std::size_t kTogether = std::size_t{1} << 14U;  // rows written at once
 
 void Moments::add(double value) {
   if (!std::isfinite(value)) return;
@@ -27,30 +26,31 @@ void DenoisedRows::begin(const std::vector<std::string>& axes) {
   axes_ = axes;
   moments_.resize(axes.size());
   columns_.axes.resize(axes.size());
-  write_header();
-}
-
-void DenoisedRows::write_header() {
-  text_ = "time_s";
+  std::vector<std::string> names{"time_s"};
   for (const std::string& axis : axes_) {
-    const std::string suffix = axis.empty() ? "" : "_" + axis;
-    text_ += ",raw" + suffix + "_radps,compensated" + suffix + "_radps,denoised" + suffix +
-             "_radps,variance" + suffix + "_rad2ps2";
-    if (smooth_) text_ += ",smoothed" + suffix + "_radps,smoothed_variance" + suffix + "_rad2ps2";
+    const std::string suffix = (axis.empty() ? "" : "_" + axis) + "_";
+    for (const char* const name : {"raw", "compensated", "denoised"})
+      names.push_back(name + suffix + "radps");
+    names.push_back("variance" + suffix + "rad2ps2");
+    if (!smooth_) continue;
+    names.push_back("smoothed" + suffix + "radps");
+    names.push_back("smoothed_variance" + suffix + "rad2ps2");
   }
-  text_ += '\n';
+  held_.resize(names.size());
+  file_.emplace(output_, "", names);
 }
 
-void DenoisedRows::append(double value) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text_.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
+void DenoisedRows::append(double value) { held_[place_++].push_back(value); }
+
+void DenoisedRows::end_row() {
+  place_ = 0;
+  if (held_.front().size() >= kTogether) flush();
 }
 
-void DenoisedRows::flush(std::size_t beyond) {
-  if (text_.size() <= beyond) return;
-  output_.write(text_);
-  text_.clear();
+void DenoisedRows::flush() {
+  if (held_.front().empty()) return;
+  file_->rows(std::vector<std::span<const double>>(held_.begin(), held_.end()));
+  for (std::vector<double>& column : held_) column.clear();
 }
 
 void DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
@@ -86,14 +86,9 @@ void DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
     moments_[a].compensated.add(compensated);
     moments_[a].denoised.add(denoised);
     if (smooth_) continue;
-    for (const double value : {raw, compensated, denoised, variance}) {
-      text_ += ',';
-      append(value);
-    }
+    for (const double value : {raw, compensated, denoised, variance}) append(value);
   }
-  if (!inside || smooth_) return;
-  text_ += '\n';
-  flush(kTogether);
+  if (inside && !smooth_) end_row();
 }
 
 void DenoisedRows::finish(const std::string& name) {
@@ -109,15 +104,12 @@ void DenoisedRows::finish(const std::string& name) {
     append(columns_.time_s[i]);
     for (const DenoisedAxis& axis : columns_.axes)
       for (const auto* const series : {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance,
-                                       &axis.smoothed, &axis.smoothed_variance}) {
-        text_ += ',';
+                                       &axis.smoothed, &axis.smoothed_variance})
         append((*series)[i]);
-      }
-    text_ += '\n';
-    flush(kTogether);
+    end_row();
   }
-  flush(0);
-  output_.finish();
+  flush();
+  file_->finish();
 }
 
 }  // namespace ifog::tools

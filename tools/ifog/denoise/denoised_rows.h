@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/text_file.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
+#include "tools/ifog/captures/column_writer.h"
 #include "tools/ifog/captures/time_part.h"
 
 namespace ifog::tools {
@@ -47,7 +47,8 @@ class DenoisedRows {
     Moments raw, compensated, denoised;
   };
 
-  // Writes what of it is in `part`. keep: the columns as well; smooth: write nothing before finish().
+  // Writes what of it is in `part`, CSV or HDF5 by the name. keep: the columns as well; smooth: write nothing
+  // before finish().
   DenoisedRows(std::string output, TimePart part, bool keep, bool smooth);
 
   // Once, before the first sample.
@@ -64,15 +65,17 @@ class DenoisedRows {
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
 
  private:
-  void write_header();
   void append(double value);
-  void flush(std::size_t beyond);
+  void end_row();
+  void flush();
 
-  TextOutput output_;
+  std::string output_;
+  std::optional<ColumnWriter> file_;
   TimePart part_;
   bool keep_, smooth_;
   std::vector<std::string> axes_;
-  std::string text_;
+  std::vector<std::vector<double>> held_;  // by column: rows that are written together
+  std::size_t place_ = 0;                  // of the next value in its row
   DenoisedColumns columns_;
   std::vector<AxisMoments> moments_;
   Counts counts_;

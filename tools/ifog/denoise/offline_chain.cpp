@@ -13,6 +13,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/series/series_view.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -129,7 +130,9 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
   Reading reading;
   ChainOutput out;
   const double first_s = capture.size() > 0 ? views[0].at(0) : 0.0;
+  Progress progress("denoising", capture.size());
   for (std::size_t begin = 0; begin < capture.size(); begin += kSeriesPiece) {
+    progress.at(begin);
     const std::size_t count = std::min(kSeriesPiece, capture.size() - begin);
     for (std::size_t v = 0; v < views.size(); ++v) now[v] = views[v].piece(begin, count, room[v]);
     for (std::size_t i = 0; i < count; ++i) {

@@ -15,6 +15,7 @@
 
 #include "drivers/capture/input_file.h"
 #include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 
 namespace ifog::tools {
@@ -105,6 +106,7 @@ Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFil
   std::deque<std::string> paths;
   for (const RecordedFile& file : files) paths.push_back(file.path);
   InputFile input(folder, std::move(paths));
+  const ReadingProgress progress(input);
   FlightInput flight(input);
   DriverInstance driver = flight.make_driver("", {}, plugin_folders);
   Recorded out;

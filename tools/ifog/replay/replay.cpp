@@ -82,7 +82,7 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
   const bool paced = settings.speed > 0.0;
   const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
   const std::int64_t round = round_ns(timeline);
-  Progress progress("replay", settings.loops * n);
+  Progress progress("replay", settings.loops * n, Progress::Between::nothing);
   Pace pace(paced ? settings.speed : 1.0);
   const std::int64_t begin = monotonic_ns() + (paced ? kLead_ns : 0);
   pace.start(timeline.time_ns(0), begin);
@@ -181,7 +181,9 @@ void add_replay(CLI::App& app) {
   auto settings = std::make_shared<ReplaySettings>();
   CLI::App* command = app.add_subcommand("replay", "Send a recording to a device, as it was recorded");
   ReplaySource& source = settings->source;
-  command->add_option("capture", source.path, "Flight recording, candump log, raw bytes or CSV capture")
+  command
+      ->add_option("capture", source.path,
+                   "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)")
       ->required();
   command
       ->add_option("--to", settings->to,

@@ -12,6 +12,7 @@
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/recording.h"
 #include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -97,8 +98,8 @@ ReplayTimeline from_bytes(const ReplaySource& source, InputFile& file) {
 ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   if (!source.input.has_driver())
     throw std::runtime_error(source.path +
-                             ": a CSV capture needs --driver NAME, whose frames its rows become");
-  const Capture capture = source.input.read_csv(file);
+                             ": a capture in columns needs --driver NAME, whose frames its rows become");
+  const Capture capture = source.input.read_columns(file);
   const double rate_hz = sample_rate_hz(capture);
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
@@ -153,6 +154,7 @@ ReplayTimeline from_flight(const ReplaySource& source, InputFile& file) {
 ReplayTimeline read_timeline(const ReplaySource& source) {
   ReplayTimeline timeline;
   InputFile file(source.path);
+  const ReadingProgress progress(file);
   switch (kind_of(source, file)) {
     case FileKind::candump:
       timeline = from_candump(source, file);
@@ -168,10 +170,11 @@ ReplayTimeline read_timeline(const ReplaySource& source) {
       break;
     case FileKind::lcm_log:
     case FileKind::unknown:
-      throw std::runtime_error(source.path +
-                               ": neither a flight recording, a candump log, raw bytes nor a CSV capture by "
-                               "its name and first bytes; "
-                               "--format says which");
+      throw std::runtime_error(
+          source.path +
+          ": neither a flight recording, a candump log, raw bytes nor a capture in columns by "
+          "its name and first bytes; "
+          "--format says which");
   }
   if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");
   return timeline;

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/hdf5/hdf5_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "drivers/capture/hdf5/hdf5_attributes.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kLeastBlock = 65'536, kMostBlock = 1'048'576;    // rows
+constexpr std::size_t kCache = 8U << 20U;                              // bytes of unpacked chunks, a dataset
+constexpr std::uint64_t kMostGrowth = 100, kGrowthFree = 256U << 20U;  // as of a gzip stream
+
+[[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
+
+const char* kind_of(H5T_class_t kind) {
+  switch (kind) {
+    case H5T_STRING:
+      return "text";
+    case H5T_COMPOUND:
+      return "records of several members";
+    case H5T_ENUM:
+      return "an enumeration";
+    case H5T_ARRAY:
+    case H5T_VLEN:
+      return "arrays";
+    case H5T_TIME:
+      return "times of a form that is no number";
+    default:
+      return "no numbers";
+  }
+}
+
+void demand_numbers(hid_t type, const std::string& name) {
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind == H5T_INTEGER || kind == H5T_FLOAT) return;
+  refuse(in_quotes(name) + " holds " + kind_of(kind) + ", expected numbers");
+}
+
+// The values must lie in this file, and be packed by what is here to unpack them.
+void demand_readable(hid_t properties, const std::string& name) {
+  if (H5Pget_layout(properties) == H5D_VIRTUAL || H5Pget_external_count(properties) > 0)
+    refuse(in_quotes(name) + " keeps its values in another file, expected all in one");
+  const int filters = H5Pget_nfilters(properties);
+  for (int i = 0; i < filters; ++i) {
+    std::array<char, 64> called{};
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr,
+                                               called.size(), called.data(), &config);
+    if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
+    called.back() = '\0';
+    refuse(in_quotes(name) + " is packed by filter " + std::to_string(filter) +
+           (called[0] != '\0' ? " (" + printable(called.data()) + ")" : "") +
+           ", which is not here, expected gzip; 'h5repack -f GZIP=6' makes it so where it is known");
+  }
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  return list.empty() ? "none" : printable(list, 300);
+}
+
+std::vector<std::string> members_of(hid_t type) {
+  std::vector<std::string> names;
+  const int count = H5Tget_nmembers(type);
+  for (int i = 0; i < count; ++i) {
+    char* const name = H5Tget_member_name(type, static_cast<unsigned>(i));
+    if (name == nullptr) refuse("its records cannot be read: " + hdf5_reason());
+    names.emplace_back(name);
+    H5free_memory(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
+  hdf5_silence();
+  H5PLset_loading_state(0);  // no file has code loaded to read it
+  open(source);
+  const std::string group = wanted.group.empty() ? "/" : wanted.group;
+  place_ = Hdf5Id(H5Oopen(file_, group.c_str(), access_));
+  if (!place_.good())
+    refuse("no group " + in_quotes(group) + ", the file has " + [&] {
+      place_ = Hdf5Id(H5Oopen(file_, "/", access_));
+      return list_of(datasets_of_group());
+    }());
+  if (H5Iget_type(place_) == H5I_GROUP)
+    read_group(wanted);
+  else if (H5Iget_type(place_) == H5I_DATASET)
+    read_members(wanted);
+  else
+    refuse(in_quotes(group) + " is a type, expected a group of datasets");
+  header_.comments = hdf5_texts(place_, kHdf5Comments, kMostHdf5Comments, kLongestHdf5Text);
+  if (header_.comments.empty() && H5Aexists(place_, kHdf5Comments) > 0)
+    header_.notices.push_back("passed over: its comments, expected an attribute of texts");
+  check_size(wanted);
+}
+
+void Hdf5Columns::open(const Hdf5Source& source) {
+  const Hdf5Id how(H5Pcreate(H5P_FILE_ACCESS));
+  access_ = Hdf5Id(H5Pcreate(H5P_DATASET_ACCESS));
+  // A capture is read where nothing can be locked, too. No link leads out of the file.
+  const auto stay = [](const char*, const char*, const char*, const char*, unsigned*, hid_t,
+                       void*) -> herr_t { return -1; };
+  hdf5_demand(how.good() && access_.good() && H5Pset_file_locking(how, false, true) >= 0 &&
+                  H5Pset_elink_cb(access_, stay, nullptr) >= 0 &&
+                  H5Pset_chunk_cache(access_, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, kCache, 1.0) >= 0,
+              "the HDF5 library does not start");
+  const bool in_memory = !source.image.empty();
+  if (in_memory)
+    hdf5_demand(H5Pset_fapl_core(how, 1U << 20U, false) >= 0 &&
+                    H5Pset_file_image(how, const_cast<char*>(source.image.data()), source.image.size()) >= 0,
+                "no memory for it");
+  // An image takes a name that no file has.
+  file_ = Hdf5Id(H5Fopen(in_memory ? "/dev/null/image" : source.name.c_str(), H5F_ACC_RDONLY, how));
+  hdf5_demand(file_.good(), "cannot be read as HDF5");
+}
+
+// Every link of the group that is no group: what is no dataset is refused where it is opened.
+std::vector<std::string> Hdf5Columns::datasets_of_group() {
+  H5G_info_t info{};
+  const Hdf5Id made(H5Gget_create_plist(place_));
+  unsigned order = 0;
+  hdf5_demand(H5Gget_info(place_, &info) >= 0 && made.good() && H5Pget_link_creation_order(made, &order) >= 0,
+              "its group cannot be read");
+  if (info.nlinks > kMostHdf5Columns)
+    refuse("the group has " + std::to_string(info.nlinks) + " members, expected at most " +
+           std::to_string(kMostHdf5Columns));
+  const H5_index_t by = (order & H5P_CRT_ORDER_TRACKED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    std::array<char, kLongestHdf5Name + 2> name{};
+    const ssize_t length =
+        H5Lget_name_by_idx(place_, ".", by, H5_ITER_INC, i, name.data(), name.size(), H5P_DEFAULT);
+    hdf5_demand(length > 0, "its group cannot be read");
+    if (static_cast<std::size_t>(length) > kLongestHdf5Name)
+      refuse("a name of " + std::to_string(length) + " bytes, expected at most " +
+             std::to_string(kLongestHdf5Name));
+    H5O_info_t object{};
+    const bool is_group = H5Oget_info_by_name2(place_, name.data(), &object, H5O_INFO_BASIC, access_) >= 0 &&
+                          object.type == H5O_TYPE_GROUP;
+    if (is_group)
+      groups_.emplace_back(name.data());
+    else
+      names.emplace_back(name.data());
+  }
+  return names;
+}
+
+void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
+  for (const std::string& name : wanted.names.empty() ? datasets_of_group() : wanted.names) add_dataset(name);
+  if (!groups_.empty() && !columns_.empty())
+    header_.notices.push_back("passed over: the groups " + list_of(groups_) + "; --group reads one");
+}
+
+void Hdf5Columns::add_dataset(const std::string& name) {
+  Hdf5Id found(H5Oopen(place_, name.c_str(), access_));
+  if (!found.good()) {
+    H5L_info_t link{};
+    const bool there = H5Lget_info(place_, name.c_str(), &link, access_) >= 0;
+    if (there && link.type == H5L_TYPE_EXTERNAL)
+      refuse(in_quotes(name) + " is a link into another file, expected all in one");
+    if (there) refuse(in_quotes(name) + " leads to nothing: " + hdf5_reason());
+    refuse("no dataset " + in_quotes(name) + ", the group has " + list_of(datasets_of_group()));
+  }
+  if (H5Iget_type(found) != H5I_DATASET) refuse(in_quotes(name) + " is no dataset, expected one of numbers");
+  const Hdf5Id type(H5Dget_type(found));
+  demand_numbers(type, name);
+  check(found, name);
+  header_.names.push_back(name);
+  header_.units.push_back(hdf5_unit(found));
+  columns_.push_back({std::move(found), Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE))});
+}
+
+// One dimension, as many rows as the columns before, and packed as can be read here.
+void Hdf5Columns::check(hid_t dataset, const std::string& name) {
+  take_rows(dataset, name);
+  const Hdf5Id properties(H5Dget_create_plist(dataset));
+  hdf5_demand(properties.good(), in_quotes(name) + " cannot be read");
+  demand_readable(properties, name);
+  // Whole chunks, so that each is unpacked once.
+  hsize_t chunk = 1;
+  if (H5Pget_layout(properties) == H5D_CHUNKED && H5Pget_chunk(properties, 1, &chunk) != 1) chunk = 1;
+  const auto rows = static_cast<std::size_t>(std::clamp<hsize_t>(chunk, 1, kMostBlock));
+  block_rows_ = std::max(block_rows_, (kLeastBlock + rows - 1) / rows * rows);
+}
+
+void Hdf5Columns::take_rows(hid_t dataset, const std::string& name) {
+  const Hdf5Id space(H5Dget_space(dataset));
+  const int rank = H5Sget_simple_extent_ndims(space);
+  hdf5_demand(rank >= 0, in_quotes(name) + " cannot be read");
+  if (rank != 1)
+    refuse(in_quotes(name) + " has " + std::to_string(rank) + (rank == 1 ? " dimension" : " dimensions") +
+           ", expected one");
+  hsize_t rows = 0;
+  hdf5_demand(H5Sget_simple_extent_dims(space, &rows, nullptr) == 1, in_quotes(name) + " cannot be read");
+  if (header_.names.empty()) header_.rows = rows;
+  if (rows != header_.rows)
+    refuse(in_quotes(name) + " has " + std::to_string(rows) + " rows, expected the " +
+           std::to_string(header_.rows) + " of " + in_quotes(header_.names.front()));
+}
+
+void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
+  Hdf5Id type(H5Dget_type(place_));
+  if (H5Tget_class(type) != H5T_COMPOUND)
+    refuse(in_quotes(wanted.group) +
+           " is a dataset, expected the group that holds it, or a table of records");
+  const std::vector<std::string> there = members_of(type);
+  if (there.size() > kMostHdf5Columns)
+    refuse("a table of " + std::to_string(there.size()) + " columns, expected at most " +
+           std::to_string(kMostHdf5Columns));
+  for (const std::string& name : wanted.names.empty() ? there : wanted.names) {
+    const int member = H5Tget_member_index(type, name.c_str());
+    if (member < 0) refuse("no column " + in_quotes(name) + ", the table has " + list_of(there));
+    const Hdf5Id kind(H5Tget_member_type(type, static_cast<unsigned>(member)));
+    demand_numbers(kind, name);
+    Hdf5Id dataset(H5Dopen2(place_, ".", access_));
+    hdf5_demand(dataset.good(), in_quotes(wanted.group) + " cannot be read");
+    check(dataset, wanted.group);
+    Hdf5Id one(H5Tcreate(H5T_COMPOUND, sizeof(double)));
+    hdf5_demand(one.good() && H5Tinsert(one, name.c_str(), 0, H5T_NATIVE_DOUBLE) >= 0,
+                in_quotes(name) + " cannot be read");
+    header_.names.push_back(name);
+    header_.units.emplace_back();
+    columns_.push_back({std::move(dataset), std::move(one)});
+  }
+}
+
+void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
+  if (columns_.empty())
+    refuse("no dataset in the group " + in_quotes(wanted.group.empty() ? "/" : wanted.group) +
+           (groups_.empty() ? "" : ", which has the groups " + list_of(groups_) + "; --group reads one"));
+  if (header_.rows == 0) refuse("no rows in its datasets");
+  const std::uint64_t most = std::max(kGrowthFree, wanted.file_bytes * kMostGrowth);
+  if (header_.rows > most / sizeof(double) / columns_.size())
+    refuse("grows to more than " + std::to_string(most >> 20U) + " MiB, " + std::to_string(kMostGrowth) +
+           " times its size, when unpacked, expected a recording");
+}
+
+void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double> to) const {
+  const Column& from = columns_[column];
+  const hsize_t start = first, count = to.size();
+  const Hdf5Id space(H5Dget_space(from.dataset)), memory(H5Screate_simple(1, &count, nullptr));
+  hdf5_demand(
+      space.good() && memory.good() &&
+          H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr) >= 0 &&
+          H5Dread(from.dataset, from.in_memory, memory, space, H5P_DEFAULT, to.data()) >= 0,
+      in_quotes(header_.names[column]) + " cannot be read from row " + std::to_string(first + 1) + " on");
+}
+
+}  // namespace ifog

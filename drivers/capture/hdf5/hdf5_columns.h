@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The columns of an HDF5 file, read in this process: one-dimensional datasets of a group, or the members of a
+// one-dimensional dataset of records (a table of PyTables or pandas). The library trusts what it reads, so
+// this runs behind the barrier of hdf5_input.h and nowhere else.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/hdf5/hdf5_id.h"
+
+namespace ifog {
+
+// A file by its name, or where it lies in memory.
+struct Hdf5Source {
+  std::string name;
+  std::span<const char> image;  // empty: the file of that name
+};
+
+struct Hdf5Wanted {
+  std::string group;               // path of the group or table; "": the file's root
+  std::vector<std::string> names;  // datasets as paths from there, or members; empty: every dataset of it
+  std::uint64_t file_bytes = 0;
+};
+
+struct Hdf5Header {
+  std::vector<std::string> names;  // of the columns, in the file's order where it keeps one, else sorted
+  std::vector<std::string> units;  // of each, as its attribute `units` says, or ""
+  std::vector<std::string> comments;
+  std::vector<std::string> notices;
+  std::uint64_t rows = 0;
+};
+
+inline constexpr std::size_t kMostHdf5Columns = 1000;
+inline constexpr std::size_t kLongestHdf5Name = 1000;      // bytes
+inline constexpr std::size_t kMostHdf5Comments = 100'000;  // lines
+inline constexpr std::size_t kLongestHdf5Text = 4096;      // bytes of a comment
+
+class Hdf5Columns {
+ public:
+  // Throws std::runtime_error with one line, without the file's name: what is not as a capture needs it.
+  Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted);
+
+  [[nodiscard]] const Hdf5Header& header() const { return header_; }
+  // Rows to read at once: whole chunks of the file, within reason.
+  [[nodiscard]] std::size_t block_rows() const { return block_rows_; }
+  // Rows from `first` on of a column, as double. Throws likewise.
+  void read(std::size_t column, std::uint64_t first, std::span<double> to) const;
+
+ private:
+  struct Column {
+    Hdf5Id dataset, in_memory;  // what one value becomes
+  };
+  void open(const Hdf5Source& source);
+  void read_group(const Hdf5Wanted& wanted);
+  void read_members(const Hdf5Wanted& wanted);
+  std::vector<std::string> datasets_of_group();
+  void add_dataset(const std::string& name);
+  void check(hid_t dataset, const std::string& name);
+  void take_rows(hid_t dataset, const std::string& name);
+  void check_size(const Hdf5Wanted& wanted) const;
+
+  Hdf5Id access_, file_, place_;
+  Hdf5Header header_;
+  std::vector<Column> columns_;
+  std::vector<std::string> groups_;  // within the group
+  std::size_t block_rows_ = 0;
+};
+
+}  // namespace ifog

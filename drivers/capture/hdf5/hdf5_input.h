@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// An HDF5 file as columns. The library that reads it was made for files that it can trust: a damaged one can
+// end the program, and a made one can do worse. So it runs in a process of its own, with bounded memory and
+// processor time, without the right to load code or to open other files by links, and what it says is held to
+// limits on its way here. When it dies the file is refused with one line.
+#pragma once
+
+#include <sys/types.h>
+
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/hdf5/column_stream.h"
+#include "drivers/capture/input_file.h"
+
+namespace ifog {
+
+class Hdf5Input {
+ public:
+  // group: path of the group, or of a table of records; "": the file's root. names: the datasets that are
+  // wanted, as paths from there; empty: all of the group. Standard input, pipes and packed files are kept in
+  // memory. Throws std::runtime_error with one line.
+  Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names);
+  ~Hdf5Input();
+  Hdf5Input(const Hdf5Input&) = delete;
+  Hdf5Input& operator=(const Hdf5Input&) = delete;
+
+  [[nodiscard]] const Hdf5Header& header() const { return stream_->header(); }
+  // The next rows of every column, in the header's order; false when all have come. Throws likewise.
+  bool next(std::vector<std::vector<double>>& block);
+
+ private:
+  void start(const Hdf5Source& source, const Hdf5Wanted& wanted);
+  [[noreturn]] void refuse(const std::exception& why);
+  void end();
+
+  std::string path_;
+  std::string copy_;  // of what has no name to open it by, until the reader has it
+  int pipe_ = -1;
+  pid_t reader_ = -1;
+  std::unique_ptr<ColumnStream> stream_;
+};
+
+}  // namespace ifog

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/hdf5/hdf5_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "drivers/capture/hdf5/hdf5_attributes.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kChunk = 65'536;  // rows
+constexpr unsigned kGzip = 6;
+constexpr std::size_t kStep = 4U << 20U;  // bytes by which the file in memory grows
+
+// As a person writes the unit that a column's name ends in.
+std::string unit_of(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kWritten = {{{"radps", "rad/s"},
+                                                                                      {"rad2ps2", "rad2/s2"},
+                                                                                      {"radps2", "rad/s2"},
+                                                                                      {"mps", "m/s"},
+                                                                                      {"mps2", "m/s2"},
+                                                                                      {"degps", "deg/s"}}};
+  const std::size_t line = name.rfind('_');
+  if (line == std::string::npos) return "";
+  const std::string unit = name.substr(line + 1);
+  for (const auto& [suffix, written] : kWritten)
+    if (unit == suffix) return std::string(written);
+  return unit;
+}
+
+std::string what_of(const std::string& column) { return "cannot write the dataset " + in_quotes(column); }
+
+Hdf5Id file_in_memory() {
+  constexpr unsigned kInOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS)), create(H5Pcreate(H5P_FILE_CREATE));
+  const bool set = access.good() && create.good() && H5Pset_fapl_core(access, kStep, false) >= 0 &&
+                   H5Pset_link_creation_order(create, kInOrder) >= 0 &&
+                   // An object that keeps its attributes in order may have some of more than 64 KiB.
+                   H5Pset_attr_creation_order(create, kInOrder) >= 0 &&
+                   H5Pset_obj_track_times(create, false) >= 0;
+  Hdf5Id file(set ? H5Fcreate("capture", H5F_ACC_TRUNC, create, access) : H5I_INVALID_HID);
+  hdf5_demand(file.good(), "cannot begin an HDF5 file");
+  return file;
+}
+
+Hdf5Id packed(hsize_t chunk) {
+  Hdf5Id properties(H5Pcreate(H5P_DATASET_CREATE));
+  hdf5_demand(properties.good() && H5Pset_chunk(properties, 1, &chunk) >= 0 &&
+                  H5Pset_shuffle(properties) >= 0 && H5Pset_deflate(properties, kGzip) >= 0 &&
+                  H5Pset_obj_track_times(properties, false) >= 0,
+              "cannot pack by gzip");
+  return properties;
+}
+
+// As any reader understands it: by itself the library takes the oldest format that holds what is in the file.
+std::string image_of(hid_t file) {
+  hdf5_demand(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot finish the HDF5 file");
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  hdf5_demand(size > 0, "cannot finish the HDF5 file");
+  std::string image(static_cast<std::size_t>(size), '\0');
+  hdf5_demand(H5Fget_file_image(file, image.data(), image.size()) == size, "cannot finish the HDF5 file");
+  return image;
+}
+
+template <typename Work>
+auto with_name(const std::string& path, Work&& work) {
+  try {
+    return work();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(const std::string& path, const std::string& comments,
+                       const std::vector<std::string>& names)
+    : path_(path), names_(names), out_(path), held_(names.size()) {
+  hdf5_silence();
+  with_name(path_, [&] {
+    file_ = file_in_memory();
+    if (!comments.empty()) set_hdf5_texts(file_, kHdf5Comments, lines_of(comments));
+  });
+}
+
+void Hdf5Writer::begin_datasets(std::size_t chunk) {
+  const hsize_t none = 0, no_end = H5S_UNLIMITED;
+  const Hdf5Id properties = packed(chunk), space(H5Screate_simple(1, &none, &no_end));
+  for (const std::string& name : names_) {
+    if (name.find('/') != std::string::npos || name.empty() || name == ".")
+      throw std::runtime_error(what_of(name) + ": no name for a dataset, expected one without '/'");
+    Hdf5Id dataset(
+        H5Dcreate2(file_, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+    hdf5_demand(dataset.good(), what_of(name));
+    if (const std::string unit = unit_of(name); !unit.empty()) set_hdf5_text(dataset, kHdf5Units, unit);
+    datasets_.push_back(std::move(dataset));
+  }
+}
+
+void Hdf5Writer::rows(std::span<const std::span<const double>> columns) {
+  for (std::size_t c = 0; c < held_.size(); ++c)
+    held_[c].insert(held_[c].end(), columns[c].begin(), columns[c].end());
+  if (held_.front().size() >= kChunk)
+    with_name(path_, [&] { flush(held_.front().size() / kChunk * kChunk); });
+}
+
+// The first rows of those that are held.
+void Hdf5Writer::flush(std::size_t rows) {
+  if (datasets_.empty()) begin_datasets(std::clamp<std::size_t>(rows, 1, kChunk));
+  const hsize_t first = written_, count = rows, all = first + count;
+  const Hdf5Id memory(H5Screate_simple(1, &count, nullptr));
+  for (std::size_t c = 0; rows > 0 && c < names_.size(); ++c) {
+    const bool longer = H5Dset_extent(datasets_[c], &all) >= 0;
+    const Hdf5Id space(H5Dget_space(datasets_[c]));
+    hdf5_demand(
+        longer && space.good() &&
+            H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &count, nullptr) >= 0 &&
+            H5Dwrite(datasets_[c], H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, held_[c].data()) >= 0,
+        what_of(names_[c]));
+    held_[c].erase(held_[c].begin(), held_[c].begin() + static_cast<std::ptrdiff_t>(rows));
+  }
+  written_ = all;
+}
+
+void Hdf5Writer::finish() {
+  const std::string image = with_name(path_, [&] {
+    flush(held_.front().size());
+    datasets_.clear();
+    std::string bytes = image_of(file_);
+    file_ = {};
+    return bytes;
+  });
+  out_.write(image);
+  out_.finish();
+}
+
+}  // namespace ifog

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The progress of whatever reads a file, by the bytes that have been taken from it.
+#pragma once
+
+#include <filesystem>
+
+#include "drivers/capture/input_file.h"
+#include "tools/ifog/console/progress.h"
+
+namespace ifog::tools {
+
+class ReadingProgress {
+ public:
+  // The file must outlive this.
+  explicit ReadingProgress(InputFile& file, const char* what = "reading")
+      : file_(file), progress_(what + (" " + std::filesystem::path(file.path()).filename().string()), 0) {
+    file_.tell(progress_.teller());
+  }
+  ~ReadingProgress() { file_.tell({}); }
+  ReadingProgress(const ReadingProgress&) = delete;
+  ReadingProgress& operator=(const ReadingProgress&) = delete;
+
+ private:
+  InputFile& file_;
+  Progress progress_;
+};
+
+}  // namespace ifog::tools

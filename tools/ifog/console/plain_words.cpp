@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/console/plain_words.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace ifog::tools {
+namespace {
+
+// Texts that are no file. The same name is the same in every command.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kTexts = {{{"--axis", "NAME"},
+                                                                                  {"--channel", "NAME"},
+                                                                                  {"--filter", "NAME"},
+                                                                                  {"--sensor", "NAME"},
+                                                                                  {"--state", "NAME"},
+                                                                                  {"--weights", "NAME"},
+                                                                                  {"--to", "WHERE"},
+                                                                                  {"NAME", "NAME"},
+                                                                                  {"sensor", "NAME"}}};
+
+std::string text_word(const std::string& option) {
+  const auto found =
+      std::find_if(kTexts.begin(), kTexts.end(), [&](const auto& each) { return each.first == option; });
+  return found == kTexts.end() ? "FILE" : std::string(found->second);
+}
+
+// The word for a type as the parser names it, or the name that the command has given.
+std::string word(const std::string& type, const std::string& option) {
+  if (type == "TEXT") return text_word(option);
+  if (type == "FLOAT") return "NUMBER";
+  return type == "INT" || type == "UINT" ? "N" : type;
+}
+
+std::string shortened(std::string number) {
+  for (const auto& [from, to] : {std::pair{"e+0", "e"}, {"e-0", "e-"}, {"e+", "e"}})
+    if (const std::size_t at = number.find(from); at != std::string::npos)
+      number.replace(at, std::string_view(from).size(), to);
+  return number;
+}
+
+// What a check of the parser is called, as the end of a sentence; "" for one that says it elsewhere.
+std::string range_of(const std::string& check) {
+  if (check == "POSITIVE") return "more than 0";
+  if (check == "NONNEGATIVE") return "0 or more";
+  const std::size_t open = check.find('['), dash = check.find(" - "), close = check.find(']');
+  if (open == std::string::npos || dash == std::string::npos || close == std::string::npos) return "";
+  return shortened(check.substr(open + 1, dash - open - 1)) + " to " +
+         shortened(check.substr(dash + 3, close - dash - 3));
+}
+
+std::string choice_of(const std::string& check) {
+  if (!check.starts_with('{') || !check.ends_with('}')) return "";
+  std::string words = check.substr(1, check.size() - 2);
+  std::replace(words.begin(), words.end(), ',', '|');
+  return words;
+}
+
+void in_plain_words(CLI::Option& option) {
+  if (option.get_items_expected_max() == 0) return;  // a flag
+  std::string choice, ranges;
+  for (int i = 0;; ++i) {
+    CLI::Validator* check = nullptr;
+    try {
+      check = option.get_validator(i);
+    } catch (const CLI::OptionNotFound&) {
+      break;
+    }
+    const std::string said = check->get_description();
+    if (const std::string words = choice_of(said); !words.empty()) choice = words;
+    if (const std::string range = range_of(said); !range.empty()) ranges += "; " + range;
+    check->description("");
+  }
+  const std::string type = option.get_type_name();
+  option.type_name(choice.empty() ? word(type, option.get_name(option.get_positional())) : choice);
+  option.description(option.get_description() + ranges);
+}
+
+}  // namespace
+
+void in_plain_words(CLI::App& app) {
+  for (CLI::Option* const option : app.get_options([](CLI::Option*) { return true; }))
+    in_plain_words(*option);
+  for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; }))
+    in_plain_words(*command);
+}
+
+}  // namespace ifog::tools

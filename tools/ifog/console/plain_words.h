@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an option takes, in the words of people instead of a programming language's types: of help, manual
+// pages and completion alike, for all are made of the command line itself.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace ifog::tools {
+
+// Of every option of every command, once all are there: FILE, NAME, NUMBER or N for a type that nobody has
+// named, a|b for a choice, and a range as the end of the help: "more than 0", "1 to 1000".
+void in_plain_words(CLI::App& app);
+
+}  // namespace ifog::tools
