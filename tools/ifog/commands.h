@@ -33,5 +33,6 @@ void add_proposals(CLI::App& app);
 void add_adopt(CLI::App& app);
 void add_revert(CLI::App& app);
 void add_night(CLI::App& app);
+void add_fleet(CLI::App& app);
 
 }  // namespace ifog::tools

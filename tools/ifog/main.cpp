@@ -8,9 +8,9 @@
 int main(int argc, char** argv) {
   using namespace ifog::tools;
   // In the order that the help lists them.
-  constexpr std::array<AddCommand, 17> kCommands{
-      add_allan,   add_compare,   add_convert, add_denoise, add_drivers,  add_monitor,
-      add_picture, add_record,    add_replay,  add_tune,    add_diagnose, add_simulate,
-      add_status,  add_proposals, add_adopt,   add_revert,  add_night};
+  constexpr std::array<AddCommand, 18> kCommands{
+      add_allan,    add_compare, add_convert,   add_denoise, add_drivers,  add_monitor,
+      add_picture,  add_record,  add_replay,    add_tune,    add_diagnose, add_fleet,
+      add_simulate, add_status,  add_proposals, add_adopt,   add_revert,   add_night};
   return run_command_line(argc, argv, kCommands);
 }

@@ -192,6 +192,17 @@ void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& f
   }
 }
 
+// known: beforehand, of the columns after the measurement; see solve_at().
+void fit_over_noise(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& known,
+                    const NoiseFit& best, JointFit& fit) {
+  average(grid,
+          try_noise(grid, best.shape,
+                    [&](const NoiseShape& shape) {
+                      return solve_at(grid, columns, known, shape, best.white_variance);
+                    }),
+          fit);
+}
+
 }  // namespace
 
 JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
@@ -209,12 +220,16 @@ JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
       known[p - static_cast<Eigen::Index>(fit.searched.size() - j)] = kLogRange;
     }
   }
-  average(grid,
-          try_noise(grid, best.shape,
-                    [&](const NoiseShape& shape) {
-                      return solve_at(grid, columns, known, shape, best.white_variance);
-                    }),
-          fit);
+  fit_over_noise(grid, columns, known, best, fit);
+  return fit;
+}
+
+JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best) {
+  const Columns columns = design(data, effects);
+  JointFit fit;
+  fit_over_noise(data.grid, columns,
+                 Eigen::VectorXd::Constant(columns.cols() - 1, std::numeric_limits<double>::infinity()), best,
+                 fit);
   return fit;
 }
 

@@ -28,6 +28,9 @@ struct JointFit {
 JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
                    const Eigen::VectorXd& coefficients, const NoiseFit& best);
 
+// The same at the time constants and frequencies that the effects have.
+JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best);
+
 // Derivatives of the sum of the effects with respect to what was searched, one column each.
 Columns searched_columns(const BlockData& data, const std::vector<Candidate>& effects,
                          const Eigen::VectorXd& coefficients, Eigen::Index nuisances,

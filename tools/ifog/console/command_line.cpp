@@ -2,10 +2,12 @@
 #include "tools/ifog/console/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "drivers/ifog/driver.h"
 #include "tools/ifog/commands.h"
@@ -18,6 +20,9 @@ namespace ifog::tools {
 namespace {
 
 std::string typed;
+std::vector<std::string> words;
+
+}  // namespace
 
 std::string shell_word(const std::string& word) {
   constexpr std::string_view kPlain =
@@ -28,13 +33,14 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
-}  // namespace
-
 std::string typed_command() { return typed; }
+
+std::vector<std::string> typed_words() { return words; }
 
 int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
   prepare_standard_streams();
   typed = "ifog";
+  words.assign(argv + std::min(argc, 1), argv + argc);
   for (int i = 1; i < argc; ++i) typed += " " + shell_word(argv[i]);
   CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
                "ifog"};

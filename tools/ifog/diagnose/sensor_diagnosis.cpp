@@ -112,6 +112,17 @@ void compensate(Capture& capture, const Model& model) {
   capture.rate_radps = compensated_rates(capture, model);
 }
 
+std::vector<Record> records_of(const std::vector<Capture>& captures, const std::vector<std::string>& names,
+                               std::size_t axis) {
+  std::vector<Record> records;
+  for (std::size_t c = 0; c < captures.size(); ++c) {
+    if (captures[c].axes != captures.front().axes)
+      throw std::runtime_error(names[c] + ": has other axes than " + names[0]);
+    records.push_back(record_of(captures[c], names[c], axis));
+  }
+  return records;
+}
+
 std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
                                          const std::vector<std::string>& names,
                                          const AxesToDiagnose& wanted) {
@@ -123,13 +134,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
         std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) == wanted.axes.end()) {
       continue;
     }
-    std::vector<Record> records;
-    for (std::size_t c = 0; c < captures.size(); ++c) {
-      if (captures[c].axes != axes) {
-        throw std::runtime_error(names[c] + ": has other axes than " + names[0]);
-      }
-      records.push_back(record_of(captures[c], names[c], axis));
-    }
+    const std::vector<Record> records = records_of(captures, names, axis);
     DiagnoseOptions options;
     options.significance = wanted.significance;
     options.axis = axes[axis];
@@ -206,9 +211,7 @@ std::string diagnosis_report(const std::vector<Capture>& captures, const std::ve
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
     const auto index =
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
-    std::vector<Record> records;
-    for (std::size_t c = 0; c < captures.size(); ++c)
-      records.push_back(record_of(captures[c], names[c], index));
+    const std::vector<Record> records = records_of(captures, names, index);
     derived.push_back(with_derived_channels(records));
     axis.records = derived.back().records;
     page.axes.push_back(std::move(axis));

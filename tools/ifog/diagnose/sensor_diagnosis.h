@@ -34,6 +34,10 @@ void compensate(Capture& capture, const Model& model);
 std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
                                          const std::vector<std::string>& names, const AxesToDiagnose& wanted);
 
+// One axis of the captures as a diagnosis takes it, which must outlive this.
+std::vector<Record> records_of(const std::vector<Capture>& captures, const std::vector<std::string>& names,
+                               std::size_t axis);
+
 // `model` with what was found beside its own. hashes: SHA-256 of the captures.
 Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
                  const std::vector<std::string>& hashes);

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "filters/diagnosis/record/channel_faults.h"
+#include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/record/ramps_out.h"
+#include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/record/reference_delay.h"
+#include "filters/diagnosis/record/turned.h"
+#include "filters/diagnosis/regression/design.h"
+#include "filters/diagnosis/regression/uncertainty.h"
+#include "filters/diagnosis/report/findings.h"
+
+namespace ifog {
+namespace {
+
+struct Place {
+  std::size_t channel = Candidate::kNone;
+  std::string missing;  // why there is none
+};
+
+Place channel_named(const BlockData& data, const std::string& name) {
+  for (std::size_t i = 0; i < data.channels.size(); ++i) {
+    if (data.channels[i].name != name) continue;
+    if (!data.channels[i].varies) return {Candidate::kNone, name + " does not change in the captures"};
+    return {i, ""};
+  }
+  return {Candidate::kNone, "the captures have no " + name};
+}
+
+struct Named {
+  Candidate candidate;
+  std::string not_measured;
+};
+
+Named candidate_named(const BlockData& data, const Effect& effect) {
+  Named named;
+  Candidate& candidate = named.candidate;
+  const std::optional<Form> form = form_named(effect.form);
+  if (!form || describes_noise(*form) || *form == Form::kLookup || *form == Form::kRebuiltRamp) {
+    named.not_measured = "'" + effect.form + "' has no single coefficient to measure";
+    return named;
+  }
+  candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
+  if (has_channel(*form)) {
+    const Place place = channel_named(data, effect.channel);
+    candidate.channel = place.channel;
+    named.not_measured = place.missing;
+  }
+  if (*form == Form::kProduct) {
+    candidate.with_form = form_named(effect.with_form).value_or(Form::kLinear);
+    const Place place = channel_named(data, effect.with_channel);
+    candidate.with_channel = place.channel;
+    if (named.not_measured.empty()) named.not_measured = place.missing;
+  }
+  candidate.period = effect.period;
+  candidate.time_constant_s = parameter(effect, time_constant_name(*form));
+  candidate.second_time_constant_s = parameter(effect, "second_lag_s");
+  return named;
+}
+
+// In which of the captures a step or a line was, a model does not say: in each that it can be of.
+std::vector<Candidate> events_named(const BlockData& data, const Effect& effect) {
+  const BlockGrid& grid = data.grid;
+  Candidate event;
+  event.form = *form_named(effect.form);
+  event.time_s = parameter(effect, "time_s");
+  event.frequency_hz = parameter(effect, "frequency_hz");
+  std::vector<Candidate> found;
+  for (event.record = 0; event.record < grid.records.size(); ++event.record) {
+    const BlockRange& record = grid.records[event.record];
+    const bool step = event.form == Form::kStep;
+    if (step && (event.time_s <= grid.time_s[record.first] || event.time_s >= grid.time_s[record.end - 1]))
+      continue;
+    if (!step && event.frequency_hz * grid.block_s > 0.5) continue;  // the blocks average it away
+    found.push_back(event);
+  }
+  return found;
+}
+
+bool is_event(const Effect& effect) {
+  const std::optional<Form> form = form_named(effect.form);
+  return form == Form::kStep || form == Form::kLine;
+}
+
+class Measuring {
+ public:
+  Measuring(const BlockData& data, const EffectsToMeasure& wanted, const std::string& axis)
+      : data_(data), wanted_(wanted), axis_(axis) {
+    result_.together.resize(wanted.together.size());
+    for (std::size_t i = 0; i < wanted.together.size(); ++i) take(i);
+    for (const Effect& effect : wanted.beside) take_beside(effect);
+  }
+
+  MeasuredEffects run() {
+    noise_ = fit_noise(data_.grid, design(data_, all()));
+    for (std::size_t at = 0; at < place_.size(); ++at) weigh(at);
+    report(joint_fit_at(data_, all(), noise_));
+    return std::move(result_);
+  }
+
+ private:
+  void take(std::size_t i) {
+    const Named named = candidate_named(data_, wanted_.together[i]);
+    MeasuredEffect& measured = result_.together[i];
+    measured.effect = wanted_.together[i];
+    measured.not_measured = named.not_measured;
+    if (!named.not_measured.empty()) return;
+    const bool twice = std::any_of(model_.begin(), model_.end(),
+                                   [&](const Candidate& other) { return other.same_shape(named.candidate); });
+    if (twice) throw std::invalid_argument("'" + wanted_.together[i].form + "' is to be measured twice");
+    place_.push_back(i);
+    model_.push_back(named.candidate);
+  }
+
+  void take_beside(const Effect& effect) {
+    if (is_event(effect)) {
+      for (const Candidate& event : events_named(data_, effect)) events_.push_back(event);
+      return;
+    }
+    const Named named = candidate_named(data_, effect);
+    const bool twice = std::any_of(model_.begin(), model_.end(),
+                                   [&](const Candidate& other) { return other.same_shape(named.candidate); });
+    if (!named.not_measured.empty() || twice) return;
+    model_.push_back(named.candidate);
+  }
+
+  // What the fit loses without effect `at` of the model, and what the others in its place win back.
+  void weigh(std::size_t at) {
+    std::vector<Candidate> rest = all();
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
+    const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+    MeasuredEffect& measured = result_.together[place_[at]];
+    measured.likelihood_ratio = 2.0 * (noise_.log_likelihood - without.log_likelihood);
+    if (wanted_.instead.empty()) return;
+    for (const Effect& effect : wanted_.instead[place_[at]]) {
+      measured.instead.push_back(0.0);
+      const Named other = candidate_named(data_, effect);
+      if (!other.not_measured.empty()) continue;
+      std::vector<Candidate> trial = rest;
+      trial.push_back(other.candidate);
+      const NoiseFit noise = fit_noise(data_.grid, design(data_, trial), noise_.shape);
+      measured.instead.back() = 2.0 * (noise.log_likelihood - without.log_likelihood);
+    }
+  }
+
+  [[nodiscard]] std::vector<Candidate> all() const {
+    std::vector<Candidate> effects = model_;
+    effects.insert(effects.end(), events_.begin(), events_.end());
+    return effects;
+  }
+
+  void report(const JointFit& joint) {
+    const auto count = static_cast<Eigen::Index>(model_.size());
+    const Eigen::Index first = data_.grid.constants();
+    std::vector<FoundEffect> found;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      Effect effect = effect_of(data_, model_[static_cast<std::size_t>(i)]);
+      effect.axis = axis_;
+      effect.parameters.front().value = joint.values[first + i];
+      effect.parameters.front().std_error = std::sqrt(joint.covariance(first + i, first + i));
+      if (static_cast<std::size_t>(i) < place_.size())
+        result_.together[place_[static_cast<std::size_t>(i)]].effect = effect;
+      else
+        result_.beside.push_back(effect);
+      found.push_back({effect, 1.0, 0.0, 0.0});
+      for (Eigen::Index j = 0; j < count; ++j)
+        result_.covariance.push_back(joint.covariance(first + i, first + j));
+    }
+    result_.ranges = ranges_of(data_, found);
+  }
+
+  const BlockData& data_;
+  const EffectsToMeasure& wanted_;
+  const std::string& axis_;
+  std::vector<std::size_t> place_;  // in `together`, of the first effects of the model
+  std::vector<Candidate> model_, events_;
+  NoiseFit noise_;
+  MeasuredEffects result_;
+};
+
+}  // namespace
+
+MeasuredEffects measure_effects(const std::vector<Record>& records, const EffectsToMeasure& wanted,
+                                const std::string& axis, double significance) {
+  if (!wanted.instead.empty() && wanted.instead.size() != wanted.together.size())
+    throw std::invalid_argument("others in the place of effects, expected a list for each");
+  check_columns(records);
+  const DerivedRecords whole = with_unwrapped_angles(records);
+  const RepairedRecords repaired = repair_records(whole.records);
+  const AlignedRecords aligned = align_references(repaired.records);
+  const DerivedRecords derived = with_derived_channels(aligned.records);
+  const WithoutTurns resting = without_turns(derived.records);
+  const WithoutRamps without = take_out_ramps(resting.records, significance);
+  const BlockData data = cut_to_blocks(without.records);
+  const BlockData reconstructed = with_reconstructed_channels(data);
+  return Measuring(reconstructed, wanted, axis).run();
+}
+
+}  // namespace ifog

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/population/population.h"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+namespace ifog {
+namespace {
+
+// The errors of single gyros are estimated, and of slow noise a record has few independent pieces, so that
+// chance exceeds a level oftener than a normal distribution says; as the search for effects is careful
+// (filters/diagnosis/search/effective_tries.h), so is this.
+constexpr double kCare = 5.0;
+
+void fill_in_means(TypeEffect& effect) {
+  if (effect.effect.parameters.empty()) return;
+  effect.effect.parameters.front().value = effect.prior.mean;
+  effect.effect.parameters.front().std_error = effect.prior.mean_std_error;
+}
+
+}  // namespace
+
+void judge(TypeEffect& effect, double level) {
+  std::vector<Estimate> estimates;
+  std::vector<EffectInGyro*> measured;
+  effect.found_alone = effect.found = 0;
+  for (EffectInGyro& each : effect.gyros) {
+    effect.found_alone += each.found_alone ? 1 : 0;
+    if (!each.own) continue;
+    estimates.push_back(*each.own);
+    measured.push_back(&each);
+  }
+  if (estimates.size() < 2) return;
+  effect.prior = fit_two_groups(estimates);
+  effect.all = random_effects(estimates);
+  fill_in_means(effect);
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    EffectInGyro& each = *measured[i];
+    each.others = without_member(estimates, i, effect.prior);
+    each.probability = probability(each.others, estimates[i]);
+    each.chance = chance_without(each.others, estimates[i]);
+    each.found = kCare * each.chance <= level && each.probability > 0.5;
+    effect.found += each.found ? 1 : 0;
+  }
+}
+
+bool is_of_type(const TypePrior& prior, double level) {
+  constexpr double kNumbers = 3.0;  // share, mean, spread
+  return prior.likelihood_ratio > quantile(complement(boost::math::chi_squared(kNumbers), level));
+}
+
+void describe(PopulationParameter& parameter) {
+  std::vector<double> values, errors;
+  std::vector<Estimate> with_errors;
+  for (const Estimate& each : parameter.values) {
+    values.push_back(parameter.logarithmic ? std::log(each.value) : each.value);
+    errors.push_back(parameter.logarithmic ? each.std_error / each.value : each.std_error);
+    if (each.std_error > 0.0) with_errors.push_back({values.back(), errors.back()});
+  }
+  parameter.z = robust_z(values, errors);
+  parameter.robust = robust_spread(values);
+  parameter.spread.reset();
+  if (with_errors.size() >= 2 && with_errors.size() == values.size())
+    parameter.spread = random_effects(with_errors);
+}
+
+std::vector<StandingOut> standing_out(const std::vector<PopulationParameter>& parameters) {
+  std::vector<StandingOut> found;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].values.size() < kFewestOfType) continue;
+    for (std::size_t i = 0; i < parameters[p].z.size(); ++i)
+      if (std::abs(parameters[p].z[i]) > kStandsOut)
+        found.push_back({parameters[p].gyros[i], p, parameters[p].z[i]});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const StandingOut& a, const StandingOut& b) { return std::abs(a.z) > std::abs(b.z); });
+  return found;
+}
+
+}  // namespace ifog

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Named effects measured on white noise, against ordinary least squares written out; and what is asked for
+// that is not there.
+#include "filters/diagnosis/measure.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kSamples = 3000;
+constexpr double kNoise = 1e-6, kPerDegree = 2e-8, kPerVolt = 3e-7;
+
+struct Sensor {
+  std::vector<double> time_s, rate, temperature, supply, still;
+  explicit Sensor(std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const double t = static_cast<double>(i);
+      time_s.push_back(t);
+      temperature.push_back(30.0 + 6.0 * std::sin(2.0 * M_PI * t / 500.0));
+      supply.push_back(12.0 + 0.3 * std::sin(2.0 * M_PI * t / 333.0));
+      still.push_back(5.0);
+      rate.push_back(4e-5 + kPerDegree * (temperature.back() - 25.0) + kPerVolt * (supply.back() - 12.0) +
+                     kNoise * normal(random));
+    }
+  }
+  [[nodiscard]] Record record() const {
+    Record made;
+    made.name = "sensor";
+    made.time_s = time_s;
+    made.rate_radps = rate;
+    made.channels = {{"temperature_degC", temperature}, {"supply_V", supply}, {"still_V", still}};
+    return made;
+  }
+};
+
+Effect linear_in(const std::string& channel) {
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = channel;
+  effect.parameters = {{"coefficient", 0.0, 0.0, ""}};
+  return effect;
+}
+
+struct LeastSquares {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd covariance;
+  double square = 0.0;
+};
+
+LeastSquares least_squares(const Sensor& sensor, const std::vector<const std::vector<double>*>& channels) {
+  const auto n = static_cast<Eigen::Index>(kSamples);
+  const auto p = static_cast<Eigen::Index>(channels.size()) + 1;
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(n, p);
+  Eigen::VectorXd rate(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    rate[i] = sensor.rate[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 1; j < p; ++j)
+      columns(i, j) = (*channels[static_cast<std::size_t>(j - 1)])[static_cast<std::size_t>(i)];
+  }
+  LeastSquares fit;
+  fit.values = columns.householderQr().solve(rate);
+  fit.square = (rate - columns * fit.values).squaredNorm();
+  fit.covariance = fit.square / static_cast<double>(n - p) * (columns.transpose() * columns).inverse();
+  return fit;
+}
+
+TEST(Measure, InWhiteNoiseItIsLeastSquares) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Sensor sensor(seed);
+    EffectsToMeasure wanted;
+    wanted.together = {linear_in("temperature_degC")};
+    wanted.beside = {linear_in("supply_V")};
+    const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
+    const LeastSquares both = least_squares(sensor, {&sensor.temperature, &sensor.supply});
+    const LeastSquares without = least_squares(sensor, {&sensor.supply});
+    ASSERT_EQ(found.together.size(), 1U);
+    ASSERT_EQ(found.beside.size(), 1U);
+    ASSERT_TRUE(found.together[0].not_measured.empty());
+    const ModelParameter& coefficient = found.together[0].effect.parameters.front();
+    const double error = std::sqrt(both.covariance(1, 1));
+    EXPECT_NEAR(coefficient.value, both.values[1], 0.15 * error);
+    // The noise's slow part is not known to be zero, so the error is a little more.
+    EXPECT_GT(coefficient.std_error, 0.98 * error);
+    EXPECT_LT(coefficient.std_error, 1.3 * error);
+    EXPECT_NEAR(found.beside[0].parameters.front().value, both.values[2],
+                0.15 * std::sqrt(both.covariance(2, 2)));
+    const double ratio = static_cast<double>(kSamples) * std::log(without.square / both.square);
+    EXPECT_LT(found.together[0].likelihood_ratio, 1.02 * ratio);
+    EXPECT_GT(found.together[0].likelihood_ratio, 0.5 * ratio);  // without it, slow noise explains a part
+    ASSERT_EQ(found.covariance.size(), 4U);
+    EXPECT_NEAR(found.covariance[0], coefficient.std_error * coefficient.std_error,
+                1e-6 * found.covariance[0]);
+  }
+}
+
+TEST(Measure, AnEffectThatIsNotThereIsMeasuredAsNone) {
+  int far = 0;
+  for (std::uint64_t seed = 10; seed < 22; ++seed) {
+    Sensor sensor(seed);
+    for (std::size_t i = 0; i < kSamples; ++i) sensor.rate[i] -= kPerDegree * (sensor.temperature[i] - 25.0);
+    EffectsToMeasure wanted;
+    wanted.together = {linear_in("temperature_degC")};
+    wanted.beside = {linear_in("supply_V")};
+    const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
+    const ModelParameter& coefficient = found.together[0].effect.parameters.front();
+    far += std::abs(coefficient.value) > 2.5758 * coefficient.std_error ? 1 : 0;
+  }
+  EXPECT_LE(far, 1);
+}
+
+TEST(Measure, TheRightOneOfTwoExplainsMore) {
+  const Sensor sensor(4);
+  EffectsToMeasure wanted;
+  wanted.together = {linear_in("supply_V")};
+  wanted.instead = {{linear_in("temperature_degC"), linear_in("absent_V")}};
+  const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "z");
+  ASSERT_EQ(found.together[0].instead.size(), 2U);
+  EXPECT_GT(found.together[0].instead[0], 0.0);
+  EXPECT_EQ(found.together[0].instead[1], 0.0);
+  EXPECT_EQ(found.together[0].effect.axis, "z");
+}
+
+TEST(Measure, WhatCannotBeMeasuredSaysWhy) {
+  const Sensor sensor(1);
+  EffectsToMeasure wanted;
+  wanted.together = {linear_in("absent_V"), linear_in("still_V"), linear_in("temperature_degC")};
+  Effect noise;
+  noise.form = "outliers";
+  wanted.together.push_back(noise);
+  const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
+  EXPECT_EQ(found.together[0].not_measured, "the captures have no absent_V");
+  EXPECT_NE(found.together[1].not_measured, "");
+  EXPECT_EQ(found.together[2].not_measured, "");
+  EXPECT_NE(found.together[3].not_measured, "");
+  ASSERT_EQ(found.covariance.size(), 1U);
+  EXPECT_EQ(found.ranges.size(), 1U);
+  wanted.together = {linear_in("temperature_degC"), linear_in("temperature_degC")};
+  EXPECT_THROW((void)measure_effects({sensor.record()}, wanted, ""), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace ifog

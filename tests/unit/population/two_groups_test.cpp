@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two-group model against closed forms, against integration by numbers, and on drawn populations.
+#include "filters/population/two_groups.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "filters/population/population.h"
+
+namespace ifog {
+namespace {
+
+double density(double x, double mean, double variance) {
+  return std::exp(-0.5 * (x - mean) * (x - mean) / variance) / std::sqrt(2.0 * std::numbers::pi * variance);
+}
+
+TypePrior prior_of(double share, double mean, double spread) {
+  TypePrior prior;
+  prior.share = share;
+  prior.mean = mean;
+  prior.spread = spread;
+  return prior;
+}
+
+TEST(TwoGroups, ProbabilityIsBayesTheorem) {
+  const TypePrior prior = prior_of(0.3, 2.0, 0.7);
+  for (const double value : {-3.0, -0.5, 0.0, 0.9, 2.5, 6.0}) {
+    const Estimate estimate{value, 0.8};
+    const double with = 0.3 * density(value, 2.0, 0.64 + 0.49), without = 0.7 * density(value, 0.0, 0.64);
+    EXPECT_NEAR(probability(prior, estimate), with / (with + without), 1e-12);
+  }
+}
+
+// The chance by adding up the density of all estimates that speak for the effect at least as much.
+double chance_by_numbers(const TypePrior& prior, const Estimate& estimate) {
+  const double own = estimate.std_error * estimate.std_error, all = own + prior.spread * prior.spread;
+  const auto ratio = [&](double x) { return density(x, prior.mean, all) / density(x, 0.0, own); };
+  const double level = ratio(estimate.value), step = 1e-4 * estimate.std_error;
+  double sum = 0.0;
+  for (double x = -9.0 * estimate.std_error; x < 9.0 * estimate.std_error; x += step)
+    if (ratio(x) >= level) sum += density(x, 0.0, own) * step;
+  return sum;
+}
+
+TEST(TwoGroups, ChanceIsWhatIntegrationGives) {
+  for (const TypePrior& prior : {prior_of(0.5, 3.0, 0.5), prior_of(0.5, -1.0, 2.0), prior_of(0.5, 0.0, 1.5)})
+    for (const double value : {-2.0, -0.4, 0.3, 1.1, 2.2}) {
+      const Estimate estimate{value, 0.8};
+      EXPECT_NEAR(chance_without(prior, estimate), chance_by_numbers(prior, estimate), 2e-4)
+          << prior.mean << " " << value;
+    }
+}
+
+TEST(TwoGroups, WithoutSpreadTheChanceIsOneSided) {
+  const Estimate estimate{1.6448536, 1.0};
+  EXPECT_NEAR(chance_without(prior_of(0.5, 4.0, 0.0), estimate), 0.05, 1e-7);
+  EXPECT_NEAR(chance_without(prior_of(0.5, -4.0, 0.0), estimate), 0.95, 1e-7);
+  // A little spread changes little.
+  EXPECT_NEAR(chance_without(prior_of(0.5, 4.0, 1e-4), estimate), 0.05, 1e-4);
+}
+
+struct Drawn {
+  std::vector<Estimate> estimates;
+  std::vector<bool> has;
+};
+
+Drawn population(std::mt19937& random, std::size_t members, const TypePrior& truth) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  Drawn drawn;
+  for (std::size_t i = 0; i < members; ++i) {
+    const double error = 0.7 + 0.6 * uniform(random);
+    drawn.has.push_back(uniform(random) < truth.share);
+    const double coefficient = drawn.has.back() ? truth.mean + truth.spread * normal(random) : 0.0;
+    drawn.estimates.push_back({coefficient + error * normal(random), error});
+  }
+  return drawn;
+}
+
+TEST(TwoGroups, ADrawnPopulationIsRecovered) {
+  std::mt19937 random(11);
+  const TypePrior truth = prior_of(0.7, 6.0, 1.5);
+  const TypePrior found = fit_two_groups(population(random, 4000, truth).estimates);
+  EXPECT_NEAR(found.share, truth.share, 0.025);
+  EXPECT_NEAR(found.mean, truth.mean, 4.0 * found.mean_std_error);
+  EXPECT_NEAR(found.mean_std_error, std::sqrt((1.0 + 2.25) / 2800.0), 0.004);
+  EXPECT_NEAR(found.spread, truth.spread, 0.1);
+}
+
+// The expectation-maximisation's top against a plain search of the likelihood on a grid.
+TEST(TwoGroups, NothingOnAGridIsLikelier) {
+  std::mt19937 random(5);
+  const Drawn drawn = population(random, 30, prior_of(0.6, 3.0, 1.0));
+  const TypePrior found = fit_two_groups(drawn.estimates);
+  const auto ratio = [&](double share, double mean, double spread) {
+    // One member for and one against the effect are in the fit's share.
+    double sum = 2.0 * (std::log(share) + std::log1p(-share));
+    for (const Estimate& e : drawn.estimates) {
+      const double own = e.std_error * e.std_error;
+      sum +=
+          2.0 * std::log(share * density(e.value, mean, own + spread * spread) / density(e.value, 0.0, own) +
+                         1.0 - share);
+    }
+    return sum;
+  };
+  double best = -1e300;
+  for (double share = 0.02; share < 0.99; share += 0.02)
+    for (double mean = -6.0; mean < 8.0; mean += 0.1)
+      for (double spread = 0.0; spread < 4.0; spread += 0.1)
+        best = std::max(best, ratio(share, mean, spread));
+  EXPECT_GE(ratio(found.share, found.mean, found.spread), best - 1e-3);
+}
+
+TEST(TwoGroups, LeavingOutIsFittingWithout) {
+  std::mt19937 random(8);
+  const Drawn drawn = population(random, 25, prior_of(0.8, 5.0, 1.0));
+  const TypePrior all = fit_two_groups(drawn.estimates);
+  std::vector<Estimate> rest = drawn.estimates;
+  rest.erase(rest.begin() + 3);
+  const TypePrior without = without_member(drawn.estimates, 3, all), direct = fit_two_groups(rest);
+  EXPECT_NEAR(without.mean, direct.mean, 0.02);
+  EXPECT_NEAR(without.spread, direct.spread, 0.05);
+  EXPECT_NEAR(without.share, direct.share, 0.01);
+}
+
+TEST(TwoGroups, TheShrunkAreNearerToTheTruth) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> truth;
+  std::vector<Estimate> estimates;
+  for (int i = 0; i < 200; ++i) {
+    truth.push_back(6.0 + 0.5 * normal(random));
+    estimates.push_back({truth.back() + normal(random), 1.0});
+  }
+  const TypePrior prior = fit_two_groups(estimates);
+  double alone = 0.0, with = 0.0, said = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Estimate better = shrunk(without_member(estimates, i, prior), estimates[i]);
+    alone += std::pow(estimates[i].value - truth[i], 2);
+    with += std::pow(better.value - truth[i], 2);
+    said += better.std_error * better.std_error;
+  }
+  // 1 / (1 / 0.25 + 1) of the variance is what normal theory leaves.
+  EXPECT_NEAR(with / alone, 0.2, 0.08);
+  EXPECT_NEAR(said / with, 1.0, 0.3);
+}
+
+TEST(JudgedEffect, FoundInThoseThatHaveItAndNotInTheOthers) {
+  std::mt19937 random(21);
+  TypeEffect effect;
+  effect.effect.parameters = {{"coefficient", 0.0, 0.0, "rad/s"}};
+  std::vector<bool> has;
+  std::size_t of_them = 0, found = 0, false_alarms = 0;
+  for (int round = 0; round < 8; ++round) {
+    const Drawn drawn = population(random, 200, prior_of(0.5, 6.0, 0.6));
+    effect.gyros.clear();
+    for (std::size_t i = 0; i < drawn.estimates.size(); ++i) {
+      EffectInGyro each;
+      each.gyro = i;
+      each.own = drawn.estimates[i];
+      effect.gyros.push_back(each);
+    }
+    judge(effect, 0.01);
+    EXPECT_TRUE(is_of_type(effect.prior, 0.01));
+    for (std::size_t i = 0; i < drawn.has.size(); ++i) {
+      of_them += drawn.has[i] ? 1 : 0;
+      found += drawn.has[i] && effect.gyros[i].found ? 1 : 0;
+      false_alarms += !drawn.has[i] && effect.gyros[i].found ? 1 : 0;
+    }
+  }
+  // Errors of 0.7 to 1.3: effects of 4.6 to 8.6 of them.
+  EXPECT_GE(static_cast<double>(found), 0.95 * static_cast<double>(of_them));
+  EXPECT_LE(static_cast<double>(false_alarms), 0.01 * static_cast<double>(1600 - of_them));
+}
+
+TEST(JudgedEffect, NobodyHasWhatIsNoise) {
+  std::mt19937 random(2);
+  std::size_t of_type = 0;
+  for (int round = 0; round < 100; ++round)
+    of_type += is_of_type(fit_two_groups(population(random, 40, prior_of(1e-9, 0.0, 1.0)).estimates), 0.01);
+  EXPECT_LE(of_type, 3U);  // 1 expected at most
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// ifog fleet: one diagnosis for each gyro of a type, on this machine or on a cluster; then what the type is,
+// and what it gives back to each of its gyros.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "drivers/capture/output_file.h"
+#include "drivers/capture/text_file.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/utc_now.h"
+#include "filters/units/field_units.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/fleet/engine.h"
+#include "tools/ifog/fleet/fleet_json.h"
+#include "tools/ifog/fleet/gather.h"
+#include "tools/ifog/fleet/gyro_work.h"
+#include "tools/ifog/fleet/process.h"
+#include "tools/ifog/fleet/with_prior.h"
+#include "tools/report/fleet_page.h"
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::size_t kAttempts = 3;          // at a gyro whose process ended without a word in the results
+constexpr std::size_t kMostMeasurements = 8;  // of the type's effects, until their choice settles
+
+struct Arguments {
+  std::string manifest, results, engine = "auto";
+  std::size_t jobs = 0;
+  std::optional<std::size_t> one;
+  bool dry_run = false;
+  std::optional<double> latitude_deg;
+  FleetSettings settings;
+};
+
+std::unique_ptr<Engine> engine_named(const Arguments& arguments, const Results& results) {
+  const bool slurm = arguments.engine == "slurm" || (arguments.engine == "auto" && is_there("sbatch"));
+  return slurm ? slurm_engine(results, arguments.jobs) : local_engine(results, arguments.jobs);
+}
+
+class FleetRun {
+ public:
+  FleetRun(const Arguments& arguments, const Manifest& manifest, const Results& results)
+      : arguments_(arguments),
+        manifest_(manifest),
+        results_(results),
+        options_(arguments.settings.text()),
+        level_(arguments.settings.wanted.significance),
+        engine_(engine_named(arguments, results)) {
+    population_.type = manifest.type;
+    population_.significance = level_;
+    for (const FleetGyro& gyro : manifest.gyros) population_.serials.push_back(gyro.serial);
+  }
+
+  void dry_run() { say("%s", engine_->in_words(undiagnosed()).c_str()); }
+
+  void run() {
+    diagnose_all();
+    if (diagnosed_.gyros.empty()) {
+      tell_failures();
+      throw Failed("no gyro was diagnosed");
+    }
+    measure_type();
+    population_.parameters = noise_parameters(results_, manifest_, diagnosed_);
+    for (PopulationParameter& each : coefficient_parameters(population_.effects))
+      population_.parameters.push_back(std::move(each));
+    for (PopulationParameter& each : population_.parameters) describe(each);
+    population_.standing_out = standing_out(population_.parameters);
+    for (const FoundInGyro& each : diagnosed_.found)
+      if (std::none_of(type_.effects.begin(), type_.effects.end(),
+                       [&](const TypeCandidate& of_type) { return is_of(of_type, each.effect); }))
+        population_.own.push_back(each);
+    write();
+    tell();
+    if (!population_.failed.empty()) throw Failed("not every gyro has a result");
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::size_t> undiagnosed() const {
+    std::vector<std::size_t> missing;
+    for (std::size_t i = 0; i < manifest_.gyros.size(); ++i)
+      if (!is_diagnosed(results_, manifest_.gyros[i], options_)) missing.push_back(i);
+    return missing;
+  }
+
+  // Runs what is missing until every gyro has a result or has said why not; how the others ended.
+  template <typename Missing, typename Failure>
+  std::map<std::size_t, std::string> run_missing(const char* what, const Missing& missing,
+                                                 const Failure& failure) {
+    std::map<std::size_t, std::string> ended;
+    std::vector<std::size_t> left = missing();
+    if (left.empty()) return ended;
+    say("%s %zu of %zu gyros\n", what, left.size(), manifest_.gyros.size());
+    for (const std::size_t gyro : left) forget_failure(gyro);
+    for (std::size_t attempt = 0; attempt < kAttempts && !left.empty(); ++attempt) {
+      Progress progress(what, left.size());
+      ended = engine_->run(left, [&](std::size_t done) { progress.at(done); });
+      left = missing();
+      std::erase_if(left, failure);  // what has said why is not asked again
+    }
+    for (const std::size_t gyro : left)
+      if (ended.count(gyro) == 0) ended[gyro] = "no result";
+    return ended;
+  }
+
+  // Of an earlier run: what stands there afterwards is of this one.
+  void forget_failure(std::size_t gyro) const {
+    const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
+    if (!done || !done->failed) return;
+    std::error_code none;
+    std::filesystem::remove(results_.path(manifest_.gyros[gyro], "gyro.json"), none);
+  }
+
+  void diagnose_all() {
+    if (!undiagnosed().empty()) results_.forget_type();
+    const auto said_why = [&](std::size_t gyro) {
+      const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
+      return done && done->failed.has_value();
+    };
+    const auto ended = run_missing(
+        "diagnosing", [&] { return undiagnosed(); }, said_why);
+    for (const std::size_t gyro : undiagnosed()) {
+      const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
+      const auto how = ended.find(gyro);
+      std::string why = done && done->failed ? *done->failed
+                        : how != ended.end() ? how->second + ", see " + results_.log(gyro)
+                                             : "its captures change while they are read";
+      population_.failed.push_back({gyro, std::move(why)});
+    }
+    diagnosed_ = gather_diagnosed(results_, manifest_, options_);
+  }
+
+  // The type's effects, measured on every gyro until what the measurements say of the choice is the choice.
+  void measure_type() {
+    if (diagnosed_.gyros.size() < kFewestOfType) {
+      population_.remarks.push_back("of a type with fewer than " + std::to_string(kFewestOfType) +
+                                    " gyros diagnosed nothing is said");
+      results_.forget_type();
+      return;
+    }
+    type_.effects = type_candidates(diagnosed_.found, diagnosed_.gyros.size(), level_);
+    for (std::size_t round = 0; round < kMostMeasurements && !type_.effects.empty(); ++round) {
+      results_.write_type(manifest_.type, type_);
+      std::vector<Population::Failure> failed;
+      measured_ = measure_all(failed);
+      population_.effects = judged_effects(type_, measured_, diagnosed_, level_);
+      if (!reconsider(type_, population_.effects, measured_, level_)) {
+        population_.failed.insert(population_.failed.end(), failed.begin(), failed.end());
+        return;
+      }
+      population_.effects.clear();
+    }
+    type_.effects.clear();
+    population_.remarks.push_back(
+        "no effect is the type's: none shows in more gyros than false alarms explain, or what shows is not "
+        "the same in them");
+    results_.write_type(manifest_.type, type_);
+  }
+
+  std::map<std::size_t, GyroMeasured> measure_all(std::vector<Population::Failure>& failed) {
+    const auto missing = [&] {
+      std::vector<std::size_t> left;
+      for (const std::size_t gyro : diagnosed_.gyros)
+        if (!is_measured(results_, manifest_.gyros[gyro], options_, type_)) left.push_back(gyro);
+      return left;
+    };
+    const auto said_why = [&](std::size_t gyro) {
+      const auto measured = results_.measured(manifest_.gyros[gyro], type_.id);
+      return measured && measured->failed.has_value();
+    };
+    run_missing("measuring", missing, said_why);
+    return gather_measured(results_, manifest_, diagnosed_, type_, failed);
+  }
+
+  void write() {
+    for (const auto& [gyro, measured] : measured_) {
+      if (type_.effects.empty()) break;
+      const Model model =
+          model_with_prior(diagnosed_.models.at(gyro), type_, measured, gyro, population_.effects);
+      write_file(results_.path(manifest_.gyros[gyro], "with_prior.toml"), model_text(model));
+    }
+    write_json(results_.path("fleet.json"), fleet_json(population_));
+    report::FleetPage page;
+    page.population = &population_;
+    page.made = utc_now() + " by ifog " IFOG_VERSION;
+    page.command = typed_command();
+    write_text_file(results_.path("fleet.html"), report::fleet_page(page));
+  }
+
+  void tell_failures() {
+    for (const Population::Failure& each : population_.failed)
+      warn("%s: %s\n", population_.serials[each.gyro].c_str(), printable(each.why, kLongestMessage).c_str());
+  }
+
+  void tell() {
+    say("%s: %zu of %zu gyros diagnosed\n", printable(manifest_.type).c_str(), diagnosed_.gyros.size(),
+        manifest_.gyros.size());
+    for (const TypeEffect& each : population_.effects) say("  %s\n", report::in_words(each).c_str());
+    for (const std::string& remark : population_.remarks) say("  %s\n", remark.c_str());
+    for (const StandingOut& each : population_.standing_out)
+      say("  %s stands out: %s, robust z = %.1f\n", population_.serials[each.gyro].c_str(),
+          printable(population_.parameters[each.parameter].name).c_str(), each.z);
+    tell_failures();
+    say("%s\n%s\n", results_.path("fleet.html").c_str(), results_.path("fleet.json").c_str());
+  }
+
+  const Arguments& arguments_;
+  const Manifest& manifest_;
+  const Results& results_;
+  std::string options_;
+  double level_;
+  std::unique_ptr<Engine> engine_;
+  Diagnosed diagnosed_;
+  TypeToMeasure type_;
+  std::map<std::size_t, GyroMeasured> measured_;
+  Population population_;
+};
+
+void run(Arguments& arguments) {
+  if (arguments.latitude_deg) arguments.settings.wanted.latitude_rad = *arguments.latitude_deg * kDegree;
+  const Manifest manifest = read_manifest(arguments.manifest);
+  if (arguments.one && *arguments.one >= manifest.gyros.size())
+    throw CLI::ValidationError("--one", std::to_string(*arguments.one) + " is no gyro of " +
+                                            arguments.manifest + ", expected 0 to " +
+                                            std::to_string(manifest.gyros.size() - 1));
+  const std::string folder =
+      arguments.results.empty()
+          ? std::filesystem::path(arguments.manifest).replace_extension(".results").string()
+          : arguments.results;
+  const Results results(folder);
+  if (arguments.one) {
+    work_on(results, manifest.gyros[*arguments.one], arguments.settings);
+    return;
+  }
+  FleetRun fleet(arguments, manifest, results);
+  if (arguments.dry_run) {
+    fleet.dry_run();
+    return;
+  }
+  catch_interrupts();
+  fleet.run();
+}
+
+}  // namespace
+
+void add_fleet(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "fleet", "diagnose every gyro of a type, then the type: its effects, its spread, who stands out");
+  command->add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
+      ->required();
+  command->add_option("--results", arguments->results,
+                      "folder of results; otherwise beside the manifest, under its name with .results");
+  command
+      ->add_option("--engine", arguments->engine,
+                   "who runs the diagnoses: auto takes slurm where there is an sbatch")
+      ->check(CLI::IsMember({"auto", "local", "slurm"}))
+      ->capture_default_str();
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "gyros at once; otherwise a processor each, or as many as Slurm gives")
+      ->check(CLI::Range(1, 100000));
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "print what would be run for the gyros not yet diagnosed");
+  command->add_option("--one", arguments->one, "only what is missing of this gyro, counted from 0")
+      ->type_name("INDEX");
+  arguments->settings.input.add_to(*command);
+  arguments->settings.part.add_to(*command);
+  command->add_option("--axis", arguments->settings.wanted.axes, "only these axes");
+  command
+      ->add_option("--significance", arguments->settings.wanted.significance,
+                   "chance of a false effect in a gyro, after correction for all tried")
+      ->check(CLI::Range(1e-9, 0.5))
+      ->capture_default_str();
+  command->add_flag(
+      "--earth", arguments->settings.wanted.earth,
+      "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
+  command
+      ->add_option("--latitude", arguments->latitude_deg,
+                   "of the captures, degrees: bounds what can be the Earth's rate")
+      ->check(CLI::Range(-90.0, 90.0));
+  command->footer("Example:\n  ifog fleet lot7.toml --jobs 8");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/fleet/gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "drivers/capture/text_file.h"
+#include "tools/ifog/fleet/gyro_work.h"
+
+namespace ifog::tools {
+namespace {
+
+// Twice the log-likelihood, of all gyros together, that another form has to explain more.
+constexpr double kBetterForm = 6.0;
+
+struct Term {
+  const char *name, *key, *unit;
+};
+constexpr std::array<Term, 5> kTerms{{{"Q", "Q_rad", "rad"},
+                                      {"N", "N_radps_rthz", "rad/s/rtHz"},
+                                      {"B", "B_radps", "rad/s"},
+                                      {"K", "K_radps2_rthz", "rad/s2/rtHz"},
+                                      {"R", "R_radps2", "rad/s2"}}};
+
+// "noise" of a diagnosis is that of its axis, or an object by axis.
+void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t gyro,
+               std::map<std::pair<std::string, std::string>, PopulationParameter>& found) {
+  for (const Term& term : kTerms) {
+    const auto value = noise.find(term.key);
+    if (value == noise.end() || !value->is_number() || !(value->get<double>() > 0.0)) continue;
+    PopulationParameter& parameter = found[{axis, term.name}];
+    parameter.name = term.name;
+    parameter.axis = axis;
+    parameter.unit = term.unit;
+    parameter.logarithmic = true;
+    double error = 0.0;
+    if (const auto errors = noise.find("std_error"); errors != noise.end() && errors->contains(term.key))
+      if (const nlohmann::json& each = errors->at(term.key); each.is_number()) error = each.get<double>();
+    parameter.gyros.push_back(gyro);
+    parameter.values.push_back({value->get<double>(), std::max(error, 0.0)});
+  }
+}
+
+const MeasuredEffect* measured_of(const GyroMeasured& gyro, std::size_t of_type) {
+  for (const AxisMeasured& axis : gyro.axes)
+    for (std::size_t i = 0; i < axis.of_type.size(); ++i)
+      if (axis.of_type[i] == of_type) return &axis.together[i];
+  return nullptr;
+}
+
+// Sums over the gyros that measured the form that leads.
+std::vector<double> explained_by_form(const TypeCandidate& candidate, std::size_t of_type,
+                                      const std::map<std::size_t, GyroMeasured>& measured) {
+  std::vector<double> sums(candidate.forms.size(), 0.0);
+  for (const auto& [gyro, all] : measured) {
+    const MeasuredEffect* const each = measured_of(all, of_type);
+    if (each == nullptr || !each->not_measured.empty()) continue;
+    sums.front() += each->likelihood_ratio;
+    for (std::size_t i = 0; i + 1 < sums.size() && i < each->instead.size(); ++i)
+      sums[i + 1] += each->instead[i];
+  }
+  return sums;
+}
+
+}  // namespace
+
+Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options) {
+  Diagnosed diagnosed;
+  for (std::size_t i = 0; i < manifest.gyros.size(); ++i) {
+    const FleetGyro& gyro = manifest.gyros[i];
+    if (!is_diagnosed(results, gyro, options)) continue;
+    Model model = read_model(results.path(gyro, "model.toml"));
+    for (const Effect& effect : model.effects) diagnosed.found.push_back({i, effect});
+    diagnosed.gyros.push_back(i);
+    diagnosed.models[i] = std::move(model);
+  }
+  return diagnosed;
+}
+
+std::vector<PopulationParameter> noise_parameters(const Results& results, const Manifest& manifest,
+                                                  const Diagnosed& diagnosed) {
+  std::map<std::pair<std::string, std::string>, PopulationParameter> found;
+  for (const std::size_t gyro : diagnosed.gyros) {
+    const std::string path = results.path(manifest.gyros[gyro], "diagnosis.json");
+    try {
+      const nlohmann::json noise = nlohmann::json::parse(read_text_file(path)).at("noise");
+      const Model& model = diagnosed.models.at(gyro);
+      const bool single = model.noise.size() == 1;
+      for (const auto& [axis, terms] : model.noise)
+        add_noise(single ? noise : noise.at(axis), axis, gyro, found);
+    } catch (const nlohmann::json::exception& error) {
+      throw std::runtime_error(path + ": damaged: " + error.what());
+    }
+  }
+  std::vector<PopulationParameter> parameters;
+  for (auto& [key, parameter] : found) parameters.push_back(std::move(parameter));
+  return parameters;
+}
+
+std::map<std::size_t, GyroMeasured> gather_measured(const Results& results, const Manifest& manifest,
+                                                    const Diagnosed& diagnosed, const TypeToMeasure& type,
+                                                    std::vector<Population::Failure>& failed) {
+  std::map<std::size_t, GyroMeasured> found;
+  for (const std::size_t gyro : diagnosed.gyros) {
+    std::optional<GyroMeasured> measured = results.measured(manifest.gyros[gyro], type.id);
+    if (!measured)
+      failed.push_back({gyro, "diagnosed, but the type's effects were not measured"});
+    else if (measured->failed)
+      failed.push_back({gyro, *measured->failed});
+    else
+      found[gyro] = std::move(*measured);
+  }
+  return found;
+}
+
+std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
+                                       const std::map<std::size_t, GyroMeasured>& measured,
+                                       const Diagnosed& diagnosed, double level) {
+  std::vector<TypeEffect> effects;
+  for (std::size_t i = 0; i < type.effects.size(); ++i) {
+    TypeEffect effect;
+    effect.effect = type.effects[i].forms.front();
+    std::set<std::size_t> alone;
+    for (const FoundInGyro& each : diagnosed.found)
+      if (is_of(type.effects[i], each.effect)) alone.insert(each.gyro);
+    for (const auto& [gyro, all] : measured) {
+      EffectInGyro here;
+      here.gyro = gyro;
+      here.found_alone = alone.count(gyro) > 0;
+      const MeasuredEffect* const each = measured_of(all, i);
+      if (each == nullptr) {
+        here.not_measured = "the gyro has no such axis";
+      } else if (!each->not_measured.empty()) {
+        here.not_measured = each->not_measured;
+      } else {
+        const ModelParameter& coefficient = each->effect.parameters.front();
+        here.own = Estimate{coefficient.value, coefficient.std_error};
+        here.likelihood_ratio = each->likelihood_ratio;
+        effect.effect.parameters.front().unit = coefficient.unit;
+        effect.effect.meaning = each->effect.meaning;
+      }
+      effect.gyros.push_back(std::move(here));
+    }
+    judge(effect, level / static_cast<double>(type.effects.size()));
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
+                const std::map<std::size_t, GyroMeasured>& measured, double level) {
+  if (type.effects.empty()) return false;
+  bool changed = false;
+  std::size_t weakest = type.effects.size();
+  for (std::size_t i = 0; i < type.effects.size(); ++i) {
+    std::vector<Effect>& forms = type.effects[i].forms;
+    const std::vector<double> sums = explained_by_form(type.effects[i], i, measured);
+    const auto best = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
+    if (best > 0 && sums[best] > sums.front() + kBetterForm) {
+      std::rotate(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(best),
+                  forms.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+      changed = true;
+    }
+    const double ratio = judged[i].prior.likelihood_ratio;
+    if (is_of_type(judged[i].prior, level / static_cast<double>(type.effects.size()))) continue;
+    if (weakest == type.effects.size() || ratio < judged[weakest].prior.likelihood_ratio) weakest = i;
+  }
+  if (weakest < type.effects.size() && !changed) {
+    type.effects.erase(type.effects.begin() + static_cast<std::ptrdiff_t>(weakest));
+    changed = true;
+  }
+  return changed;
+}
+
+std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEffect>& effects) {
+  std::vector<PopulationParameter> parameters;
+  for (const TypeEffect& effect : effects) {
+    PopulationParameter parameter;
+    parameter.name =
+        effect.effect.form + (effect.effect.channel.empty() ? "" : " of " + effect.effect.channel);
+    parameter.axis = effect.effect.axis;
+    parameter.unit = effect.effect.parameters.front().unit;
+    for (const EffectInGyro& each : effect.gyros) {
+      if (!each.own) continue;
+      parameter.gyros.push_back(each.gyro);
+      parameter.values.push_back(*each.own);
+    }
+    parameters.push_back(std::move(parameter));
+  }
+  return parameters;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the result files of single gyros to what their type is.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "filters/population/population.h"
+#include "tools/ifog/fleet/results.h"
+
+namespace ifog::tools {
+
+// Gyros that are diagnosed, with what their diagnoses wrote.
+struct Diagnosed {
+  std::vector<std::size_t> gyros;
+  std::map<std::size_t, Model> models;
+  std::vector<FoundInGyro> found;  // all effects of all models
+};
+
+// Throws std::runtime_error with one line: a model that cannot be read.
+Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options);
+
+// The noise of every gyro on every axis, by the diagnoses.
+std::vector<PopulationParameter> noise_parameters(const Results& results, const Manifest& manifest,
+                                                  const Diagnosed& diagnosed);
+
+// The measurements of the type's effects, by gyro; those that failed are among `failed` instead.
+std::map<std::size_t, GyroMeasured> gather_measured(const Results& results, const Manifest& manifest,
+                                                    const Diagnosed& diagnosed, const TypeToMeasure& type,
+                                                    std::vector<Population::Failure>& failed);
+
+// The type's effects, judged; in the order of `type`. level: of a false effect in a gyro, for all of them.
+std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
+                                       const std::map<std::size_t, GyroMeasured>& measured,
+                                       const Diagnosed& diagnosed, double level);
+
+// What the measurements say of the choice: of each effect the form that explains most in all gyros together
+// comes first, and the least of those that no population would show by chance is left out. Whether anything
+// changed: then it is to be measured anew.
+bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
+                const std::map<std::size_t, GyroMeasured>& measured, double level);
+
+// A value of every gyro for each effect of the type.
+std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEffect>& effects);
+
+}  // namespace ifog::tools

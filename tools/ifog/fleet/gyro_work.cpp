@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/fleet/gyro_work.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "drivers/capture/output_file.h"
+#include "drivers/capture/text_file.h"
+#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/say.h"
+
+namespace ifog::tools {
+namespace {
+
+struct Opened {
+  std::vector<Capture> captures;
+  std::vector<std::string> hashes;
+};
+
+Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
+  Opened opened;
+  for (const std::string& path : gyro.captures) {
+    opened.hashes.emplace_back();
+    opened.captures.push_back(settings.input.read(path, &opened.hashes.back()));
+    settings.part.cut(opened.captures.back(), path);
+  }
+  return opened;
+}
+
+void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
+                   const Opened& opened) {
+  const std::vector<AxisDiagnosis> found = diagnose_axes(opened.captures, gyro.captures, settings.wanted);
+  Model model = model_with({}, found, gyro.captures, opened.hashes);
+  model.sensor = gyro.serial;
+  const std::string model_path = results.path(gyro, "model.toml");
+  write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
+  write_file(model_path, model_text(model));
+  write_text_file(results.path(gyro, "report.html"),
+                  diagnosis_report(opened.captures, found, gyro.captures, opened.hashes, model_path));
+}
+
+EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, const std::string& axis,
+                                 std::vector<std::size_t>& of_type) {
+  EffectsToMeasure wanted;
+  for (std::size_t i = 0; i < type.effects.size(); ++i) {
+    const std::vector<Effect>& forms = type.effects[i].forms;
+    if (forms.empty() || forms.front().axis != axis) continue;
+    of_type.push_back(i);
+    wanted.together.push_back(forms.front());
+    wanted.instead.emplace_back(forms.begin() + 1, forms.end());
+  }
+  for (const Effect& effect : model.effects) {
+    const bool of_the_type = std::any_of(type.effects.begin(), type.effects.end(),
+                                         [&](const TypeCandidate& each) { return is_of(each, effect); });
+    if (effect.axis == axis && !of_the_type) wanted.beside.push_back(effect);
+  }
+  return wanted;
+}
+
+// What cannot be weighed is not measured: a column that is none after the captures were cleaned.
+void refuse_without_error(AxisMeasured& axis) {
+  for (MeasuredEffect& each : axis.together) {
+    if (!each.not_measured.empty()) continue;
+    const ModelParameter& coefficient = each.effect.parameters.front();
+    if (!std::isfinite(coefficient.value) || !std::isfinite(coefficient.std_error) ||
+        !(coefficient.std_error > 0.0))
+      throw std::runtime_error(each.effect.form + " of " + each.effect.channel +
+                               " has no finite error on these captures");
+  }
+}
+
+GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
+                          const TypeToMeasure& type, const Opened& opened) {
+  const Model model = read_model(results.path(gyro, "model.toml"));
+  GyroMeasured measured;
+  const std::vector<std::string>& axes = opened.captures.front().axes;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    AxisMeasured axis;
+    axis.axis = axes[a];
+    const EffectsToMeasure wanted = effects_of_axis(type, model, axes[a], axis.of_type);
+    if (wanted.together.empty()) continue;
+    MeasuredEffects found;
+    try {
+      found = measure_effects(records_of(opened.captures, gyro.captures, a), wanted, axes[a],
+                              settings.wanted.significance);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(gyro.captures.front() + ": " + error.what());
+    }
+    axis.together = std::move(found.together);
+    axis.beside = std::move(found.beside);
+    axis.covariance = std::move(found.covariance);
+    axis.ranges = std::move(found.ranges);
+    refuse_without_error(axis);
+    measured.axes.push_back(std::move(axis));
+  }
+  return measured;
+}
+
+void add(std::string& text, const char* key, const std::string& value) {
+  text += std::string(key) + "=" + std::to_string(value.size()) + ":" + value + ";";
+}
+
+void add(std::string& text, const char* key, const std::vector<std::string>& values) {
+  for (const std::string& value : values) add(text, key, value);
+}
+
+}  // namespace
+
+std::string FleetSettings::text() const {
+  std::string text;
+  add(text, "driver", input.driver);
+  add(text, "option", input.options);
+  add(text, "dbc", input.dbc);
+  add(text, "channel", input.channel);
+  add(text, "column", input.columns);
+  add(text, "time", input.time);
+  add(text, "separator", input.separator);
+  add(text, "axis", wanted.axes);
+  add(text, "from", std::to_string(part.from_s));
+  add(text, "to", std::to_string(part.to_s));
+  add(text, "significance", std::to_string(wanted.significance));
+  add(text, "earth", wanted.earth ? "yes" : "no");
+  add(text, "latitude", wanted.latitude_rad ? std::to_string(*wanted.latitude_rad) : "");
+  return text;
+}
+
+bool is_diagnosed(const Results& results, const FleetGyro& gyro, const std::string& options) {
+  const std::optional<GyroDone> done = results.done(gyro);
+  return done && !done->failed && done->inputs == identity_of(gyro, options);
+}
+
+bool is_measured(const Results& results, const FleetGyro& gyro, const std::string& options,
+                 const TypeToMeasure& type) {
+  const std::optional<GyroMeasured> measured = results.measured(gyro, type.id);
+  return measured && !measured->failed && measured->inputs == identity_of(gyro, options);
+}
+
+void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings& settings) {
+  const std::string options = settings.text();
+  // Before anything is read: what changes while it is read is done again.
+  const std::string inputs = identity_of(gyro, options);
+  std::optional<Opened> opened;
+  if (!is_diagnosed(results, gyro, options)) {
+    try {
+      opened = read_captures(gyro, settings);
+      diagnose_gyro(results, gyro, settings, *opened);
+    } catch (const std::runtime_error& error) {
+      results.write_done(gyro, {inputs, error.what()});
+      throw;
+    }
+    results.write_done(gyro, {inputs, std::nullopt});
+    say("%s: diagnosed\n", gyro.serial.c_str());
+  }
+  const std::optional<TypeToMeasure> type = results.type();
+  if (!type || type->effects.empty() || is_measured(results, gyro, options, *type)) return;
+  GyroMeasured measured;
+  try {
+    if (!opened) opened = read_captures(gyro, settings);
+    measured = measure_gyro(results, gyro, settings, *type, *opened);
+  } catch (const std::runtime_error& error) {
+    results.write_measured(gyro, type->id, {inputs, error.what(), {}});
+    throw;
+  }
+  measured.inputs = inputs;
+  results.write_measured(gyro, type->id, measured);
+  say("%s: measured\n", gyro.serial.c_str());
+}
+
+}  // namespace ifog::tools

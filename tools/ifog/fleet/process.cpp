@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/fleet/process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+
+namespace ifog::tools {
+namespace {
+
+class FileActions {
+ public:
+  FileActions() { posix_spawn_file_actions_init(&actions_); }
+  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
+  FileActions(const FileActions&) = delete;
+  FileActions& operator=(const FileActions&) = delete;
+  void open(int descriptor, const std::string& path, int flags) {
+    posix_spawn_file_actions_addopen(&actions_, descriptor, path.c_str(), flags, 0666);
+  }
+  void copy(int from, int to) { posix_spawn_file_actions_adddup2(&actions_, from, to); }
+  [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+pid_t spawn(const std::vector<std::string>& words, const FileActions& actions, bool by_path) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int error =
+      by_path ? posix_spawnp(&child, words.front().c_str(), actions.get(), nullptr, arguments.data(), environ)
+              : posix_spawn(&child, words.front().c_str(), actions.get(), nullptr, arguments.data(), environ);
+  if (error != 0) throw std::runtime_error(words.front() + ": cannot be started: " + std::strerror(error));
+  return child;
+}
+
+struct Pipe {
+  Pipe() {
+    if (pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+  }
+  ~Pipe() {
+    close_end(0);
+    close_end(1);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void close_end(std::size_t end) {
+    if (ends[end] >= 0) close(ends[end]);
+    ends[end] = -1;
+  }
+  std::array<int, 2> ends{-1, -1};
+};
+
+std::string read_all(int from) {
+  std::string text;
+  std::array<char, 4096> part{};
+  for (;;) {
+    const ssize_t got = read(from, part.data(), part.size());
+    if (got > 0)
+      text.append(part.data(), static_cast<std::size_t>(got));
+    else if (got == 0 || errno != EINTR)
+      return text;
+  }
+}
+
+}  // namespace
+
+std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
+
+pid_t start(const std::vector<std::string>& words, const std::string& said_path) {
+  FileActions actions;
+  actions.open(STDIN_FILENO, "/dev/null", O_RDONLY);
+  actions.open(STDOUT_FILENO, said_path, O_WRONLY | O_CREAT | O_APPEND);
+  actions.copy(STDOUT_FILENO, STDERR_FILENO);
+  return spawn(words, actions, false);
+}
+
+std::string ending(int status) {
+  if (WIFSIGNALED(status)) return "killed by signal " + std::to_string(WTERMSIG(status));
+  return WEXITSTATUS(status) == 0 ? "" : "exit " + std::to_string(WEXITSTATUS(status));
+}
+
+Ran run_to_end(const std::vector<std::string>& words, const std::string& input) {
+  Pipe in, out;
+  FileActions actions;
+  actions.copy(in.ends[0], STDIN_FILENO);
+  actions.copy(out.ends[1], STDOUT_FILENO);
+  actions.copy(out.ends[1], STDERR_FILENO);
+  const pid_t child = spawn(words, actions, true);
+  in.close_end(0);
+  out.close_end(1);
+  // All of it fits into the pipe, so that nobody waits for anybody; SIGPIPE is ignored from the start.
+  for (std::size_t at = 0; at < input.size();) {
+    const ssize_t sent = write(in.ends[1], input.data() + at, input.size() - at);
+    if (sent < 0 && errno != EINTR) break;  // it did not want it; its end says why
+    if (sent > 0) at += static_cast<std::size_t>(sent);
+  }
+  in.close_end(1);
+  Ran ran;
+  ran.said = read_all(out.ends[0]);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  ran.ended = ending(status);
+  return ran;
+}
+
+bool is_there(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (!folder.empty() && access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "drivers/ifog/quoted.h"
+#include "filters/model_file/sha256.h"
+#include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/fleet/engine.h"
+#include "tools/ifog/fleet/process.h"
+
+namespace ifog::tools {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// Slurm's MaxArraySize is 1001 unless it was changed: more gyros are several arrays.
+constexpr std::size_t kLargestArray = 1000;
+constexpr double kFirstPause_s = 0.5, kLongestPause_s = 15.0;
+// A controller that restarts answers again within this time.
+constexpr double kPatience_s = 600.0;
+
+// "0-3,7" of ascending numbers.
+std::string ranges_of(const std::vector<std::size_t>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += (text.empty() ? "" : ",") + std::to_string(numbers[i]);
+    if (last > i) text += "-" + std::to_string(numbers[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+std::string first_line(const std::string& text) { return printable(text.substr(0, text.find('\n')), 300); }
+
+class SlurmEngine : public Engine {
+ public:
+  SlurmEngine(const Results& results, std::size_t jobs)
+      : results_(results),
+        jobs_(jobs),
+        folder_(std::filesystem::absolute(results.folder()).lexically_normal().string()),
+        name_("ifog-fleet-" + sha256_hex(folder_).substr(0, 12)) {}
+
+  std::map<std::size_t, std::string> run(const std::vector<std::size_t>& gyros,
+                                         const std::function<void(std::size_t)>& done) override {
+    // What an interrupted run has left with Slurm is not submitted a second time.
+    if (under_way() > 0)
+      say("waiting for the array %s, which is under way\n", name_.c_str());
+    else
+      for (const std::string& script : scripts(gyros)) submit(script);
+    wait(gyros.size(), done);
+    return {};
+  }
+
+  [[nodiscard]] std::string in_words(const std::vector<std::size_t>& gyros) const override {
+    std::string text;
+    for (const std::string& script : scripts(gyros)) text += script;
+    return text;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::string> scripts(const std::vector<std::size_t>& gyros) const {
+    std::map<std::size_t, std::vector<std::size_t>> arrays;  // by their first gyro
+    for (const std::size_t gyro : gyros)
+      arrays[gyro / kLargestArray * kLargestArray].push_back(gyro % kLargestArray);
+    std::vector<std::string> texts;
+    for (const auto& [first, numbers] : arrays) texts.push_back(script(first, numbers));
+    return texts;
+  }
+
+  // Nothing of the manifest is in it. What a person typed is, each word in quotes.
+  [[nodiscard]] std::string script(std::size_t first, const std::vector<std::size_t>& numbers) const {
+    std::string text = "#!/bin/sh\n#SBATCH --job-name=" + name_ + "\n#SBATCH --array=" + ranges_of(numbers);
+    if (jobs_ > 0) text += "%" + std::to_string(jobs_);
+    text +=
+        "\n#SBATCH --ntasks=1\n#SBATCH --requeue\n#SBATCH --input=/dev/null\n#SBATCH --output=/dev/null\n"
+        "gyro=$((" +
+        std::to_string(first) + " + SLURM_ARRAY_TASK_ID))\n";
+    text += "cd " + shell_word(std::filesystem::current_path().string()) + " || exit 1\n";
+    text += "exec >>" + shell_word(folder_ + "/log/") + "\"$gyro.txt\" 2>&1\nexec";
+    for (const std::string& word : command_for_one()) text += " " + shell_word(word);
+    return text + " \"$gyro\"\n";
+  }
+
+  static void submit(const std::string& script) {
+    const Ran ran = run_to_end({"sbatch", "--parsable"}, script);
+    if (!ran.ended.empty()) throw std::runtime_error("sbatch: " + ran.ended + ": " + first_line(ran.said));
+    say("submitted the array %s\n", first_line(ran.said).c_str());
+  }
+
+  // Jobs of this fleet that Slurm has yet to end.
+  std::size_t under_way() {
+    const auto since = std::chrono::steady_clock::now();
+    for (;;) {
+      const Ran ran = run_to_end({"squeue", "--noheader", "--array", "--name=" + name_, "--format=%i"}, "");
+      if (ran.ended.empty())
+        return static_cast<std::size_t>(std::count(ran.said.begin(), ran.said.end(), '\n'));
+      if (Seconds(std::chrono::steady_clock::now() - since).count() > kPatience_s)
+        throw std::runtime_error("squeue: " + ran.ended + ": " + first_line(ran.said));
+      pause(kFirstPause_s);
+    }
+  }
+
+  void wait(std::size_t all, const std::function<void(std::size_t)>& done) {
+    double pause_s = kFirstPause_s;
+    while (const std::size_t left = under_way()) {
+      done(all - std::min(all, left));
+      pause(pause_s);
+      pause_s = std::min(1.3 * pause_s, kLongestPause_s);
+    }
+  }
+
+  void pause(double seconds) const {
+    const auto until = std::chrono::steady_clock::now() + Seconds(seconds);
+    while (std::chrono::steady_clock::now() < until) {
+      if (interrupted()) {
+        warn(
+            "ifog: interrupted; the array %s goes on, and the same command takes it up (scancel --name=%s "
+            "ends it)\n",
+            name_.c_str(), name_.c_str());
+        throw Failed("interrupted");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  }
+
+  const Results& results_;
+  std::size_t jobs_;
+  std::string folder_, name_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> slurm_engine(const Results& results, std::size_t jobs) {
+  return std::make_unique<SlurmEngine>(results, jobs);
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/fleet/with_prior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "filters/effects/form.h"
+#include "filters/population/shrinkage.h"
+
+namespace ifog::tools {
+namespace {
+
+EffectInGyro* gyro_of(TypeEffect& effect, std::size_t gyro) {
+  for (EffectInGyro& each : effect.gyros)
+    if (each.gyro == gyro) return &each;
+  return nullptr;
+}
+
+struct Fitted {
+  std::vector<Effect> effects;  // of one axis, that the model gets
+  std::vector<Eigen::Index> at;
+  JointEstimate estimate;
+};
+
+Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<TypeEffect>& type) {
+  Fitted fitted;
+  std::vector<Effect> all;
+  std::vector<KnownCoefficient> known;
+  std::vector<EffectInGyro*> of_type;
+  for (std::size_t i = 0; i < axis.together.size(); ++i) {
+    if (!axis.together[i].not_measured.empty()) continue;
+    EffectInGyro* const here = gyro_of(type[axis.of_type[i]], gyro);
+    const bool found = here != nullptr && here->found;
+    known.push_back({static_cast<Eigen::Index>(all.size()), found, here ? here->others : TypePrior{}});
+    of_type.push_back(found ? here : nullptr);
+    all.push_back(axis.together[i].effect);
+  }
+  all.insert(all.end(), axis.beside.begin(), axis.beside.end());
+  const auto size = static_cast<Eigen::Index>(all.size());
+  JointEstimate own{Eigen::VectorXd(size), Eigen::MatrixXd(size, size)};
+  for (Eigen::Index i = 0; i < size; ++i) {
+    own.values[i] = all[static_cast<std::size_t>(i)].parameters.front().value;
+    for (Eigen::Index j = 0; j < size; ++j)
+      own.covariance(i, j) = axis.covariance.at(static_cast<std::size_t>(i * size + j));
+  }
+  fitted.estimate = shrunk_together(own, known);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (i < of_type.size() && of_type[i] == nullptr) continue;
+    ModelParameter& coefficient = all[i].parameters.front();
+    coefficient.value = fitted.estimate.values[row];
+    coefficient.std_error = std::sqrt(std::max(fitted.estimate.covariance(row, row), 0.0));
+    if (i < of_type.size()) of_type[i]->with_prior = Estimate{coefficient.value, coefficient.std_error};
+    fitted.effects.push_back(all[i]);
+    fitted.at.push_back(row);
+  }
+  return fitted;
+}
+
+// In the fit, whether the model then has it or not: one of the type's, or one with a place beside them.
+bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effect& effect) {
+  const auto alike = [&](const Effect& other) {
+    return other.form == effect.form && other.channel == effect.channel &&
+           other.with_form == effect.with_form && other.with_channel == effect.with_channel &&
+           other.period == effect.period;
+  };
+  if (std::any_of(axis.beside.begin(), axis.beside.end(), alike)) return true;
+  for (std::size_t i = 0; i < axis.together.size(); ++i)
+    if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.of_type[i]], effect)) return true;
+  return false;
+}
+
+// Covariance of all parameters of a model: of coefficients fitted together as given, of the others their own.
+class ModelCovariance {
+ public:
+  void add(const Fitted& fitted) {
+    for (std::size_t i = 0; i < fitted.effects.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j)
+        across_.push_back(
+            {first_.size(), first_.size() - i + j, fitted.estimate.covariance(fitted.at[i], fitted.at[j])});
+      add(fitted.effects[i]);
+    }
+  }
+  void add(const Effect& effect) {
+    first_.push_back(variances_.size());
+    for (const ModelParameter& each : effect.parameters)
+      variances_.push_back(each.std_error * each.std_error);
+  }
+  [[nodiscard]] std::vector<double> row_major() const {
+    const std::size_t n = variances_.size();
+    std::vector<double> all(n * n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) all[i * n + i] = variances_[i];
+    for (const Pair& pair : across_) {
+      const std::size_t a = first_[pair.one], b = first_[pair.other];
+      if (variances_[a] > 0.0 && variances_[b] > 0.0) all[a * n + b] = all[b * n + a] = pair.covariance;
+    }
+    return all;
+  }
+
+ private:
+  struct Pair {
+    std::size_t one, other;  // effects
+    double covariance;
+  };
+  std::vector<std::size_t> first_;  // parameter of each effect
+  std::vector<double> variances_;
+  std::vector<Pair> across_;
+};
+
+}  // namespace
+
+Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMeasured& measured,
+                       std::size_t gyro, std::vector<TypeEffect>& effects) {
+  Model model = own;
+  model.effects.clear();
+  ModelCovariance covariance;
+  for (const AxisMeasured& axis : measured.axes) {
+    const Fitted fitted = fit_with_prior(axis, gyro, effects);
+    covariance.add(fitted);
+    model.effects.insert(model.effects.end(), fitted.effects.begin(), fitted.effects.end());
+    for (const ChannelRange& range : axis.ranges)
+      if (std::none_of(model.ranges.begin(), model.ranges.end(),
+                       [&](const ChannelRange& other) { return other.channel == range.channel; }))
+        model.ranges.push_back(range);
+  }
+  for (const Effect& effect : own.effects) {
+    const bool fitted = std::any_of(
+        measured.axes.begin(), measured.axes.end(),
+        [&](const AxisMeasured& axis) { return axis.axis == effect.axis && was_fitted(type, axis, effect); });
+    if (fitted) continue;
+    covariance.add(effect);
+    model.effects.push_back(effect);
+  }
+  model.covariance = covariance.row_major();
+  // Those figures are of the model that the gyro's own diagnosis wrote.
+  model.source.before.clear();
+  model.source.after.clear();
+  return model;
+}
+
+}  // namespace ifog::tools
