@@ -2,6 +2,7 @@
 #include "filters/population/two_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -17,6 +18,8 @@ constexpr double kSettled = 1e-8;    // change of the log-likelihood
 constexpr double kSettledWithout = 1e-5;
 // One member for and one against the effect, so that neither group is ever ruled out.
 constexpr double kBeforehand = 1.0;
+constexpr double kFewestHaving = 3.0;  // members with the effect, from which a spread can be expected
+constexpr std::size_t kSpreads = 60;   // tried
 
 double square(double x) { return x * x; }
 
@@ -86,11 +89,59 @@ TypePrior climbed(TypePrior prior, std::span<const Estimate> estimates, std::siz
   return prior;
 }
 
+// Restricted log-likelihood of a spread, each member counted by its probability to have the effect.
+double restricted(double spread, std::span<const Estimate> estimates, const std::vector<double>& weight) {
+  double information = 0.0, weighted = 0.0;
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    const double variance = square(estimates[i].std_error) + square(spread);
+    information += weight[i] / variance;
+    weighted += weight[i] * estimates[i].value / variance;
+  }
+  const double mean = weighted / information;
+  double sum = -0.5 * std::log(information);
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    const double variance = square(estimates[i].std_error) + square(spread);
+    sum -= 0.5 * weight[i] * (std::log(variance) + square(estimates[i].value - mean) / variance);
+  }
+  return sum;
+}
+
+TypePrior with_expected_spread(TypePrior prior, std::span<const Estimate> estimates, std::size_t left_out) {
+  prior.likeliest_spread = prior.spread;
+  std::vector<double> weight(estimates.size(), 0.0);
+  double having = 0.0, errors = 0.0;
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    if (i == left_out) continue;
+    weight[i] = probability(prior, estimates[i]);
+    having += weight[i];
+    errors += weight[i] * square(estimates[i].std_error);
+  }
+  if (having < kFewestHaving) return prior;
+  // To where nobody's own error counts any more; beyond it the likelihood falls as a power of the spread.
+  const double most = 4.0 * (prior.spread + std::sqrt(errors / having));
+  std::array<double, kSpreads> likelihood{};
+  for (std::size_t k = 0; k < kSpreads; ++k)
+    likelihood[k] = restricted(most * (static_cast<double>(k) + 0.5) / kSpreads, estimates, weight);
+  const double top = *std::max_element(likelihood.begin(), likelihood.end());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < kSpreads; ++k) {
+    const double share = std::exp(likelihood[k] - top);
+    sum += share;
+    squares += share * square(most * (static_cast<double>(k) + 0.5) / kSpreads);
+  }
+  prior.spread = std::sqrt(squares / sum);
+  double information = 0.0;
+  for (std::size_t i = 0; i < estimates.size(); ++i)
+    information += weight[i] / (square(estimates[i].std_error) + square(prior.spread));
+  prior.mean_std_error = std::sqrt(1.0 / information);
+  return prior;
+}
+
 double normal_above(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
 
 }  // namespace
 
-TypePrior fit_two_groups(std::span<const Estimate> estimates) {
+TypePrior likeliest_two_groups(std::span<const Estimate> estimates) {
   const RandomEffects all = random_effects(estimates);
   double largest = 0.0;
   for (const Estimate& each : estimates)
@@ -98,9 +149,16 @@ TypePrior fit_two_groups(std::span<const Estimate> estimates) {
   double error = 0.0;
   for (const Estimate& each : estimates) error += each.std_error / static_cast<double>(estimates.size());
   // The likelihood has more than one top: everybody alike, a few that are far out, either sign.
-  const TypePrior starts[] = {{0.9, all.mean, 0.0, std::max(all.spread, 0.3 * error), 0.0},
-                              {0.5, 0.5 * largest, 0.0, 0.25 * std::abs(largest) + 0.3 * error, 0.0},
-                              {0.5, 0.0, 0.0, std::max(all.spread, error), 0.0}};
+  const auto start_at = [](double share, double mean, double spread) {
+    TypePrior start;
+    start.share = share;
+    start.mean = mean;
+    start.spread = spread;
+    return start;
+  };
+  const TypePrior starts[] = {start_at(0.9, all.mean, std::max(all.spread, 0.3 * error)),
+                              start_at(0.5, 0.5 * largest, 0.25 * std::abs(largest) + 0.3 * error),
+                              start_at(0.5, 0.0, std::max(all.spread, error))};
   TypePrior best;
   best.likelihood_ratio = -1e300;
   for (const TypePrior& start : starts) {
@@ -110,9 +168,16 @@ TypePrior fit_two_groups(std::span<const Estimate> estimates) {
   return best;
 }
 
+TypePrior fit_two_groups(std::span<const Estimate> estimates) {
+  return with_expected_spread(likeliest_two_groups(estimates), estimates, estimates.size());
+}
+
 TypePrior without_member(std::span<const Estimate> estimates, std::size_t member, const TypePrior& all) {
   if (estimates.size() < 2) throw std::invalid_argument("a population without other members");
-  return climbed(all, estimates, member, kRoundsWithout, kSettledWithout);
+  TypePrior start = all;
+  start.spread = all.likeliest_spread;
+  return with_expected_spread(climbed(start, estimates, member, kRoundsWithout, kSettledWithout), estimates,
+                              member);
 }
 
 double probability(const TypePrior& prior, const Estimate& estimate) {

@@ -17,10 +17,17 @@ struct TypePrior {
   double mean = 0.0, mean_std_error = 0.0;  // of the coefficient of those
   double spread = 0.0;                      // standard deviation from member to member
   double likelihood_ratio = 0.0;            // twice the log-likelihood over that of nobody having it
+  double likeliest_spread = 0.0;
 };
 
 // Maximum likelihood by expectation and maximisation, the share with one member for and one against it beside
 // those there are. Throws std::invalid_argument as random_effects() does.
+TypePrior likeliest_two_groups(std::span<const Estimate> estimates);
+
+// The same with the spread that is expected, not the likeliest: a few members that happen to lie together
+// have a likeliest spread of zero, and intervals that believe it are too narrow. The root of its expected
+// square, by the restricted likelihood and before the data as likely at one size as at another (Gelman,
+// Bayesian Analysis 1 (2006) 515-533).
 TypePrior fit_two_groups(std::span<const Estimate> estimates);
 
 // The same again without one member: what the others say of it. `all`: the fit of all of them.

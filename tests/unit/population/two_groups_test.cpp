@@ -96,7 +96,7 @@ TEST(TwoGroups, ADrawnPopulationIsRecovered) {
 TEST(TwoGroups, NothingOnAGridIsLikelier) {
   std::mt19937 random(5);
   const Drawn drawn = population(random, 30, prior_of(0.6, 3.0, 1.0));
-  const TypePrior found = fit_two_groups(drawn.estimates);
+  const TypePrior found = likeliest_two_groups(drawn.estimates);
   const auto ratio = [&](double share, double mean, double spread) {
     // One member for and one against the effect are in the fit's share.
     double sum = 2.0 * (std::log(share) + std::log1p(-share));
@@ -148,6 +148,31 @@ TEST(TwoGroups, TheShrunkAreNearerToTheTruth) {
   // 1 / (1 / 0.25 + 1) of the variance is what normal theory leaves.
   EXPECT_NEAR(with / alone, 0.2, 0.08);
   EXPECT_NEAR(said / with, 1.0, 0.3);
+}
+
+// A type of a few gyros that are hardly spread: the likeliest spread is often zero.
+TEST(TwoGroups, IntervalsOfAFewMembersHoldTheTruth) {
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  int inside = 0, inside_likeliest = 0, all = 0;
+  for (int round = 0; round < 150; ++round) {
+    std::vector<double> truth;
+    std::vector<Estimate> estimates;
+    for (int i = 0; i < 12; ++i) {
+      truth.push_back(6.0 + 0.6 * normal(random));
+      estimates.push_back({truth.back() + normal(random), 1.0});
+    }
+    const TypePrior prior = fit_two_groups(estimates), likeliest = likeliest_two_groups(estimates);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const auto holds = [&](const Estimate& e) { return std::abs(e.value - truth[i]) < 1.96 * e.std_error; };
+      inside += holds(shrunk(prior, estimates[i])) ? 1 : 0;
+      inside_likeliest += holds(shrunk(likeliest, estimates[i])) ? 1 : 0;
+      ++all;
+    }
+  }
+  EXPECT_GT(inside, 0.93 * all);
+  EXPECT_LT(inside, 0.99 * all);
+  EXPECT_LT(inside_likeliest, inside);
 }
 
 TEST(JudgedEffect, FoundInThoseThatHaveItAndNotInTheOthers) {
