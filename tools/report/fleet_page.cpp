@@ -6,6 +6,7 @@
 #include <set>
 
 #include "drivers/ifog/quoted.h"
+#include "tools/report/account.h"
 #include "tools/report/chart.h"
 #include "tools/report/interaction.h"
 #include "tools/report/style.h"
@@ -103,7 +104,7 @@ std::string effect_section(const TypeEffect& effect) {
     rows += row(escaped(effect.effect.parameters[i].name) + ", median of those found",
                 {number(effect.effect.parameters[i].value)});
   return "<h3>" + escaped(effect_words(effect.effect) + on_axis(effect.effect.axis)) + "</h3>\n<p>" +
-         escaped(effect.effect.meaning) + "</p>\n" +
+         escaped(sentence(effect.effect.meaning)) + "</p>\n" +
          table("In " + std::to_string(measured) + " gyros, standard errors one sigma", {"what", "value"},
                rows) +
          gyros_picture(effect);
@@ -209,8 +210,8 @@ std::string account(const Population& p) {
   std::string out = "<p>" + count(p.serials.size() - p.failed.size(), p.serials.size()) +
                     " gyros have a result" + (p.failed.empty() ? "." : "; the others are named below.") +
                     "</p>\n";
-  for (const TypeEffect& each : p.effects) out += "<p>" + escaped(in_words(each)) + ".</p>\n";
-  for (const std::string& remark : p.remarks) out += "<p>" + escaped(remark) + ".</p>\n";
+  for (const TypeEffect& each : p.effects) out += "<p>" + escaped(sentence(in_words(each))) + "</p>\n";
+  for (const std::string& remark : p.remarks) out += "<p>" + escaped(sentence(remark)) + "</p>\n";
   return "<div class=\"account\">" + out + "</div>\n";
 }
 

@@ -83,6 +83,21 @@ class Checks:
         ran("convert", self.capture, single, "--column", "rate_radps=rate_x_radps:rad/s", "--column", "temperature_degC=temperature_degC")
         assert "fraction" in self.held("diagnose", single, "--quiet")["unexplained"]
 
+    def check_fleet(self):
+        """Every file of a lot's results; three axes' effects on one of them, and a gyro that fails."""
+        (self.folder / "lot.toml").write_text('type = "T"\n' + "".join(f'[[gyro]]\nserial = "G{i}"\ncaptures = ["lot-{i}.csv"]\n' for i in range(7)))
+        for i in range(6):
+            ran("simulate", self.folder / "three.toml", "--seed", i, "--output", self.folder / f"lot-{i}.csv")
+        result = subprocess.run([IFOG, "fleet", self.folder / "lot.toml", "--engine", "local"], capture_output=True, text=True, timeout=200, check=False)
+        assert result.returncode == 1 and result.stderr.startswith("G6: "), result
+        results = self.folder / "lot.results"
+        documents = {path: json.loads(path.read_text()) for path in results.rglob("*.json")}
+        for document in documents.values():
+            schema.check(document)
+        assert {document["schema"] for document in documents.values()} == {f"ifog.{name}/1" for name in ("diagnosis", "gyro", "measured", "type", "fleet")}
+        (effect,) = documents[results / "fleet.json"]["effects"]
+        assert effect["axis"] == "x" and effect["found"] == 6, effect
+
     def check_replay(self):
         options = ["--driver", "kvh1750", "--option", "format=b"]
         ran("convert", self.capture, self.folder / "r.kvh", *options)

@@ -70,7 +70,7 @@ TEST(FleetPage, WhatFilesSayIsText) {
   page.command = "ifog fleet 'a<b.toml'";
   const std::string html = fleet_page(page);
   EXPECT_TRUE(has(html, "T&lt;1&gt;") && has(html, "no &lt;such&gt; file") && has(html, "a&lt;b.toml"));
-  EXPECT_TRUE(has(html, "bias by temperature &amp; more"));
+  EXPECT_TRUE(has(html, "Bias by temperature &amp; more."));
   EXPECT_FALSE(has(html, "T<1>") || has(html, "no <such>") || has(html, "a<b.toml"));
 }
 

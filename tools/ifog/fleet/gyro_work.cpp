@@ -2,7 +2,9 @@
 #include "tools/ifog/fleet/gyro_work.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <stdexcept>
 
@@ -102,6 +104,12 @@ void add(std::string& text, const char* key, const std::string& value) {
   text += std::string(key) + "=" + std::to_string(value.size()) + ":" + value + ";";
 }
 
+void add(std::string& text, const char* key, double value) {
+  std::array<char, 40> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.17g", value);
+  add(text, key, std::string(digits.data()));
+}
+
 void add(std::string& text, const char* key, const std::vector<std::string>& values) {
   for (const std::string& value : values) add(text, key, value);
 }
@@ -110,6 +118,7 @@ void add(std::string& text, const char* key, const std::vector<std::string>& val
 
 std::string FleetSettings::text() const {
   std::string text;
+  add(text, "ifog", std::string(IFOG_VERSION));  // another one may find something else
   add(text, "driver", input.driver);
   add(text, "option", input.options);
   add(text, "dbc", input.dbc);
@@ -118,11 +127,11 @@ std::string FleetSettings::text() const {
   add(text, "time", input.time);
   add(text, "separator", input.separator);
   add(text, "axis", wanted.axes);
-  add(text, "from", std::to_string(part.from_s));
-  add(text, "to", std::to_string(part.to_s));
-  add(text, "significance", std::to_string(wanted.significance));
+  add(text, "from", part.from_s);
+  add(text, "to", part.to_s);
+  add(text, "significance", wanted.significance);
   add(text, "earth", wanted.earth ? "yes" : "no");
-  add(text, "latitude", wanted.latitude_rad ? std::to_string(*wanted.latitude_rad) : "");
+  if (wanted.latitude_rad) add(text, "latitude", *wanted.latitude_rad);
   return text;
 }
 

@@ -18,7 +18,7 @@ struct FleetSettings {
   TimePart part;
   AxesToDiagnose wanted;
 
-  // All of the above that changes a result, as text.
+  // All of the above that changes a result, and the program's version, as text.
   [[nodiscard]] std::string text() const;
 };
 
