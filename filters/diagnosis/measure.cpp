@@ -46,7 +46,11 @@ Named candidate_named(const BlockData& data, const Effect& effect) {
     named.not_measured = "'" + effect.form + "' has no single coefficient to measure";
     return named;
   }
-  candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
+  candidate.form = *form;
+  if (*form == Form::kEarthRate) {  // the regressor of acceleration
+    candidate.form = Form::kLinear;
+    candidate.first_reading = FirstReading::kEarthRateSubtracted;
+  }
   if (has_channel(*form)) {
     const Place place = channel_named(data, effect.channel);
     candidate.channel = place.channel;

@@ -117,6 +117,18 @@ TEST(Measure, AnEffectThatIsNotThereIsMeasuredAsNone) {
   EXPECT_LE(far, 1);
 }
 
+TEST(Measure, WhatIsFittedAlongKeepsItsName) {
+  const Sensor sensor(6);
+  EffectsToMeasure wanted;
+  wanted.together = {linear_in("temperature_degC")};
+  wanted.beside = {linear_in("supply_V")};
+  wanted.beside[0].form = "earth_rate";
+  const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
+  ASSERT_EQ(found.beside.size(), 1U);
+  EXPECT_EQ(found.beside[0].form, "earth_rate");
+  EXPECT_FALSE(found.beside[0].shown_only);
+}
+
 TEST(Measure, TheRightOneOfTwoExplainsMore) {
   const Sensor sensor(4);
   EffectsToMeasure wanted;

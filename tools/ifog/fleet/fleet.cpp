@@ -29,8 +29,8 @@
 namespace ifog::tools {
 namespace {
 
-constexpr std::size_t kAttempts = 3;          // at a gyro whose process ended without a word in the results
-constexpr std::size_t kMostMeasurements = 8;  // of the type's effects, until their choice settles
+constexpr std::size_t kAttempts = 3;  // at a gyro whose process ended without a word in the results
+constexpr std::size_t kFormsFor = 2;  // measurements: from then on effects are only left out, so that it ends
 
 struct Arguments {
   std::string manifest, results, engine = "auto";
@@ -147,13 +147,18 @@ class FleetRun {
       return;
     }
     type_.effects = type_candidates(diagnosed_.found, diagnosed_.gyros.size(), level_);
-    for (std::size_t round = 0; round < kMostMeasurements && !type_.effects.empty(); ++round) {
+    for (std::size_t round = 0; !type_.effects.empty(); ++round) {
       results_.write_type(manifest_.type, type_);
       std::vector<Population::Failure> failed;
       measured_ = measure_all(failed);
-      population_.effects = judged_effects(type_, measured_, diagnosed_, level_);
-      if (!reconsider(type_, population_.effects, measured_, level_)) {
+      const bool enough = measured_.size() >= kFewestOfType;
+      if (enough) population_.effects = judged_effects(type_, measured_, diagnosed_, level_);
+      if (!enough || !reconsider(type_, population_.effects, measured_, level_, round < kFormsFor)) {
         population_.failed.insert(population_.failed.end(), failed.begin(), failed.end());
+        if (enough) return;
+        type_.effects.clear();
+        population_.remarks.push_back(
+            "the type's effects were measured in too few gyros to say anything of it");
         return;
       }
       population_.effects.clear();
@@ -176,13 +181,17 @@ class FleetRun {
       const auto measured = results_.measured(manifest_.gyros[gyro], type_.id);
       return measured && measured->failed.has_value();
     };
-    run_missing("measuring", missing, said_why);
-    return gather_measured(results_, manifest_, diagnosed_, type_, failed);
+    const auto ended = run_missing("measuring", missing, said_why);
+    auto measured = gather_measured(results_, manifest_, diagnosed_, type_, failed);
+    for (Population::Failure& each : failed)
+      if (const auto how = ended.find(each.gyro); how != ended.end())
+        each.why += ": " + how->second + ", see " + results_.log(each.gyro);
+    return measured;
   }
 
   void write() {
     for (const auto& [gyro, measured] : measured_) {
-      if (type_.effects.empty()) break;
+      if (population_.effects.empty()) break;
       const Model model =
           model_with_prior(diagnosed_.models.at(gyro), type_, measured, gyro, population_.effects);
       write_file(results_.path(manifest_.gyros[gyro], "with_prior.toml"), model_text(model));

@@ -150,7 +150,7 @@ std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
 }
 
 bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
-                const std::map<std::size_t, GyroMeasured>& measured, double level) {
+                const std::map<std::size_t, GyroMeasured>& measured, double level, bool forms_too) {
   if (type.effects.empty()) return false;
   bool changed = false;
   std::size_t weakest = type.effects.size();
@@ -158,7 +158,7 @@ bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
     std::vector<Effect>& forms = type.effects[i].forms;
     const std::vector<double> sums = explained_by_form(type.effects[i], i, measured);
     const auto best = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
-    if (best > 0 && sums[best] > sums.front() + kBetterForm) {
+    if (forms_too && best > 0 && sums[best] > sums.front() + kBetterForm) {
       std::rotate(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(best),
                   forms.begin() + static_cast<std::ptrdiff_t>(best) + 1);
       changed = true;

@@ -36,10 +36,10 @@ std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
                                        const Diagnosed& diagnosed, double level);
 
 // What the measurements say of the choice: of each effect the form that explains most in all gyros together
-// comes first, and the least of those that no population would show by chance is left out. Whether anything
-// changed: then it is to be measured anew.
+// comes first (where `forms` may change), and the least of those that no population would show by chance is
+// left out. Whether anything changed: then it is to be measured anew.
 bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
-                const std::map<std::size_t, GyroMeasured>& measured, double level);
+                const std::map<std::size_t, GyroMeasured>& measured, double level, bool forms);
 
 // A value of every gyro for each effect of the type.
 std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEffect>& effects);
