@@ -74,12 +74,15 @@ class Cluster:
     def __init__(self, folder):
         self.folder = folder
         self.started = []
+        self.nodes = {}
         for name in ("munge", "state", "n1", "n2"):
             (folder / name).mkdir(mode=0o755)
         configuration = folder / "slurm.conf"
         configuration.write_text(CONFIGURATION.format(host=socket.gethostname().split(".")[0], user=getpass.getuser(), folder=folder))
         (folder / "cgroup.conf").write_text("CgroupPlugin=cgroup/v1\n")
         self.environment = {**os.environ, "SLURM_CONF": str(configuration)}
+
+    def bring_up(self):
         self.start_munge()
         self.start("slurmctld", "-D")
         wait_for("slurmctld", lambda: self.ran("scontrol", "ping", check=False).returncode == 0)
@@ -218,6 +221,7 @@ def inside():
         cluster = None
         try:
             cluster = Cluster(folder)
+            cluster.bring_up()  # what it has started is ended, however far it came
             for check in (check_a_node_dies, check_the_same_as_on_this_machine, check_restart, check_an_interrupted_run_is_taken_up):
                 try:
                     check(cluster)
