@@ -29,7 +29,7 @@ TEST(TimeLeft, IsToldAsExactlyAsItIsKnown) {
 
 TEST(TimeLeft, IsNotGuessedTooEarly) {
   EXPECT_EQ(time_left(1.5, 0.0, 1, 100), "");
-  EXPECT_EQ(time_left(1.5, 0.6, 1, 100), "2 min left");  // 147.9 s
+  EXPECT_EQ(time_left(1.5, 0.6, 1, 100), "3 min left");  // 147.9 s
   EXPECT_EQ(time_left(1.5, 0.0, 10, 100), "14 s left");  // 13.5
   EXPECT_EQ(time_left(5.0, 0.0, 0, 100), "");
   EXPECT_EQ(time_left(5.0, 0.0, 100, 100), "");

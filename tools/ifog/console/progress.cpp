@@ -96,7 +96,9 @@ std::string time_left(double until_step_s, double since_step_s, std::size_t done
   if (done == 0 || done >= total) return "";
   const double share = static_cast<double>(done) / static_cast<double>(total);
   if (share < kLeastShare && until_step_s + since_step_s < kLeast_s) return "";
-  const double left_s = until_step_s * (1.0 - share) / share - since_step_s;
+  // Without the share, so that what comes out even stays even.
+  const double left_s =
+      until_step_s * static_cast<double>(total - done) / static_cast<double>(done) - since_step_s;
   if (left_s <= 0.0) return "";
   const auto up_to = [&](double step) { return static_cast<long>(std::ceil(left_s / step)); };
   if (left_s <= 20.0) return std::to_string(up_to(1.0)) + " s left";
