@@ -19,6 +19,9 @@ constexpr int kInstabilities = 9, kWalks = 17;
 constexpr double kTwoErrors = 2.0;
 // As many units of log likelihood below the best as one standard error is.
 constexpr double kUnlikelier = 0.5;
+// A mean counts for this many variances at most, once there are a few: a step or a slow turn is no noise, and
+// would hide the next ones for as long as the watch has run.
+constexpr double kClip = 25.0, kFew = 30.0;
 
 double sum(const LevelNoise::Vector& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -60,7 +63,7 @@ void LevelNoise::Filter::predict(const Vector& keep, double blocks) noexcept {
 }
 
 // Returns the innovation.
-double LevelNoise::Filter::update(double mean) noexcept {
+double LevelNoise::Filter::update(double mean, double most_square) noexcept {
   Vector of_sum{};
   for (std::size_t i = 0; i < kStates; ++i)
     for (std::size_t j = 0; j < kStates; ++j) of_sum[j] += covariance[i][j];
@@ -71,7 +74,7 @@ double LevelNoise::Filter::update(double mean) noexcept {
     state[i] += gain[i] * innovation;
     for (std::size_t j = 0; j < kStates; ++j) covariance[i][j] -= gain[i] * of_sum[j];
   }
-  squares += innovation * innovation / total;
+  squares += std::min(innovation * innovation / total, most_square);
   log_variance += std::log(total);
   return innovation;
 }
@@ -97,7 +100,8 @@ const LevelNoise::Innovation& LevelNoise::take(double mean, double blocks) noexc
                              ? filter.squares / count_ * (1.0 + kTwoErrors * std::sqrt(2.0 / count_))
                              : 0.0;
     filter.predict(innovation_.keep, blocks);
-    const double innovation = filter.update(mean);
+    const double innovation = filter.update(
+        mean, count_ > kFew ? kClip * filter.squares / count_ : std::numeric_limits<double>::infinity());
     if (!(noise > 0.0)) continue;
     innovation_.known = true;
     innovation_.scale = std::sqrt(filter.total);

@@ -48,7 +48,7 @@ class LevelNoise {
     double squares = 0.0, log_variance = 0.0, total = 1.0;
     void begin(double mean) noexcept;
     void predict(const Vector& keep, double blocks) noexcept;
-    double update(double mean) noexcept;
+    double update(double mean, double most_square) noexcept;
     [[nodiscard]] double level() const noexcept;
   };
   void choose() noexcept;

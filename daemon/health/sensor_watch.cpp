@@ -49,7 +49,7 @@ void SensorWatch::renew() {
     axis.loud.restart();
     axis.odd_neighbours.restart();
     axis.follows.restart();
-    axis.steps.restart();
+    axis.steps.forget();
     axis.level = LevelNoise();
   }
   range_ = false;

@@ -31,6 +31,11 @@ void StepTest::restart() noexcept {
   nearest_ = kFar;
 }
 
+void StepTest::forget() noexcept {
+  restart();
+  spreads_ = {};
+}
+
 void StepTest::extend(Window& window, const LevelNoise::Innovation& innovation) noexcept {
   double left = 1.0;
   for (std::size_t i = 0; i < LevelNoise::kStates; ++i) left -= window.taken[i] *= innovation.keep[i];
@@ -52,8 +57,7 @@ double StepTest::look(std::size_t number) noexcept {
       std::max(1.0, (kBelieved + independent * seen.mean_square) / (kBelieved + independent));
   const double square = window.sum * window.sum / window.squares;
   const double z = std::sqrt(square / variance);
-  seen.count += 1.0;
-  seen.mean_square += (square - seen.mean_square) / seen.count;
+  seen.latest = square;
   if (z < kLeastOfNote) return kFar;
   return exceeded_per_block(z, s) / (kShares[number] * alarms_per_block_);
 }
@@ -66,7 +70,14 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
   for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i)
     nearest = std::min(nearest, look(i));
   nearest_ = std::min(nearest_, nearest);
-  if (nearest >= 1.0) return false;
+  if (nearest >= 1.0) {
+    // Of a step nothing is learned that the next one is measured by.
+    for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {
+      spreads_[i].count += 1.0;
+      spreads_[i].mean_square += (spreads_[i].latest - spreads_[i].mean_square) / spreads_[i].count;
+    }
+    return false;
+  }
   step_ = likeliest(in_use) * innovation.spread / innovation.scale;
   begun_ = 0;
   return true;

@@ -41,6 +41,8 @@ class StepTest {
   [[nodiscard]] double nearest() const noexcept { return nearest_; }
   // What begins now has nothing to do with what came; what sums vary by stays known.
   void restart() noexcept;
+  // Nor does what sums vary by.
+  void forget() noexcept;
 
  private:
   struct Window {
@@ -49,7 +51,7 @@ class StepTest {
   };
   // Of the sums of windows of one length, over their variance if the innovations were white.
   struct Spread {
-    double mean_square = 1.0, count = 0.0;
+    double mean_square = 1.0, count = 0.0, latest = 0.0;
   };
   static constexpr double kFar = 1e9;
   static constexpr std::size_t kLongest = kLengths.back();

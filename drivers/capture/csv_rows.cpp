@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -133,19 +134,25 @@ void CsvRows::begin(TextPieces& pieces, std::string& text) {
 }
 
 void CsvRows::in_order(TextPieces& pieces, std::string text) {
-  const std::size_t at_once = std::max(2U, std::thread::hardware_concurrency());
+  // Each holds its text and its numbers; more than these unpack no quicker than the file is read.
+  const std::size_t at_once = std::clamp(std::thread::hardware_concurrency(), 2U, 8U);
   std::deque<Piece> under_way;
   for (bool more = !text.empty() || pieces.next(text); more; more = pieces.next(text)) {
     Piece& piece = under_way.emplace_back();
     piece.text = std::move(text);
     const auto how = piece.text.size() < kWorthAThread ? std::launch::deferred : std::launch::async;
-    piece.parsed = std::async(how, [this, &piece]() -> std::optional<CsvPiece> {
+    const auto parse = [this, &piece]() -> std::optional<CsvPiece> {
       try {
         return parse_csv_piece(piece.text, header_, layout_.separator, path_, 0);
       } catch (const std::runtime_error&) {
         return std::nullopt;
       }
-    });
+    };
+    try {
+      piece.parsed = std::async(how, parse);
+    } catch (const std::system_error&) {  // no room for another thread: then when its turn comes
+      piece.parsed = std::async(std::launch::deferred, parse);
+    }
     if (under_way.size() < at_once) continue;
     deliver(under_way.front());
     under_way.pop_front();

@@ -51,6 +51,15 @@ T number(std::string_view key, const std::string& text) {
   return out;
 }
 
+// So that no difference of two is beyond what holds it.
+std::int64_t time_of_day(std::string_view key, const std::string& text) {
+  const auto out = number<std::int64_t>(key, text);
+  if (out < 0)
+    throw std::runtime_error("its header says " + std::string(key) + " = " + in_quotes(text) +
+                             ", expected a time since 1970");
+  return out;
+}
+
 void take(FlightHeader& out, std::string_view key, std::string value) {
   constexpr std::string_view kOption = "option.", kFile = "file.";
   if (key == "run")
@@ -60,7 +69,7 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
   else if (key == "opened_ns")
     out.opened_ns = number<std::int64_t>(key, value);
   else if (key == "powered_ns")
-    out.powered_ns = number<std::int64_t>(key, value);
+    out.powered_ns = time_of_day(key, value);
   else if (key == "program")
     out.program = std::move(value);
   else if (key == "sensor")

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "filters/diagnosis/checks/channel_delay.h"
@@ -76,6 +77,20 @@ std::string delay_in_words(const ChannelDelay& delay) {
       "sooner, so the correction that is written and judged is late by as much",
       delay.channel.c_str(), delay.delay_s, delay.std_error_s);
   return text.data();
+}
+
+// By the reference, by more than the Earth's rate.
+bool was_turned(const std::vector<Record>& records) {
+  constexpr double kTurned_radps = 1e-4;
+  return std::any_of(records.begin(), records.end(), [](const Record& record) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double rate : record.reference_radps) {
+      if (!std::isfinite(rate)) continue;
+      least = std::min(least, rate);
+      most = std::max(most, rate);
+    }
+    return most - least > kTurned_radps;
+  });
 }
 
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
@@ -306,7 +321,7 @@ class Run {
     if (result_.hysteresis)
       describe_hysteresis(*result_.hysteresis, result_.unexplained);
     else
-      describe_two_states(errors_, data_.grid, result_.unexplained);
+      describe_two_states(errors_, data_.grid, was_turned(records_), result_.unexplained);
     say(slow_beside(errors_, data_.grid, result_.unexplained));
     if (!moving_ && !data_.grid.dwells)
       say(resonances_in_words(find_resonances(longest_of(errors_).after, data_.grid.sample_s)));

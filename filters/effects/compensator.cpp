@@ -121,12 +121,16 @@ void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>&
 
 void Compensator::add_zone(const Effect& effect, const std::vector<std::string>& axes) {
   const double half_width = parameter(effect, kHalfWidth);
-  if (!is_reference_rate(effect.channel) || !(half_width >= 0.0))
+  if (!is_reference_rate(effect.channel) || !(half_width >= 0.0 && std::isfinite(half_width)))
     throw std::invalid_argument("effect " + label_of(effect) +
                                 ": expected reference_rate and a half_width of at least 0");
-  for (std::size_t axis = 0; axis < axes.size(); ++axis)
-    if (effect.axis.empty() || effect.axis == axes[axis])
-      zones_.push_back({axis, effect.reference, half_width});
+  bool placed = false;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
+    zones_.push_back({axis, effect.reference, half_width});
+    placed = true;
+  }
+  if (!placed) refuse_axis(effect);
 }
 
 void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel,

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -30,8 +31,16 @@ void share_out(std::size_t items, unsigned threads, const Work& work) {
       }
     }
   };
+  const auto wanted = std::min<std::size_t>(threads, items);
   std::vector<std::thread> others;
-  for (unsigned i = 1; i < std::min<std::size_t>(threads, items); ++i) others.emplace_back(run);
+  others.reserve(wanted);
+  for (std::size_t i = 1; i < wanted; ++i) {
+    try {
+      others.emplace_back(run);
+    } catch (const std::system_error&) {
+      break;  // no room for another: those there are, and this one, do it all
+    }
+  }
   run();
   for (std::thread& other : others) other.join();
   if (failure) std::rethrow_exception(failure);

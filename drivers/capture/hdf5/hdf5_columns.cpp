@@ -10,9 +10,11 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kLeastBlock = 65'536, kMostBlock = 1'048'576;    // rows
-constexpr std::size_t kCache = 8U << 20U;                              // bytes of unpacked chunks, a dataset
-constexpr std::uint64_t kMostGrowth = 100, kGrowthFree = 256U << 20U;  // as of a gzip stream
+constexpr std::size_t kLeastBlock = 65'536, kMostBlock = 1'048'576;  // rows
+constexpr std::size_t kCache = 8U << 20U;                            // bytes of unpacked chunks, a dataset
+// What a chunk of one value packs into, a thousandth, and more than deflate can: rows come block by block,
+// and what is kept of them is bounded elsewhere.
+constexpr std::uint64_t kMostGrowth = 1100, kGrowthFree = 256U << 20U;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
 

@@ -46,7 +46,7 @@ std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t ca
       std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), traced))
     return "";
   const std::string share = text(
-      "beside what was traced %.2g %% of the error is unexplained: what was not logged may be the cause of "
+      "beside what was traced %.0f %% of the error is unexplained: what was not logged may be the cause of "
       "both, and a channel named here only run along with it",
       100.0 * diagnosis.unexplained.fraction);
   return share + (captures < 2 ? ". Take a second capture in which the channels run otherwise, and give both"

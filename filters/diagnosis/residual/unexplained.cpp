@@ -178,7 +178,7 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   if (slow.over_s > 0.0) {
     found.kind = "slow";
     found.hint = text(
-        "slow drift that follows none of the channels given: %.2g %% of what %.3g s means scatter. The "
+        "slow drift that follows none of the channels given: %.0f %% of what %.3g s means scatter. The "
         "sensor's "
         "own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
         "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
@@ -267,8 +267,9 @@ void describe_moving(const MovingLine& line, Unexplained& found) {
       line.frequency_hz, line.cycles_per_rad);
 }
 
-void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, Unexplained& found) {
-  if (grid.dwells) return;
+void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, bool turned,
+                         Unexplained& found) {
+  if (grid.dwells || turned) return;
   const auto two = find_two_states(longest_of(errors).after, grid.sample_s);
   if (!two) return;
   found.kind = "two_states";
@@ -293,7 +294,7 @@ std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& g
   const SlowRest slow = slow_rest(longest_of(errors).after, grid.sample_s);
   if (slow.share < kMuch) return "";
   return text(
-      "beside that a slow drift that follows none of the channels given: %.2g %% of what %.3g s means "
+      "beside that a slow drift that follows none of the channels given: %.0f %% of what %.3g s means "
       "scatter, by the sensor's own noise or by a cause that was not logged",
       100.0 * slow.share, slow.over_s);
 }

@@ -28,7 +28,9 @@ void describe_moving(const MovingLine& line, Unexplained& found);
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
 
 // So does a bias that jumps between two levels, of the longest record.
-void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, Unexplained& found);
+// turned: what comes and goes with the rotation looks like two states, and is none of the bias.
+void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, bool turned,
+                         Unexplained& found);
 // What is slow in it, where something quicker took the description's place; "" where nothing is.
 std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
                         const Unexplained& found);

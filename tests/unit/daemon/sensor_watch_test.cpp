@@ -104,6 +104,18 @@ TEST(SensorWatch, NoticesAStepOfTheBiasWithItsSize) {
   }
 }
 
+// Three hundred sigma of ten-second means, as a slow turn that passes for rest: no noise to measure by.
+TEST(SensorWatch, AHugeStepHidesNotTheNext) {
+  Made made(6);
+  made.run(4.0 * kHour);
+  made.rate += 30.0 * kSigma;
+  made.run(2.0 * kHour);
+  EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
+  made.rate += 0.5 * kSigma;
+  made.run(10.0 * kMinute);
+  EXPECT_EQ(made.watch.noticed(), kNoticedBias);
+}
+
 TEST(SensorWatch, ATurnIsNoStepAndTheNextStepIsFound) {
   Made made(5);
   made.run(6.0 * kHour);

@@ -77,6 +77,18 @@ TEST(PowerUp, SeveralCapturesHaveItWhereAllBeganAlike) {
   EXPECT_FALSE(began_after_power_up({none}));
 }
 
+// What was fitted begins later than the record when its first part is kept back.
+TEST(PowerUp, ItIsThatOfThePartThatWasFitted) {
+  Capture one;
+  one.since_power_up_s = 10.0;
+  one.time_s = {0.0, 500.0, 1000.0};
+  EXPECT_EQ(began_after_power_up({one}, 0.25), 260.0);
+  Capture longer = one;
+  longer.time_s.back() = 2000.0;
+  EXPECT_EQ(began_after_power_up({one, longer}), 10.0);
+  EXPECT_FALSE(began_after_power_up({one, longer}, 0.25));
+}
+
 class PoweredRecordings : public testing::Test {
  protected:
   void SetUp() override {

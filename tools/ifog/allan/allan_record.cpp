@@ -61,13 +61,12 @@ std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOpt
   std::vector<std::size_t> m;
   for (const double tau : options.tau_s) {
     const double exact = tau / period;
-    const auto whole = static_cast<std::size_t>(std::max(1.0, std::round(exact)));
     const std::size_t most = longest_average(options.kind, samples);
-    if (exact < 0.5 || whole > most)
+    if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most)))
       throw std::runtime_error(name + ": --tau " + number(tau) + " s is outside what " +
                                name_of(options.kind) + " can tell of the longest stretch, expected " +
                                number(period) + " to " + number(static_cast<double>(most) * period) + " s");
-    m.push_back(whole);
+    m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
   }
   return m;
 }

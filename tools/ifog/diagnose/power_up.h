@@ -10,9 +10,10 @@
 
 namespace ifog::tools {
 
-// How long after power-up all of them began, s; none where one does not know, or they differ by over a
-// second.
-[[nodiscard]] std::optional<double> began_after_power_up(const std::vector<Capture>& captures);
+// How long after power-up what was fitted of all of them began, s; fit_from: the share of each one's time
+// that was passed over before. None where one does not know, or they differ by over a second.
+[[nodiscard]] std::optional<double> began_after_power_up(const std::vector<Capture>& captures,
+                                                         double fit_from = 0.0);
 
 // a exp(-t / tau) of a record that began t0 after power-up is a exp(t0 / tau) exp(-(t0 + t) / tau):
 // coefficients, their errors and the covariance of all parameters, which go along by the derivatives.

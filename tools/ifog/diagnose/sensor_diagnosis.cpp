@@ -128,7 +128,8 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
                                          const AxesToDiagnose& wanted) {
   std::vector<AxisDiagnosis> found;
   const std::vector<std::string>& axes = captures.front().axes;
-  const std::optional<double> power_up_s = began_after_power_up(captures);
+  const bool part = wanted.fit_from != wanted.fit_to;
+  const std::optional<double> power_up_s = began_after_power_up(captures, part ? wanted.fit_from : 0.0);
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     if (!wanted.axes.empty() &&
         std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) == wanted.axes.end()) {
