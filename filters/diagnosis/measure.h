@@ -5,7 +5,8 @@
 //
 // The captures are prepared as diagnose() prepares them, and the regression is its own: the noise model
 // fitted anew under every set of effects, generalised least squares in its innovations, coefficients averaged
-// over the noise that the captures allow. Time constants are as given.
+// over the noise that the captures allow. Time constants are as given. What depends on the rate counts from
+// the bias that the effects leave, as in a diagnosis.
 #pragma once
 
 #include <cstddef>

@@ -129,6 +129,29 @@ TEST(Measure, WhatIsFittedAlongKeepsItsName) {
   EXPECT_FALSE(found.beside[0].shown_only);
 }
 
+// Online the measured rate stands for the true one, and it is the true one plus the bias.
+TEST(Measure, WhatDependsOnTheRateCountsFromTheBias) {
+  constexpr double kBias = 3e-3, kScale = 5e-3;
+  Sensor sensor(7);
+  std::vector<double> truth;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    truth.push_back(0.2 * std::sin(2.0 * M_PI * static_cast<double>(i) / 400.0) + 0.05);
+    sensor.rate[i] += truth.back() + kScale * truth.back() + kBias - 4e-5;
+  }
+  Record record = sensor.record();
+  record.reference_radps = truth;
+  EffectsToMeasure wanted;
+  wanted.together = {linear_in("reference_rate_radps")};
+  wanted.beside = {linear_in("temperature_degC"), linear_in("supply_V")};
+  const MeasuredEffects found = measure_effects({record}, wanted, "");
+  ASSERT_TRUE(found.together[0].not_measured.empty());
+  const Effect& effect = found.together[0].effect;
+  EXPECT_NEAR(effect.parameters.front().value, kScale, 1e-4 * kScale);
+  EXPECT_NEAR(effect.reference, kBias, 1e-3 * kBias);  // its error: some 1e-6 / sqrt(3000)
+  ASSERT_EQ(found.beside.size(), 2U);
+  EXPECT_EQ(found.beside[0].reference, 25.0);
+}
+
 TEST(Measure, TheRightOneOfTwoExplainsMore) {
   const Sensor sensor(4);
   EffectsToMeasure wanted;
