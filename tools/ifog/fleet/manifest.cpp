@@ -5,6 +5,7 @@
 #include <cctype>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -49,7 +50,25 @@ std::string serial_of(const std::string& path, const toml::table& table) {
   return serial;
 }
 
-std::vector<std::string> captures_of(const std::string& path, const toml::table& table) {
+// As it opens, relative to the manifest. "." goes, ".." does not: behind a link it leads elsewhere.
+std::string path_beside(const std::string& manifest, const std::string& name) {
+  std::filesystem::path beside;
+  for (const std::filesystem::path& part : std::filesystem::path(manifest).parent_path() / name)
+    if (part != ".") beside /= part;
+  return beside == "-" || beside.empty() ? "./" + beside.string()
+                                         : beside.string();  // no standard input here
+}
+
+// One name for a file however it is reached.
+std::string true_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
+  return error ? path : found.string();
+}
+
+// taken: by true path, the serial that has it.
+std::vector<std::string> captures_of(const std::string& path, const toml::table& table,
+                                     const std::string& serial, std::map<std::string, std::string>& taken) {
   const toml::node* const node = table.get("captures");
   if (node == nullptr) fail(path, table.source(), "captures is missing, expected a list of paths");
   const toml::array* const list = node->as_array();
@@ -60,9 +79,12 @@ std::vector<std::string> captures_of(const std::string& path, const toml::table&
     const auto name = item.value_exact<std::string>();
     if (!name || name->empty() || name->find('\0') != std::string::npos)
       fail(path, item.source(), "captures holds what is no path, expected a list of paths");
-    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    captures.push_back(((folder.empty() ? "." : folder) / *name).lexically_normal().string());
-    if (captures.back() == "-") captures.back() = "./-";  // no standard input here
+    captures.push_back(path_beside(path, *name));
+    const auto [of, first] = taken.emplace(true_path(captures.back()), serial);
+    if (!first)
+      fail(path, item.source(),
+           "captures holds " + in_quotes(*name) + ", which is a capture of " + in_quotes(of->second) +
+               " already, expected each once");
   }
   return captures;
 }
@@ -80,15 +102,18 @@ Manifest read_manifest(const std::string& path) {
   if (gyros == nullptr || gyros->empty())
     throw std::runtime_error(path + ": gyro is missing, expected a [[gyro]] for each");
   std::set<std::string> names;
+  std::map<std::string, std::string> taken;
   for (const toml::node& item : *gyros) {
     const toml::table* const gyro = item.as_table();
     if (gyro == nullptr) fail(path, item.source(), "gyro holds what is no table, expected [[gyro]]");
     refuse_unknown(path, *gyro, {"serial", "captures"}, "serial or captures");
-    FleetGyro each{serial_of(path, *gyro), captures_of(path, *gyro)};
+    FleetGyro each;
+    each.serial = serial_of(path, *gyro);
     std::string name = each.serial;
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
     if (!names.insert(name).second)
       fail(path, gyro->source(), "serial = " + in_quotes(each.serial) + " stands twice, expected once");
+    each.captures = captures_of(path, *gyro, each.serial, taken);
     manifest.gyros.push_back(std::move(each));
   }
   return manifest;

@@ -4,7 +4,7 @@
 //   type = "DSP-1760"
 //   [[gyro]]
 //   serial = "A017"                           names its folder of results
-//   captures = ["A017/cold.csv.gz", "…"]      relative to the manifest
+//   captures = ["A017/cold.csv.gz", "…"]      relative to the manifest, each file once in all of it
 #pragma once
 
 #include <string>
