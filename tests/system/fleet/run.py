@@ -8,9 +8,11 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 
 IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
@@ -74,7 +76,7 @@ def check_restart_takes_up_what_is_missing(folder):
     fleet(folder)
     assert stamps(folder) == before, "diagnosed again without need"
     shutil.rmtree(folder / "lot.results/gyros/G03")
-    assert fleet(folder, "--dry-run")[0].split()[-2:] == ["--one", "2"]
+    assert fleet(folder, "--dry-run")[0].split()[1:5] == ["fleet", "--one", "2", "lot.toml"]
     fleet(folder)
     after = stamps(folder)
     changed = {path for path in after if after[path] != before.get(path)}
@@ -93,17 +95,156 @@ def check_a_failed_gyro_is_one_line(folder):
     assert err.count("\n") == 1 and err.startswith("G02: ") and "G02.csv" in err, err
     document = json.loads((folder / "lot.results/fleet.json").read_text())
     assert [each["serial"] for each in document["failed"]] == ["G02"] and len(document["effects"]) == 1
+    assert not (folder / "lot.results/gyros/G02/with_prior.toml").exists(), "of an earlier run"
+    assert (folder / "lot.results/gyros/G01/with_prior.toml").exists()
     (folder / "G02.csv").write_text(kept)
     assert fleet(folder)[1] == ""
 
 
+def check_a_damaged_result_is_made_again(folder):
+    gyros = folder / "lot.results/gyros"
+    before = stamps(folder)
+    (gyros / "G06/model.toml").unlink()
+    (gyros / "G07/diagnosis.json").unlink()
+    fleet(folder)
+    assert {path.parent.name for path in before if stamps(folder)[path] != before[path]} == {"G06", "G07"}
+    for name, text in (("model.toml", "no = [model"), ("diagnosis.json", '{"schema": ')):
+        (gyros / "G08" / name).write_text(text)
+        _, err = fleet(folder, expect=1)
+        assert err.count("\n") == 1 and err.startswith("G08: ") and name in err, err
+        document = json.loads((folder / "lot.results/fleet.json").read_text())
+        assert [each["serial"] for each in document["failed"]] == ["G08"] and len(document["effects"]) == 1
+        assert not (gyros / "G08/with_prior.toml").exists()
+        assert fleet(folder)[1] == ""
+        assert (gyros / "G08/with_prior.toml").exists()
+
+
+def check_a_measurement_of_other_inputs_is_none(folder):
+    """One that failed, of other captures: neither this run's failure nor its measurement."""
+    (path,) = [each for each in (folder / "lot.results/gyros/G09").glob("measured-*.json")
+               if json.loads((folder / "lot.results/type.json").read_text())["id"] in each.name]
+    kept = json.loads(path.read_text())
+    for change in ({"inputs": "0" * 16}, {"failed": "of yesterday", "axes": []}, {"inputs": "0" * 16, "failed": "of yesterday", "axes": []}):
+        path.write_text(json.dumps({**kept, **change}))
+        assert fleet(folder)[1] == ""
+        assert json.loads(path.read_text()) == kept, change
+
+
+def one_gyro(folder, name, *arguments, captures=("G01.csv",), expect=0, environment=None):
+    """Of a manifest of its own."""
+    (folder / name).write_text(f'type = "T"\n[[gyro]]\nserial = "A"\ncaptures = {json.dumps(captures)}\n')
+    result = subprocess.run([IFOG, "fleet", *arguments], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100, check=False,
+                            env=environment)
+    assert result.returncode == expect, result
+    return result
+
+
+def check_nothing_of_an_earlier_run_stays_when_none_is_diagnosed(folder):
+    shutil.copy(folder / "G01.csv", folder / "only.csv")
+    one_gyro(folder, "only.toml", "only.toml", "--engine", "local", captures=("only.csv",))
+    results = folder / "only.results"
+    (results / "gyros/A/with_prior.toml").write_text("")
+    assert (results / "fleet.json").exists() and (results / "fleet.html").exists()
+    (folder / "only.csv").write_text("no capture\n")
+    said = one_gyro(folder, "only.toml", "only.toml", "--engine", "local", captures=("only.csv",), expect=1).stderr
+    assert "no gyro was diagnosed" in said or said.startswith("A: "), said
+    assert not [name for name in ("gyros/A/with_prior.toml", "fleet.json", "fleet.html") if (results / name).exists()]
+
+
+def check_another_option_is_another_diagnosis(folder):
+    """The group of an HDF5 file, and what a bus description of the same name says."""
+    bus = (SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc").read_text()
+    (folder / "bus.dbc").write_text(bus)
+    options = ["--dbc", "bus.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter", "--option", "rate_hz=10"]
+    subprocess.run([IFOG, "convert", "G01.csv", "bus.log", *options], cwd=folder, check=True, capture_output=True, timeout=60)
+
+    def missing(*more):
+        return one_gyro(folder, "bus.toml", "bus.toml", "--engine", "local", "--dry-run", *options, *more, captures=("bus.log",)).stdout
+
+    assert "--one 0" in missing()
+    one_gyro(folder, "bus.toml", "bus.toml", "--engine", "local", *options, captures=("bus.log",))
+    assert missing() == ""
+    assert "--one 0" in missing("--group", "/imu")
+    (folder / "bus.dbc").write_text(bus + "\n")
+    assert "--one 0" in missing()
+    (folder / "bus.dbc").write_text(bus)
+    assert missing() == ""
+
+
+def check_options_end_where_they_are_said_to(folder):
+    one_gyro(folder, "-lot.toml", "--engine", "local", "--results", "ended", "--", "-lot.toml")
+    assert (folder / "ended/gyros/A/gyro.json").is_file()
+    script = one_gyro(folder, "-lot.toml", "--engine", "slurm", "--results", "again", "--dry-run", "--", "-lot.toml").stdout
+    assert 'fleet --one "$gyro" --engine' in script and script.endswith(" -- -lot.toml\n"), script
+
+
+def check_a_link_in_a_path_is_followed(folder):
+    (folder / "far/inside").mkdir(parents=True)
+    (folder / "near").symlink_to("far/inside")
+    shutil.copy(folder / "G01.csv", folder / "far/there.csv")  # near/../there.csv is no ./there.csv
+    one_gyro(folder, "linked.toml", "linked.toml", "--engine", "local", captures=("near/../there.csv",))
+
+
+def check_what_squeue_warns_of_is_no_job(folder):
+    programs = folder / "programs"
+    programs.mkdir()
+    # As if it had run the job before it answers.
+    (programs / "sbatch").write_text("#!/bin/sh\ncat >script; SLURM_ARRAY_TASK_ID=0 sh script >/dev/null; echo 7\n")
+    (programs / "squeue").write_text("#!/bin/sh\necho 'squeue: warning: 12 jobs, 3_4 more' >&2\necho\n")
+    for each in programs.iterdir():
+        each.chmod(0o755)
+    said = one_gyro(folder, "queued.toml", "queued.toml", "--engine", "slurm", environment={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}).stdout
+    assert "submitted the array 7" in said and "1 of 1 gyros diagnosed" in said, said
+
+
+def children_of(process):
+    return pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
+
+
+def is_running(process):
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def wait_for(what, ready, seconds=60):
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        value = ready()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"{what}: not within {seconds} s")
+
+
+def check_no_child_outlives_the_run(folder):
+    os.mkfifo(folder / "never.csv")  # whoever opens it waits
+    (folder / "waits.toml").write_text('type = "T"\n[[gyro]]\nserial = "A"\ncaptures = ["never.csv"]\n')
+    for number in (signal.SIGKILL, signal.SIGHUP, signal.SIGINT):
+        run = subprocess.Popen([IFOG, "fleet", "waits.toml", "--engine", "local"], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL))
+        (child,) = wait_for("a child", lambda run=run: children_of(run.pid))
+        wait_for("its own program", lambda child=child: "--one" in pathlib.Path(f"/proc/{child}/cmdline").read_text())
+        run.send_signal(number)
+        _, said = run.communicate(timeout=60)
+        assert run.returncode == (-number if number == signal.SIGKILL else 1), (number, run.returncode, said)
+        assert number == signal.SIGKILL or "interrupted" in said, said
+        wait_for(f"end of the child after signal {number}", lambda child=child: not is_running(child))
+
+
 def check_bad_manifests(folder):
+    (folder / "a.csv").touch()
+    (folder / "link.csv").symlink_to("a.csv")
+    (folder / "x").mkdir()
     good = '[[gyro]]\nserial = "A"\ncaptures = ["a.csv"]\n'
     for text, said in ((good, "type is missing"), ('type = "T"\n', "gyro is missing"), ('type = "T"\n' + good + "day = 1\n", "bad.toml:5: key 'day' is unknown"),
                        ('type = "T"\n' + good.replace('"A"', '"$(touch pwned)"'), "expected up to 64 letters"),
                        ('type = "T"\n' + good.replace('"A"', '"../A"'), "expected up to 64 letters"),
                        ('type = "T"\n' + good + good.replace('"A"', '"a"'), "stands twice"), ('type = "T"\n' + good.replace('["a.csv"]', "[]"), "expected a list of paths"),
-                       ('type = "T"\n' + good.replace('["a.csv"]', "[7]"), "expected a list of paths")):
+                       ('type = "T"\n' + good.replace('["a.csv"]', "[7]"), "expected a list of paths"),
+                       ('type = "T"\n' + good + good.replace('"A"', '"B"').replace("a.csv", "./x/../a.csv"), "bad.toml:7: captures holds './x/../a.csv', which is a capture of 'A' already"),
+                       ('type = "T"\n' + good.replace('["a.csv"]', '[\n  "a.csv",\n  "link.csv"]'), "bad.toml:6: captures holds 'link.csv', which is a capture of 'A' already")):
         (folder / "bad.toml").write_text(text)
         result = subprocess.run([IFOG, "fleet", "bad.toml"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
         assert result.returncode == 1 and said in result.stderr and result.stderr.count("\n") == 1, (text, result)
@@ -132,7 +273,10 @@ def main():
         folder = pathlib.Path(name)
         lot.make(IFOG, folder)
         for check in (check_the_lot, check_single_diagnosis_is_the_same, check_the_daemons_code_takes_the_model, check_restart_takes_up_what_is_missing,
-                      check_a_failed_gyro_is_one_line, check_bad_manifests, check_no_shell_reads_the_manifest):
+                      check_a_failed_gyro_is_one_line, check_a_damaged_result_is_made_again, check_a_measurement_of_other_inputs_is_none,
+                      check_nothing_of_an_earlier_run_stays_when_none_is_diagnosed, check_another_option_is_another_diagnosis,
+                      check_options_end_where_they_are_said_to, check_a_link_in_a_path_is_followed, check_what_squeue_warns_of_is_no_job,
+                      check_no_child_outlives_the_run, check_bad_manifests, check_no_shell_reads_the_manifest):
             try:
                 check(folder)
                 print(f"ok       {check.__name__[6:].replace('_', ' ')}", flush=True)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who runs the processes of a fleet, one a gyro: the processors of this machine, or Slurm. Both start the
-// same command, `ifog fleet MANIFEST … --one INDEX`, and what comes of it stands in the results alone.
+// same command, `ifog fleet --one INDEX MANIFEST …`, and what comes of it stands in the results alone.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,10 @@ std::unique_ptr<Engine> local_engine(const Results& results, std::size_t jobs);
 // and the environment of sbatch (SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_MEM_PER_CPU).
 std::unique_ptr<Engine> slurm_engine(const Results& results, std::size_t jobs);
 
-// The command for one gyro, but for its index at the end.
-std::vector<std::string> command_for_one();
+// The command for one gyro. Its index stands before all that was typed, where a `--` ends the options.
+std::vector<std::string> command_for_one(const std::string& index);
+
+// The same for a shell, all but `index` in quotes where they are needed.
+std::string shell_command_for_one(const std::string& index);
 
 }  // namespace ifog::tools

@@ -3,6 +3,7 @@
 // and what it gives back to each of its gyros.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -65,11 +66,13 @@ class FleetRun {
   void run() {
     diagnose_all();
     if (diagnosed_.gyros.empty()) {
+      forget_with_prior();
+      results_.forget_population();
       tell_failures();
       throw Failed("no gyro was diagnosed");
     }
     measure_type();
-    population_.parameters = noise_parameters(results_, manifest_, diagnosed_);
+    population_.parameters = noise_parameters(diagnosed_);
     for (PopulationParameter& each : coefficient_parameters(population_.effects))
       population_.parameters.push_back(std::move(each));
     for (PopulationParameter& each : population_.parameters) describe(each);
@@ -113,10 +116,16 @@ class FleetRun {
 
   // Of an earlier run: what stands there afterwards is of this one.
   void forget_failure(std::size_t gyro) const {
-    const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
-    if (!done || !done->failed) return;
-    std::error_code none;
-    std::filesystem::remove(results_.path(manifest_.gyros[gyro], "gyro.json"), none);
+    const FleetGyro& of = manifest_.gyros[gyro];
+    if (const auto done = results_.done(of); done && done->failed) results_.forget_done(of);
+    if (type_.id.empty()) return;
+    if (const auto measured = results_.measured(of, type_.id); measured && measured->failed)
+      results_.forget_measured(of, type_.id);
+  }
+
+  // What is not written anew would pass for this run's.
+  void forget_with_prior() const {
+    for (const FleetGyro& gyro : manifest_.gyros) results_.forget_with_prior(gyro);
   }
 
   void diagnose_all() {
@@ -135,7 +144,7 @@ class FleetRun {
                                              : "its captures change while they are read";
       population_.failed.push_back({gyro, std::move(why)});
     }
-    diagnosed_ = gather_diagnosed(results_, manifest_, options_);
+    diagnosed_ = gather_diagnosed(results_, manifest_, options_, population_.failed);
   }
 
   // The type's effects, measured on every gyro until what the measurements say of the choice is the choice.
@@ -182,7 +191,7 @@ class FleetRun {
       return measured && measured->failed.has_value();
     };
     const auto ended = run_missing("measuring", missing, said_why);
-    auto measured = gather_measured(results_, manifest_, diagnosed_, type_, failed);
+    auto measured = gather_measured(results_, manifest_, options_, diagnosed_, type_, failed);
     for (Population::Failure& each : failed)
       if (const auto how = ended.find(each.gyro); how != ended.end())
         each.why += ": " + how->second + ", see " + results_.log(each.gyro);
@@ -190,6 +199,7 @@ class FleetRun {
   }
 
   void write() {
+    forget_with_prior();
     for (const auto& [gyro, measured] : measured_) {
       if (population_.effects.empty()) break;
       const Model model =
@@ -233,6 +243,15 @@ class FleetRun {
   Population population_;
 };
 
+// SIGHUP interrupts, too, unless it is ignored, as by nohup.
+void end_with_the_terminal() {
+  struct sigaction interrupt {
+  }, hangup{};
+  sigaction(SIGINT, nullptr, &interrupt);
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &interrupt, nullptr);
+}
+
 void run(Arguments& arguments) {
   if (arguments.latitude_deg) arguments.settings.wanted.latitude_rad = *arguments.latitude_deg * kDegree;
   const Manifest manifest = read_manifest(arguments.manifest);
@@ -255,6 +274,7 @@ void run(Arguments& arguments) {
     return;
   }
   catch_interrupts();
+  end_with_the_terminal();
   fleet.run();
 }
 

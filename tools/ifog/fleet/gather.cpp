@@ -43,6 +43,19 @@ void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t
   }
 }
 
+// Of each axis that the model has noise of. Throws std::runtime_error with one line.
+std::map<std::string, nlohmann::json> noise_by_axis(const std::string& path, const Model& model) {
+  try {
+    const nlohmann::json noise = nlohmann::json::parse(read_text_file(path)).at("noise");
+    const bool single = model.noise.size() == 1;
+    std::map<std::string, nlohmann::json> by_axis;
+    for (const auto& [axis, terms] : model.noise) by_axis[axis] = single ? noise : noise.at(axis);
+    return by_axis;
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(path + ": damaged: " + error.what());
+  }
+}
+
 const MeasuredEffect* measured_of(const GyroMeasured& gyro, std::size_t of_type) {
   for (const AxisMeasured& axis : gyro.axes)
     for (std::size_t i = 0; i < axis.of_type.size(); ++i)
@@ -66,46 +79,43 @@ std::vector<double> explained_by_form(const TypeCandidate& candidate, std::size_
 
 }  // namespace
 
-Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options) {
+Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options,
+                           std::vector<Population::Failure>& failed) {
   Diagnosed diagnosed;
   for (std::size_t i = 0; i < manifest.gyros.size(); ++i) {
     const FleetGyro& gyro = manifest.gyros[i];
     if (!is_diagnosed(results, gyro, options)) continue;
-    Model model = read_model(results.path(gyro, "model.toml"));
-    for (const Effect& effect : model.effects) diagnosed.found.push_back({i, effect});
-    diagnosed.gyros.push_back(i);
-    diagnosed.models[i] = std::move(model);
+    try {
+      Model model = read_model(results.path(gyro, "model.toml"));
+      diagnosed.noise[i] = noise_by_axis(results.path(gyro, "diagnosis.json"), model);
+      for (const Effect& effect : model.effects) diagnosed.found.push_back({i, effect});
+      diagnosed.gyros.push_back(i);
+      diagnosed.models[i] = std::move(model);
+    } catch (const std::exception& error) {  // of a file, or of the JSON or the numbers in it
+      results.forget_done(gyro);
+      failed.push_back({i, std::string(error.what()) + "; the next run diagnoses it again"});
+    }
   }
   return diagnosed;
 }
 
-std::vector<PopulationParameter> noise_parameters(const Results& results, const Manifest& manifest,
-                                                  const Diagnosed& diagnosed) {
+std::vector<PopulationParameter> noise_parameters(const Diagnosed& diagnosed) {
   std::map<std::pair<std::string, std::string>, PopulationParameter> found;
-  for (const std::size_t gyro : diagnosed.gyros) {
-    const std::string path = results.path(manifest.gyros[gyro], "diagnosis.json");
-    try {
-      const nlohmann::json noise = nlohmann::json::parse(read_text_file(path)).at("noise");
-      const Model& model = diagnosed.models.at(gyro);
-      const bool single = model.noise.size() == 1;
-      for (const auto& [axis, terms] : model.noise)
-        add_noise(single ? noise : noise.at(axis), axis, gyro, found);
-    } catch (const nlohmann::json::exception& error) {
-      throw std::runtime_error(path + ": damaged: " + error.what());
-    }
-  }
+  for (const std::size_t gyro : diagnosed.gyros)
+    for (const auto& [axis, terms] : diagnosed.noise.at(gyro)) add_noise(terms, axis, gyro, found);
   std::vector<PopulationParameter> parameters;
   for (auto& [key, parameter] : found) parameters.push_back(std::move(parameter));
   return parameters;
 }
 
 std::map<std::size_t, GyroMeasured> gather_measured(const Results& results, const Manifest& manifest,
-                                                    const Diagnosed& diagnosed, const TypeToMeasure& type,
+                                                    const std::string& options, const Diagnosed& diagnosed,
+                                                    const TypeToMeasure& type,
                                                     std::vector<Population::Failure>& failed) {
   std::map<std::size_t, GyroMeasured> found;
   for (const std::size_t gyro : diagnosed.gyros) {
     std::optional<GyroMeasured> measured = results.measured(manifest.gyros[gyro], type.id);
-    if (!measured)
+    if (!measured || measured->inputs != identity_of(manifest.gyros[gyro], options))
       failed.push_back({gyro, "diagnosed, but the type's effects were not measured"});
     else if (measured->failed)
       failed.push_back({gyro, *measured->failed});

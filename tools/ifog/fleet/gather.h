@@ -15,19 +15,22 @@ namespace ifog::tools {
 struct Diagnosed {
   std::vector<std::size_t> gyros;
   std::map<std::size_t, Model> models;
-  std::vector<FoundInGyro> found;  // all effects of all models
+  std::map<std::size_t, std::map<std::string, nlohmann::json>> noise;  // by axis: "noise" of the diagnoses
+  std::vector<FoundInGyro> found;                                      // all effects of all models
 };
 
-// Throws std::runtime_error with one line: a model that cannot be read.
-Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options);
+// A gyro whose diagnosis or model cannot be read is among `failed`, and diagnosed again by the next run.
+Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options,
+                           std::vector<Population::Failure>& failed);
 
 // The noise of every gyro on every axis, by the diagnoses.
-std::vector<PopulationParameter> noise_parameters(const Results& results, const Manifest& manifest,
-                                                  const Diagnosed& diagnosed);
+std::vector<PopulationParameter> noise_parameters(const Diagnosed& diagnosed);
 
-// The measurements of the type's effects, by gyro; those that failed are among `failed` instead.
+// The measurements of the type's effects, by gyro; those that failed, or are not of these captures and
+// options, are among `failed` instead.
 std::map<std::size_t, GyroMeasured> gather_measured(const Results& results, const Manifest& manifest,
-                                                    const Diagnosed& diagnosed, const TypeToMeasure& type,
+                                                    const std::string& options, const Diagnosed& diagnosed,
+                                                    const TypeToMeasure& type,
                                                     std::vector<Population::Failure>& failed);
 
 // The type's effects, judged; in the order of `type`. level: of a false effect in a gyro, for all of them.

@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
+#include "filters/model_file/sha256.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 
@@ -37,6 +39,7 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
   Model model = model_with({}, found, gyro.captures, opened.hashes);
   model.sensor = gyro.serial;
   const std::string model_path = results.path(gyro, "model.toml");
+  results.forget_done(gyro);  // until all of the files are of this diagnosis
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
   write_text_file(results.path(gyro, "report.html"),
@@ -110,6 +113,15 @@ void add(std::string& text, const char* key, double value) {
   add(text, key, std::string(digits.data()));
 }
 
+// By its content what a driver's option names a file of: the same name may be another bus description now.
+void add_files(std::string& text, const DriverSettings& settings) {
+  for (const auto& [key, value] : settings) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(value, none))
+      add(text, "file", key + " " + sha256_hex(read_bytes_file(value)));
+  }
+}
+
 void add(std::string& text, const char* key, const std::vector<std::string>& values) {
   for (const std::string& value : values) add(text, key, value);
 }
@@ -122,10 +134,12 @@ std::string FleetSettings::text() const {
   add(text, "driver", input.driver);
   add(text, "option", input.options);
   add(text, "dbc", input.dbc);
+  add_files(text, input.settings());
   add(text, "channel", input.channel);
   add(text, "column", input.columns);
   add(text, "time", input.time);
   add(text, "separator", input.separator);
+  add(text, "group", input.group);
   add(text, "axis", wanted.axes);
   add(text, "from", part.from_s);
   add(text, "to", part.to_s);
@@ -137,7 +151,12 @@ std::string FleetSettings::text() const {
 
 bool is_diagnosed(const Results& results, const FleetGyro& gyro, const std::string& options) {
   const std::optional<GyroDone> done = results.done(gyro);
-  return done && !done->failed && done->inputs == identity_of(gyro, options);
+  const auto has = [&](const char* file) {
+    std::error_code none;
+    return std::filesystem::is_regular_file(results.path(gyro, file), none);
+  };
+  return done && !done->failed && done->inputs == identity_of(gyro, options) && has("diagnosis.json") &&
+         has("model.toml");
 }
 
 bool is_measured(const Results& results, const FleetGyro& gyro, const std::string& options,

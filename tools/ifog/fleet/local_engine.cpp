@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <iterator>
 #include <thread>
 
 #include "tools/ifog/commands.h"
@@ -47,17 +48,14 @@ class LocalEngine : public Engine {
   [[nodiscard]] std::string in_words(const std::vector<std::size_t>& gyros) const override {
     std::string text;
     for (const std::size_t gyro : gyros) {
-      for (const std::string& word : command_for_one()) text += shell_word(word) + " ";
-      text += std::to_string(gyro) + "\n";
+      text += shell_command_for_one(std::to_string(gyro)) + "\n";
     }
     return text;
   }
 
  private:
   void begin(std::size_t gyro) {
-    std::vector<std::string> words = command_for_one();
-    words.push_back(std::to_string(gyro));
-    running_[start(words, results_.log(gyro))] = gyro;
+    running_[start(command_for_one(std::to_string(gyro)), results_.log(gyro))] = gyro;
   }
 
   // Whether one of them came to its end.
@@ -88,12 +86,26 @@ class LocalEngine : public Engine {
 
 }  // namespace
 
-std::vector<std::string> command_for_one() {
+std::vector<std::string> command_for_one(const std::string& index) {
   std::vector<std::string> words = {own_path()};
-  for (const std::string& word : typed_words())
-    if (word != "--dry-run") words.push_back(word);
-  words.emplace_back("--one");
+  const std::vector<std::string> typed = typed_words();
+  const auto end_of_options = std::find(typed.begin(), typed.end(), "--");
+  std::copy_if(typed.begin(), end_of_options, std::back_inserter(words),
+               [](const std::string& word) { return word != "--dry-run"; });
+  words.insert(words.end(), end_of_options, typed.end());
+  const auto command = std::find(words.begin() + 1, words.end(), "fleet");
+  words.insert(command == words.end() ? command : command + 1, {"--one", index});
   return words;
+}
+
+std::string shell_command_for_one(const std::string& index) {
+  // What was typed may hold the same word: the place, not the word, says which is the index.
+  const std::vector<std::string> words = command_for_one(index);
+  const auto place = std::find(words.begin() + 1, words.end(), "--one") + 1;
+  std::string text;
+  for (auto word = words.begin(); word != words.end(); ++word)
+    text += (text.empty() ? "" : " ") + (word == place ? *word : shell_word(*word));
+  return text;
 }
 
 std::unique_ptr<Engine> local_engine(const Results& results, std::size_t jobs) {

@@ -3,11 +3,14 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -23,9 +26,6 @@ class FileActions {
   ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
   FileActions(const FileActions&) = delete;
   FileActions& operator=(const FileActions&) = delete;
-  void open(int descriptor, const std::string& path, int flags) {
-    posix_spawn_file_actions_addopen(&actions_, descriptor, path.c_str(), flags, 0666);
-  }
   void copy(int from, int to) { posix_spawn_file_actions_adddup2(&actions_, from, to); }
   [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
 
@@ -33,16 +33,24 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-pid_t spawn(const std::vector<std::string>& words, const FileActions& actions, bool by_path) {
+std::vector<char*> arguments_of(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
+  return arguments;
+}
+
+[[noreturn]] void refuse(const std::vector<std::string>& words, int error) {
+  throw std::runtime_error(words.front() + ": cannot be started: " + std::strerror(error));
+}
+
+pid_t spawn(const std::vector<std::string>& words, const FileActions& actions) {
+  const std::vector<char*> arguments = arguments_of(words);
   pid_t child = 0;
   const int error =
-      by_path ? posix_spawnp(&child, words.front().c_str(), actions.get(), nullptr, arguments.data(), environ)
-              : posix_spawn(&child, words.front().c_str(), actions.get(), nullptr, arguments.data(), environ);
-  if (error != 0) throw std::runtime_error(words.front() + ": cannot be started: " + std::strerror(error));
+      posix_spawnp(&child, words.front().c_str(), actions.get(), nullptr, arguments.data(), environ);
+  if (error != 0) refuse(words, error);
   return child;
 }
 
@@ -76,16 +84,48 @@ std::string read_all(int from) {
   }
 }
 
+bool open_as(int descriptor, const char* path, int flags) {
+  const int opened = open(path, flags, 0666);
+  if (opened < 0 || opened == descriptor) return opened >= 0;
+  const bool copied = dup2(opened, descriptor) >= 0;
+  close(opened);
+  return copied;
+}
+
+// In the child, where only what is safe in a signal's handler is. posix_spawn() cannot ask for the signal.
+[[noreturn]] void become(const std::vector<char*>& arguments, const char* said_path, pid_t parent,
+                         int error) {
+  std::signal(SIGTERM, SIG_DFL);  // until then the parent's handler would swallow it
+  const bool tied = prctl(PR_SET_PDEATHSIG, SIGTERM) == 0;
+  if (getppid() != parent) _exit(1);  // it died before it could be asked for
+  if (tied && open_as(STDIN_FILENO, "/dev/null", O_RDONLY) &&
+      open_as(STDOUT_FILENO, said_path, O_WRONLY | O_CREAT | O_APPEND) &&
+      dup2(STDOUT_FILENO, STDERR_FILENO) >= 0)
+    execve(arguments.front(), arguments.data(), environ);
+  const int number = errno;
+  if (write(error, &number, sizeof(number)) < 0) _exit(2);
+  _exit(1);
+}
+
 }  // namespace
 
 std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 
 pid_t start(const std::vector<std::string>& words, const std::string& said_path) {
-  FileActions actions;
-  actions.open(STDIN_FILENO, "/dev/null", O_RDONLY);
-  actions.open(STDOUT_FILENO, said_path, O_WRONLY | O_CREAT | O_APPEND);
-  actions.copy(STDOUT_FILENO, STDERR_FILENO);
-  return spawn(words, actions, false);
+  const std::vector<char*> arguments = arguments_of(words);
+  Pipe error;  // closed by the program that takes over, or told why none does
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) refuse(words, errno);
+  if (child == 0) become(arguments, said_path.c_str(), parent, error.ends[1]);
+  error.close_end(1);
+  const std::string why = read_all(error.ends[0]);
+  if (why.empty()) return child;
+  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  int number = 0;
+  std::memcpy(&number, why.data(), std::min(why.size(), sizeof(number)));
+  refuse(words, number);
 }
 
 std::string ending(int status) {
@@ -99,7 +139,7 @@ Ran run_to_end(const std::vector<std::string>& words, const std::string& input) 
   actions.copy(in.ends[0], STDIN_FILENO);
   actions.copy(out.ends[1], STDOUT_FILENO);
   actions.copy(out.ends[1], STDERR_FILENO);
-  const pid_t child = spawn(words, actions, true);
+  const pid_t child = spawn(words, actions);
   in.close_end(0);
   out.close_end(1);
   // All of it fits into the pipe, so that nobody waits for anybody; SIGPIPE is ignored from the start.

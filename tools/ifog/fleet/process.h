@@ -12,8 +12,9 @@ namespace ifog::tools {
 // This program, wherever it lies.
 std::string own_path();
 
-// Its standard input is empty; what it says goes to the end of a file. words: of which the first is the
-// program's path. Throws std::runtime_error with one line.
+// Its standard input is empty; what it says goes to the end of a file. It gets SIGTERM when the thread that
+// started it is no more, however that ended. words: of which the first is the program's path. Throws
+// std::runtime_error with one line.
 pid_t start(const std::vector<std::string>& words, const std::string& said_path);
 
 // "" for a good end, else in words: "exit 1", "killed by signal 9". status: of waitpid().

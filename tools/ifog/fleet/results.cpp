@@ -19,6 +19,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShort = 16;  // hex digits of an id
 
+void forget(const std::string& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) throw std::runtime_error(path + ": cannot be removed: " + error.message());
+}
+
 void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
@@ -135,9 +141,19 @@ void Results::write_type(const std::string& type, TypeToMeasure& effects) const 
   write_json(path("type.json"), json);
 }
 
-void Results::forget_type() const {
-  std::error_code none;
-  fs::remove(path("type.json"), none);
+void Results::forget_type() const { forget(path("type.json")); }
+
+void Results::forget_done(const FleetGyro& gyro) const { forget(path(gyro, "gyro.json")); }
+
+void Results::forget_measured(const FleetGyro& gyro, const std::string& type_id) const {
+  forget(path(gyro, "measured-" + type_id + ".json"));
+}
+
+void Results::forget_with_prior(const FleetGyro& gyro) const { forget(path(gyro, "with_prior.toml")); }
+
+void Results::forget_population() const {
+  forget(path("fleet.json"));
+  forget(path("fleet.html"));
 }
 
 std::optional<GyroDone> Results::done(const FleetGyro& gyro) const {

@@ -68,6 +68,11 @@ class Results {
   // The effects get their id.
   void write_type(const std::string& type, TypeToMeasure& effects) const;
   void forget_type() const;
+  void forget_done(const FleetGyro& gyro) const;
+  void forget_measured(const FleetGyro& gyro, const std::string& type_id) const;
+  // What the population gave to the gyro, and what was written of the population.
+  void forget_with_prior(const FleetGyro& gyro) const;
+  void forget_population() const;
   void write_done(const FleetGyro& gyro, const GyroDone& done) const;
   void write_measured(const FleetGyro& gyro, const std::string& type_id, const GyroMeasured& measured) const;
 

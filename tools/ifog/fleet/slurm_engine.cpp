@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <sstream>
 #include <thread>
 
 #include "drivers/ifog/quoted.h"
@@ -35,6 +36,21 @@ std::string ranges_of(const std::vector<std::size_t>& numbers) {
     i = last + 1;
   }
   return text;
+}
+
+// Lines that are the id of a job or of an array's task, 12 or 12_3; what else there is are warnings.
+std::size_t jobs_in(const std::string& said) {
+  const auto number = [](const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  };
+  std::size_t jobs = 0;
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    const std::size_t task = line.find('_');
+    if (number(line.substr(0, task)) && (task == std::string::npos || number(line.substr(task + 1)))) ++jobs;
+  }
+  return jobs;
 }
 
 std::string first_line(const std::string& text) { return printable(text.substr(0, text.find('\n')), 300); }
@@ -83,9 +99,8 @@ class SlurmEngine : public Engine {
         "gyro=$((" +
         std::to_string(first) + " + SLURM_ARRAY_TASK_ID))\n";
     text += "cd " + shell_word(std::filesystem::current_path().string()) + " || exit 1\n";
-    text += "exec >>" + shell_word(folder_ + "/log/") + "\"$gyro.txt\" 2>&1\nexec";
-    for (const std::string& word : command_for_one()) text += " " + shell_word(word);
-    return text + " \"$gyro\"\n";
+    text += "exec >>" + shell_word(folder_ + "/log/") + "\"$gyro.txt\" 2>&1\nexec ";
+    return text + shell_command_for_one("\"$gyro\"") + "\n";
   }
 
   static void submit(const std::string& script) {
@@ -98,9 +113,9 @@ class SlurmEngine : public Engine {
   std::size_t under_way() {
     const auto since = std::chrono::steady_clock::now();
     for (;;) {
-      const Ran ran = run_to_end({"squeue", "--noheader", "--array", "--name=" + name_, "--format=%i"}, "");
-      if (ran.ended.empty())
-        return static_cast<std::size_t>(std::count(ran.said.begin(), ran.said.end(), '\n'));
+      const Ran ran =
+          run_to_end({"squeue", "--noheader", "--array", "--me", "--name=" + name_, "--format=%i"}, "");
+      if (ran.ended.empty()) return jobs_in(ran.said);
       if (Seconds(std::chrono::steady_clock::now() - since).count() > kPatience_s)
         throw std::runtime_error("squeue: " + ran.ended + ": " + first_line(ran.said));
       pause(kFirstPause_s);
