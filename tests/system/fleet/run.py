@@ -67,6 +67,41 @@ def check_the_daemons_code_takes_the_model(folder):
                    capture_output=True, timeout=100)
 
 
+def check_a_scale_factor_counts_from_the_bias(folder):
+    """The measured rate, which the daemon has, is the true one and the bias: what it corrects must not leave scale times bias."""
+    bias, scale = 5.0e-2, 3.0e-4
+    (folder / "table.scenario").write_text(f"""
+seed = 1
+sample_rate_hz = 10
+duration_s = 600
+bias_radps = {bias}
+axes = ["z"]
+reference = true
+reference_noise_radps = 1.0e-7
+noise = {{ N = 5.0e-7, B = 5.0e-8 }}
+[[motion]]
+axis = "z"
+kind = "rate_table"
+rates_radps = [0.0, 0.1, 0.5, 1.0, 0.0, -0.1, -0.5, -1.0]
+dwell_s = 20
+edge_s = 1.0
+[[effect]]
+form = "linear"
+channel = "rate"
+axis = "z"
+coefficient = {scale}
+""")
+    manifest = 'type = "T2"\n'
+    for seed in range(1, 7):
+        subprocess.run([IFOG, "simulate", "table.scenario", "--seed", str(seed), "--output", f"table{seed}.csv"], cwd=folder, check=True, capture_output=True)
+        manifest += f'[[gyro]]\nserial = "R{seed}"\ncaptures = ["table{seed}.csv"]\n'
+    (folder / "table.toml").write_text(manifest)
+    subprocess.run([IFOG, "fleet", "table.toml", "--engine", "local"], cwd=folder, check=True, capture_output=True, timeout=200)
+    for seed in range(1, 7):
+        (effect,) = [each for each in tomllib.loads((folder / f"table.results/gyros/R{seed}/with_prior.toml").read_text())["effect"] if each["form"] == "linear"]
+        assert abs(effect["parameter"][0]["value"] - scale) < 0.02 * scale and abs(effect["reference"] - bias) < 1e-3 * bias, effect
+
+
 def stamps(folder):
     return {path: path.stat().st_mtime_ns for path in (folder / "lot.results/gyros").rglob("gyro.json")}
 
@@ -272,7 +307,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         lot.make(IFOG, folder)
-        for check in (check_the_lot, check_single_diagnosis_is_the_same, check_the_daemons_code_takes_the_model, check_restart_takes_up_what_is_missing,
+        for check in (check_the_lot, check_single_diagnosis_is_the_same, check_the_daemons_code_takes_the_model, check_a_scale_factor_counts_from_the_bias, check_restart_takes_up_what_is_missing,
                       check_a_failed_gyro_is_one_line, check_a_damaged_result_is_made_again, check_a_measurement_of_other_inputs_is_none,
                       check_nothing_of_an_earlier_run_stays_when_none_is_diagnosed, check_another_option_is_another_diagnosis,
                       check_options_end_where_they_are_said_to, check_a_link_in_a_path_is_followed, check_what_squeue_warns_of_is_no_job,
