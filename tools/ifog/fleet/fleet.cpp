@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
@@ -136,7 +137,11 @@ class FleetRun {
     };
     const auto ended = run_missing(
         "diagnosing", [&] { return undiagnosed(); }, said_why);
-    for (const std::size_t gyro : undiagnosed()) {
+    diagnosed_ = gather_diagnosed(results_, manifest_, options_, population_.failed);
+    std::set<std::size_t> told(diagnosed_.gyros.begin(), diagnosed_.gyros.end());
+    for (const Population::Failure& each : population_.failed) told.insert(each.gyro);
+    for (std::size_t gyro = 0; gyro < manifest_.gyros.size(); ++gyro) {
+      if (told.count(gyro) > 0) continue;
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       const auto how = ended.find(gyro);
       std::string why = done && done->failed ? *done->failed
@@ -144,7 +149,6 @@ class FleetRun {
                                              : "its captures change while they are read";
       population_.failed.push_back({gyro, std::move(why)});
     }
-    diagnosed_ = gather_diagnosed(results_, manifest_, options_, population_.failed);
   }
 
   // The type's effects, measured on every gyro until what the measurements say of the choice is the choice.
