@@ -41,7 +41,7 @@ std::string packed_texts(const std::vector<std::string>& texts) {
 
 std::string packed_values(const std::vector<double>& values) {
   std::string out(values.size() * sizeof(double), '\0');
-  std::memcpy(out.data(), values.data(), out.size());
+  if (!values.empty()) std::memcpy(out.data(), values.data(), out.size());
   return out;
 }
 
