@@ -85,8 +85,10 @@ class Terminal:
         raise SystemExit(f"FAILED: {what}; on the screen:\n{self.text()}")
 
     def exit_code(self):
-        for _ in range(100):
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
             self.read(0.1)
+            time.sleep(0.02)  # the terminal is closed a moment before the program is gone
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
                 return os.waitstatus_to_exitcode(status)
