@@ -195,8 +195,13 @@ TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   rig.pipeline->start();
   const auto give = [&](std::size_t upto) {
     rig.transport->allowed_ = upto * kFrame;
-    while (rig.pipeline->reader().books().bytes_read < upto * kFrame) std::this_thread::sleep_for(1ms);
-    std::this_thread::sleep_for(5ms);  // the reader's turn goes on to the tape
+    const auto turns = [&] { return rig.pipeline->reader().counters().turns.value(); };
+    std::uint64_t before = turns();
+    while (rig.pipeline->reader().books().bytes_read < upto * kFrame) {
+      std::this_thread::sleep_for(1ms);
+      before = turns();
+    }
+    while (turns() == before) std::this_thread::sleep_for(1ms);  // the reader's turn ends behind the tape
   };
   std::vector<std::pair<std::string, bool>> messages;
   std::int64_t now_ns = 0;
