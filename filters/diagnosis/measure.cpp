@@ -20,18 +20,11 @@
 namespace ifog {
 namespace {
 
-struct Place {
-  std::size_t channel = Candidate::kNone;
-  std::string missing;  // why there is none
-};
-
-Place channel_named(const BlockData& data, const std::string& name) {
-  for (std::size_t i = 0; i < data.channels.size(); ++i) {
-    if (data.channels[i].name != name) continue;
-    if (!data.channels[i].varies) return {Candidate::kNone, name + " does not change in the captures"};
-    return {i, ""};
-  }
-  return {Candidate::kNone, "the captures have no " + name};
+// Why there is nothing to fit a coefficient by; empty where there is.
+std::string missing(const BlockData& data, const std::string& name) {
+  for (const FineChannel& channel : data.channels)
+    if (channel.name == name) return channel.varies ? "" : name + " does not change in the captures";
+  return "the captures have no " + name;
 }
 
 struct Named {
@@ -41,31 +34,19 @@ struct Named {
 
 Named candidate_named(const BlockData& data, const Effect& effect) {
   Named named;
-  Candidate& candidate = named.candidate;
   const std::optional<Form> form = form_named(effect.form);
-  if (!form || describes_noise(*form) || *form == Form::kLookup || *form == Form::kRebuiltRamp) {
+  if (form && has_channel(*form)) named.not_measured = missing(data, effect.channel);
+  if (form == Form::kProduct && named.not_measured.empty())
+    named.not_measured = missing(data, effect.with_channel);
+  if (!named.not_measured.empty()) return named;
+  const std::optional<Candidate> candidate = candidate_of(data, effect);
+  if (!candidate) {
     named.not_measured = "'" + effect.form + "' has no single coefficient to measure";
     return named;
   }
-  candidate.form = *form;
-  if (*form == Form::kEarthRate) {  // the regressor of acceleration
-    candidate.form = Form::kLinear;
-    candidate.first_reading = FirstReading::kEarthRateSubtracted;
-  }
-  if (has_channel(*form)) {
-    const Place place = channel_named(data, effect.channel);
-    candidate.channel = place.channel;
-    named.not_measured = place.missing;
-  }
-  if (*form == Form::kProduct) {
-    candidate.with_form = form_named(effect.with_form).value_or(Form::kLinear);
-    const Place place = channel_named(data, effect.with_channel);
-    candidate.with_channel = place.channel;
-    if (named.not_measured.empty()) named.not_measured = place.missing;
-  }
-  candidate.period = effect.period;
-  candidate.time_constant_s = parameter(effect, time_constant_name(*form));
-  candidate.second_time_constant_s = parameter(effect, "second_lag_s");
+  named.candidate = *candidate;
+  if (form == Form::kEarthRate)  // the regressor of acceleration
+    named.candidate.first_reading = FirstReading::kEarthRateSubtracted;
   return named;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A candidate as an effect of the model, and what its form costs.
+// A candidate as an effect of the model, and the other way; what its form costs.
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/meaning.h"
 
@@ -69,6 +69,35 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   effect.meaning =
       candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
   return effect;
+}
+
+std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect) {
+  const std::optional<Form> form = form_named(effect.form);
+  if (!form || *form == Form::kLookup || *form == Form::kRebuiltRamp || describes_noise(*form))
+    return std::nullopt;
+  Candidate candidate;
+  candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
+  const auto index = [&](const std::string& name) {
+    for (std::size_t i = 0; i < data.channels.size(); ++i) {
+      if (data.channels[i].name == name) return i;
+    }
+    return Candidate::kNone;
+  };
+  if (has_channel(*form)) {
+    candidate.channel = index(effect.channel);
+    if (candidate.channel == Candidate::kNone) return std::nullopt;
+  }
+  if (*form == Form::kProduct) {
+    candidate.with_form = form_named(effect.with_form).value_or(Form::kLinear);
+    candidate.with_channel = index(effect.with_channel);
+    if (candidate.with_channel == Candidate::kNone) return std::nullopt;
+  }
+  candidate.time_constant_s = parameter(effect, time_constant_name(effect));
+  candidate.second_time_constant_s = parameter(effect, "second_lag_s");
+  candidate.frequency_hz = parameter(effect, "frequency_hz");
+  candidate.period = effect.period;
+  candidate.half_width = parameter(effect, kHalfWidth);
+  return candidate;
 }
 
 }  // namespace ifog

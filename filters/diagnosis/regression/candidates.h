@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "filters/diagnosis/regression/whitening.h"
 
@@ -70,5 +71,8 @@ double complexity(const Candidate& candidate);
 
 // With names, references and units, coefficients still zero.
 Effect effect_of(const BlockData& data, const Candidate& candidate);
+// The other way. None of what has no regressor of its own (a table, a rebuilt ramp, a noise term), or where
+// the data lacks a channel of it.
+std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect);
 
 }  // namespace ifog

@@ -52,36 +52,6 @@ double along(const Weights& weights, const Eigen::VectorXd& column) {
   return sum;
 }
 
-// Nothing when the capture lacks a channel of it.
-std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect) {
-  const std::optional<Form> form = form_named(effect.form);
-  if (!form || *form == Form::kLookup || *form == Form::kRebuiltRamp || describes_noise(*form))
-    return std::nullopt;
-  Candidate candidate;
-  candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
-  const auto index = [&](const std::string& name) {
-    for (std::size_t i = 0; i < data.channels.size(); ++i) {
-      if (data.channels[i].name == name) return i;
-    }
-    return Candidate::kNone;
-  };
-  if (has_channel(*form)) {
-    candidate.channel = index(effect.channel);
-    if (candidate.channel == Candidate::kNone) return std::nullopt;
-  }
-  if (*form == Form::kProduct) {
-    candidate.with_form = form_named(effect.with_form).value_or(Form::kLinear);
-    candidate.with_channel = index(effect.with_channel);
-    if (candidate.with_channel == Candidate::kNone) return std::nullopt;
-  }
-  candidate.time_constant_s = parameter(effect, time_constant_name(effect));
-  candidate.second_time_constant_s = parameter(effect, "second_lag_s");
-  candidate.frequency_hz = parameter(effect, "frequency_hz");
-  candidate.period = effect.period;
-  candidate.half_width = parameter(effect, kHalfWidth);
-  return candidate;
-}
-
 // A capture as the correction sees it: channels held at the edge of what they were fitted on, or as far
 // beyond it as a polynomial form goes on.
 BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges, bool goes_on) {

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "filters/effects/form.h"
+
 namespace ifog {
 namespace {
 
@@ -100,6 +102,36 @@ TEST(Measure, InWhiteNoiseItIsLeastSquares) {
     EXPECT_NEAR(found.covariance[0], coefficient.std_error * coefficient.std_error,
                 1e-6 * found.covariance[0]);
   }
+}
+
+// A scale factor that follows a coil which lags its thermometer by 100 s of the temperature's 500.
+TEST(Measure, AProductIsMeasuredWithItsOwnLag) {
+  Sensor sensor(4);
+  constexpr double kScale = 1e-3, kLag_s = 100.0;
+  std::vector<double> reference;
+  double coil = sensor.temperature.front();
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    if (i > 0) coil += (1.0 - std::exp(-1.0 / kLag_s)) * (sensor.temperature[i] - coil);
+    reference.push_back(0.02 * std::sin(2.0 * M_PI * sensor.time_s[i] / 170.0));
+    sensor.rate[i] += reference[i] * (1.0 + kScale * (coil - 25.0));
+  }
+  Record record = sensor.record();
+  record.reference_radps = reference;
+  Effect effect;
+  effect.form = "product";
+  effect.channel = "reference_rate_radps";
+  effect.with_form = "lagged";
+  effect.with_channel = "temperature_degC";
+  effect.parameters = {{"coefficient", 0.0, 0.0, ""}};
+  effect.parameters.push_back({std::string(time_constant_name(effect)), kLag_s, 0.0, "s"});
+  EffectsToMeasure wanted;
+  wanted.together = {effect};
+  wanted.beside = {linear_in("temperature_degC"), linear_in("supply_V"), linear_in("reference_rate_radps")};
+  const MeasuredEffects found = measure_effects({record}, wanted, "");
+  ASSERT_TRUE(found.together[0].not_measured.empty()) << found.together[0].not_measured;
+  const ModelParameter& coefficient = found.together[0].effect.parameters.front();
+  EXPECT_LT(coefficient.std_error, 0.02 * kScale);
+  EXPECT_NEAR(coefficient.value, kScale, 4.0 * coefficient.std_error);
 }
 
 TEST(Measure, AnEffectThatIsNotThereIsMeasuredAsNone) {
