@@ -170,6 +170,9 @@ def check_a_node_dies(cluster):
     results = cluster.folder / "lot/lot.results"
     had = len(list(results.glob("gyros/*/gyro.json")))
     assert had < len(GYROS), "the lot was done before the node died"
+    # What was on the node waits for two minutes, in case the node is only slow to end it; this one is known to be dead.
+    wait_for("the task is queued again", lambda: "BeginTime" in cluster.ran("squeue", "-h", "-t", "PD", "-j", task, "-o", "%r").stdout, seconds=120)
+    cluster.ran("scontrol", "update", f"JobId={task}", "StartTime=now")
     assert run.wait(timeout=500) == 0, (cluster.folder / "said").read_text()
     document = json.loads((results / "fleet.json").read_text())
     assert document["failed"] == [] and document["gyros"] == GYROS, document["failed"]
