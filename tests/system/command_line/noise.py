@@ -64,6 +64,8 @@ class Noise:
         refused(1, "allan", self.capture, "--estimator", "hadamard", "--tau", math.ceil(third) + 1,
                 says=["Hadamard deviation", f"to {math.floor(third * RATE_HZ) / RATE_HZ:.6g} s"])
         refused(1, "allan", self.capture, "--tau", SECONDS / 2 + 1, says=["overlapping deviation", f"to {SECONDS // 2} s"])
+        for tau in ("1e20", "1e-20", "1e308"):  # of more samples than a number of them can be
+            refused(1, "allan", self.capture, "--tau", tau, says=["outside what the overlapping deviation", f"to {SECONDS // 2} s"])
         for estimator in ("overlapping", "modified", "hadamard"):
             found = self.json("allan", self.capture, "--estimator", estimator, "--tau", math.floor(third))["axes"][0]
             assert 0 < found["lower_radps"][0] < found["adev_radps"][0] < found["upper_radps"][0], found

@@ -8,6 +8,8 @@ usage: streams.py PATH_OF_IFOG SOURCE_DIR
 import gzip
 import json
 import os
+import resource
+import shutil
 import signal
 import stat
 import subprocess
@@ -236,6 +238,34 @@ class Checks:
         refused(2, "allan", self.capture, "--plot", folder / "p.jpeg", says=[".svg or .png"])
         refused(1, "allan", self.capture, "--plot", folder / "no" / "p.svg", says=["No such file"])
         assert not os.listdir(folder), os.listdir(folder)
+
+    # --- a computer that has no room for another thread ---
+
+    def check_no_thread_to_be_had(self):
+        """What is worked on side by side elsewhere is done by the one thread there is, to the same bytes."""
+        folder = self.fresh("alone")
+        program = shutil.copy(IFOG, folder)
+        long = folder / "long.csv"  # read in more pieces than one
+        long.write_text("time_s,rate_radps\n" + "".join(f"{i / 100},{(i * 2654435761 % 1000003) / 1e9}\n" for i in range(40000)))
+        for path in (self.folder, folder, program):
+            os.chmod(path, 0o755)
+        other = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}  # to root the limit is none
+
+        def alone(words):
+            return subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120, check=False, **other,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NPROC, (1, 1)))  # noqa: PLW1509
+
+        started = alone([sys.executable, "-c", "import threading; threading.Thread(target=int).start()"])
+        assert b"can't start new thread" in started.stderr, "the limit is none here"
+        for command in (["allan", long, "--json", "-"], ["tune", long, "--json", "-"], ["denoise", long, "--output", "-"]):
+            usual, result = ran(*command), alone([program, *map(str, command)])
+            assert result.returncode == usual.returncode == 0, f"{command}: {result.stderr}"
+            assert result.stdout == usual.stdout.encode(), command
+        packed = folder / "long.h5"
+        ifog("convert", long, packed)
+        result = alone([program, "allan", packed])
+        assert result.returncode == 1
+        one_line(result.stderr.decode(), str(packed), "no process to read it")
 
     # --- names that are more than names ---
 
