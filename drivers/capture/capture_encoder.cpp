@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -14,8 +13,6 @@
 
 namespace ifog {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::string seven_digits(double value) {
   char text[32];

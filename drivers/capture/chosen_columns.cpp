@@ -14,8 +14,6 @@
 namespace ifog {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 // The unit that the column's name ends in.
 std::string_view unit_of(const std::string& name) {
   return std::string_view(name).substr(name.rfind('_') + 1);

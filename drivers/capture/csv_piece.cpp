@@ -14,8 +14,6 @@
 namespace ifog {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell,
               bool decimal_comma) {
   cell = unquoted(cell);

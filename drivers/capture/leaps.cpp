@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
 namespace ifog {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSlowest_s = 0.1;     // between samples
 constexpr double kStandstill = 0.01;   // of the leap, the most beside it
 constexpr std::size_t kEnough = 2001;  // rows that show the sample time

@@ -4,16 +4,19 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace ifog {
 
+// In a column: no value in this row.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
 // Rows that follow one another, by column.
 struct RowBlock {
-  std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN
-  std::vector<std::vector<double>>
-      columns;  // in the order of the names, each as long as time_s; NaN: missing
+  std::vector<double> time_s;                // strictly increasing, within and from block to block; never NaN
+  std::vector<std::vector<double>> columns;  // in the order of the names, each as long as time_s
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
