@@ -12,11 +12,15 @@ import json
 import math
 import os
 import subprocess
+import sys
 import threading
 import time
 
 import frames
 from machine import Failure
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "field"))
+import slow_gyro  # noqa: E402
 
 HZ = 2
 ROWS = 1 << 15  # of a day, 4.6 h
@@ -24,29 +28,6 @@ MEANS_S = 100
 PER_HOUR = 180 / math.pi * 3600
 # Times faster: 2000 rows a second, which an emulated processor carries; half as many where a receiver of every message has to.
 SPEED = {1: 1000, 2: 500}
-SCENARIO = f"""
-name = "undeclared"
-sample_rate_hz = {HZ}
-duration_s = {2 * ROWS / HZ}
-bias_radps = 5.0e-5
-[noise]
-N = 2.5e-8
-B = 2.0e-9
-[[channel]]
-name = "temperature_degC"
-shape = "cycle"
-level = 27.0
-amplitude = 4.0
-period_s = 2700
-noise = 0.02
-resolution = 0.01
-every_s = 1.0
-[[effect]]
-form = "linear"
-channel = "temperature_degC"
-coefficient = 2.0e-8
-reference = 25.0
-"""
 # How good a ratio of two errors is known: by some 49 means that promise it, and 163 that find it, of noise that is not white.
 RATIO_WITHIN = 0.45
 
@@ -90,7 +71,7 @@ def make_days(build, folder):
     dbc = os.path.abspath(os.path.join(here, "../../../drivers/dbc/examples/ifogd_gyro.dbc"))
     environment = dict(os.environ, IFOG_PLUGIN_PATH=os.path.join(build, "plugins"))
     with open(os.path.join(folder, "gyro.toml"), "w") as file:
-        file.write(SCENARIO)
+        file.write(slow_gyro.scenario(HZ, 2 * ROWS / HZ))
     both = os.path.join(folder, "days")
     words = [word for key, value in options(dbc).items() for word in ("--option", f"{key}={value}")]
     for command in (["simulate", os.path.join(folder, "gyro.toml"), "--seed", "41", "--output", both + ".csv"],

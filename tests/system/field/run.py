@@ -25,6 +25,8 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "command_line"))
 import schema  # noqa: E402
 
+import slow_gyro  # noqa: E402
+
 HZ = 10
 ROWS = 2 << 16  # of a day, 3.6 h: the frames' counter, of 16 bits, goes on from one to the next
 DAY_S = ROWS / HZ
@@ -41,29 +43,6 @@ def document(path):
     return out
 
 
-SCENARIO = f"""
-name = "undeclared"
-sample_rate_hz = {HZ}
-duration_s = {DAY_S}
-bias_radps = 5.0e-5
-[noise]
-N = 2.5e-8
-B = 2.0e-9
-[[channel]]
-name = "temperature_degC"
-shape = "cycle"
-level = 27.0
-amplitude = 4.0
-period_s = 2700
-noise = 0.02
-resolution = 0.01
-every_s = 1.0
-[[effect]]
-form = "linear"
-channel = "temperature_degC"
-coefficient = 2.0e-8
-reference = 25.0
-"""
 
 
 # Of a sensor that is switched on with the computer: long past where this runs, so the time constant is long, too.
@@ -133,7 +112,7 @@ class Field:
 
     def make(self):
         with open(self.path("gyro.toml"), "w") as file:
-            file.write(SCENARIO)
+            file.write(slow_gyro.scenario(HZ, DAY_S))
         dbc = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../drivers/dbc/examples/ifogd_gyro.dbc")
         options = {"dbc": os.path.abspath(dbc), "signal": "Rate_x", "counter": "Counter", "rate_hz": HZ,
                    "environment": "temperature_degC=Temperature"}
