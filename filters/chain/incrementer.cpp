@@ -9,12 +9,13 @@ namespace ifog {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLongSilence_s = 2.0;
 constexpr double kClockMemory_s = 20.0;
 // A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
 // turn.
 constexpr double kPrompt_s = 0.05;
-// A step of counter or clock that exceeds what the arrival times allow by this much is a restart of the
+constexpr double kPace = 0.75;      // of the period, and samples are not held up any more
+constexpr double kSetBack_s = 1.0;  // of the times of arrival: more than any order of delivery
+// A step of the device's clock that exceeds what the arrival times allow by this much is a restart of the
 // device.
 constexpr double kRestart_s = 10.0;
 constexpr double kRestartFactor = 1.5;
@@ -52,7 +53,8 @@ void merge(Increment& into, const Increment& later) noexcept {
 Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
-      clock_(period_s_, clock_memory(facts.nominal_rate_hz)) {
+      clock_(period_s_, clock_memory(facts.nominal_rate_hz)),
+      count_(std::max<std::uint32_t>(facts.sequence_modulus, 1), period_s_) {
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
@@ -65,22 +67,23 @@ double Incrementer::clock_offset_ppm() const noexcept {
   return clock_.settled() ? (clock_.period_s() / period_s_ - 1.0) * 1e6 : 0.0;
 }
 
-Incrementer::Step Incrementer::step_by_counter(const Reading& reading, double elapsed_s) const noexcept {
-  const std::uint64_t modulus = facts_.sequence_modulus;
-  const std::uint64_t difference = (reading.sequence + modulus - last_.sequence) % modulus;
-  const double elapsed = elapsed_s / period_s_;
-  const double round = static_cast<double>(modulus);
-  Step step;
-  step.samples = difference;
-  // A gap shows, or the silence was too long for a late delivery: then the arrival times count the full
-  // rounds.
-  // So do they at the end of a backlog, whose own times were not known.
-  const bool after_backlog = last_.arrival_ns == 0 && elapsed_s > kPrompt_s;
-  if (elapsed_s > 0.0 && (difference != 1 || reopened_ || elapsed_s > kLongSilence_s || after_backlog)) {
-    const double rounds = std::floor((elapsed - static_cast<double>(difference)) / round + 0.5);
-    if (rounds > 0.0) step.samples += static_cast<std::uint64_t>(rounds) * modulus;
-  }
-  if (step.samples == 0) {
+DeviceCount::Frame Incrementer::frame_of(const Reading& reading, double elapsed_s) const noexcept {
+  DeviceCount::Frame frame;
+  frame.sequence = reading.sequence;
+  frame.device_time_ns = reading.device_time_ns;
+  frame.elapsed_s = elapsed_s;
+  frame.timed = known_arrival_ns_ > 0;
+  frame.reopened = reopened_;
+  frame.after_backlog = last_.arrival_ns == 0 && elapsed_s > kPrompt_s;
+  return frame;
+}
+
+Incrementer::Step Incrementer::step_by_counter(const Reading& reading,
+                                               const DeviceCount::Frame& frame) const noexcept {
+  const DeviceCount::Step counted = count_.look(frame);
+  Step step{counted.samples,     counted.dt_s,        counted.gap,   counted.restarted,
+            counted.out_of_turn, counted.clock_moved, counted.late_s};
+  if (step.samples == 0 && !step.repeated) {
     // The same counter again, too soon for a full round. CAN may deliver a frame twice; a device whose
     // counter stands still yet measures is followed.
     step.repeated = true;
@@ -89,17 +92,7 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading, double el
       if (!same(reading.value[axis], last_.value[axis])) step.repeated = false;
     }
     step.samples = 1;
-    step.gap = true;
   }
-  const double claimed_s = static_cast<double>(step.samples) * period_s_;
-  const bool backwards = known_arrival_ns_ == 0 && difference > modulus / 2;  // no arrival times to ask, ever
-  if (step.samples > 1 &&
-      ((elapsed_s >= 0.0 && claimed_s > kRestartFactor * elapsed_s + kRestart_s) || backwards)) {
-    step.samples = elapsed_s > 0.0 ? at_least_one(elapsed) : 1;
-    step.restarted = true;
-  }
-  step.gap = step.gap || step.samples > 1 || step.restarted;
-  step.dt_s = static_cast<double>(step.samples) * period_s_;
   return step;
 }
 
@@ -119,45 +112,48 @@ Incrementer::Step Incrementer::step_by_clock(const Reading& reading, double elap
 }
 
 Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double elapsed_s) const noexcept {
-  // Nothing counts, so only a silence that scheduling does not explain is a gap.
+  // Nothing counts, so only a silence that scheduling does not explain is a gap, and only when what comes
+  // behind it was not held up with the sample that ended it.
   Step step;
   const double period_s = clock_.period_s();
   const double late_s = clock_.lateness_s(1, reading.arrival_ns);
-  if (elapsed_s > 0.0 && (reopened_ || late_s > std::max(0.25, 20.0 * period_s))) {
+  const bool late = elapsed_s >= 0.0 && late_s > std::max(0.25, 20.0 * period_s);
+  if (elapsed_s > 0.0 && reopened_)
     step.samples = at_least_one(elapsed_s / period_s);
-    step.gap = step.samples > 1;
-  }
+  else if (late && late_s_ > 0.0 && elapsed_s >= kPace * period_s)
+    step.samples = at_least_one(late_s / period_s + 1.0);
+  else if (late)
+    step.late_s = late_s;
+  step.gap = step.samples > 1;
   step.dt_s = static_cast<double>(step.samples) * period_s;
   return step;
 }
 
-Incrementer::Step Incrementer::step(const Reading& reading) const noexcept {
-  // Since the sample before. Where the arrival of that one is not known, time is taken from the latest one
-  // that is, less what has been counted since.
-  const bool timed = reading.arrival_ns > 0 && known_arrival_ns_ > 0;
-  const double elapsed_s =
-      timed ? std::max(0.0, static_cast<double>(reading.arrival_ns - known_arrival_ns_) * 1e-9 - counted_s_)
-            : -1.0;
-  const bool counts = reading.has_sequence && facts_.sequence_modulus > 0;
-  const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
+// Since the sample before, by arrival; negative: not known. Where the arrival of that one is not known, time
+// is taken from the latest one that is, less what has been counted since.
+double Incrementer::elapsed_s(const Reading& reading) const noexcept {
+  if (reading.arrival_ns <= 0 || known_arrival_ns_ <= 0) return -1.0;
+  return std::max(0.0, static_cast<double>(reading.arrival_ns - known_arrival_ns_) * 1e-9 - counted_s_);
+}
+
+Incrementer::Step Incrementer::step(const Reading& reading) noexcept {
+  const double elapsed = elapsed_s(reading);
   Step step;
-  if (counts) {
-    step = step_by_counter(reading, elapsed_s);
-    if (clocked && !step.repeated && !step.restarted) {
-      const Step by_clock = step_by_clock(reading, elapsed_s);
-      // The clock resolves full rounds of the counter exactly.
-      const std::uint64_t modulus = facts_.sequence_modulus;
-      if (!by_clock.restarted) {
-        step.dt_s = by_clock.dt_s;
-        if (by_clock.samples > step.samples + modulus / 2)
-          step.samples += (by_clock.samples - step.samples + modulus / 2) / modulus * modulus;
-      }
-      step.gap = step.gap || by_clock.restarted || step.samples > 1;
-      step.restarted = by_clock.restarted;
-    }
+  if (reading.has_sequence && facts_.sequence_modulus > 0) {
+    const DeviceCount::Frame frame = frame_of(reading, elapsed);
+    step = step_by_counter(reading, frame);
+    if (!step.repeated)
+      count_.take(frame,
+                  {step.samples, step.dt_s, step.gap, step.restarted, false, step.clock_moved, step.late_s});
   } else {
-    step = clocked ? step_by_clock(reading, elapsed_s) : step_by_arrival(reading, elapsed_s);
+    const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
+    step = clocked ? step_by_clock(reading, elapsed) : step_by_arrival(reading, elapsed);
+    late_s_ = step.late_s;
   }
+  // A clock that was set back says nothing of what has passed.
+  if (reading.arrival_ns > 0 &&
+      static_cast<double>(known_arrival_ns_ - reading.arrival_ns) * 1e-9 > kSetBack_s)
+    step.clock_moved = true;
   if (reopened_) step.gap = true;
   return step;
 }
@@ -252,6 +248,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   } else {
     now.dt_s = period_s_;
     sequence_ = reading.has_sequence ? reading.sequence : 0;
+    count_.first(frame_of(reading, -1.0));
   }
   out.flags = 0;
   if (started_ && now.gap) {
@@ -273,13 +270,16 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.arrival_ns = reading.arrival_ns;
   out.came_ns = reading.came_ns;
   out.wall_shift_ns = reading.wall_shift_ns;
-  if (started_ && reading.wall_shift_ns != last_.wall_shift_ns) {
+  if (now.clock_moved) clock_.restart();
+  if (started_ && (now.clock_moved || reading.wall_shift_ns != last_.wall_shift_ns)) {
     out.flags |= kClockStep;
     ++counts_.clock_steps;
   }
   out.device_time_ns = reading.device_time_ns;
   out.dt_s = now.dt_s;
-  out.utime_ns = clock_.advance(now.samples, reading.arrival_ns) + reading.wall_shift_ns;
+  // What is held up on its way says nothing of the clock.
+  out.utime_ns =
+      clock_.advance(now.samples, now.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
   if (reading.arrival_ns > 0) {
     known_arrival_ns_ = reading.arrival_ns;
     counted_s_ = 0.0;

@@ -5,14 +5,15 @@
 // counter; the fitted period for a device that has neither. So a replay of the same frames gives the same
 // bits, whatever the scheduling did to arrival times, for every device that counts.
 //
-// The counter says how many samples are missing only modulo its range; where a gap shows, the arrival times
-// say how often it went round. Exactly one full round lost within kLongSilence_s cannot be told from a late
-// delivery and is taken for one.
+// How many samples are missing: drivers/ifog/device_count.h for a device that counts. Of one that does not, a
+// silence is a gap when what follows comes at its pace; what comes at once was held up on its way, and
+// nothing of it is missing.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "drivers/ifog/device_count.h"
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
@@ -20,16 +21,16 @@
 namespace ifog {
 
 struct IncrementerCounts {
-  std::uint64_t samples = 0;              // increments made
-  std::uint64_t gaps = 0;                 // places where samples are missing
-  std::uint64_t missing = 0;              // samples missing
-  std::uint64_t repeated = 0;             // samples left out because they came twice
-  std::uint64_t restarts = 0;             // device counter or clock jumped back: it was switched off and on
-  std::uint64_t invalid = 0;              // samples with an axis that may not be used
-  std::uint64_t saturated = 0;            // of those: at or beyond full scale
-  std::uint64_t implausible = 0;          // of those: marked good, but a value that cannot be
+  std::uint64_t samples = 0;      // increments made
+  std::uint64_t gaps = 0;         // places where samples are missing
+  std::uint64_t missing = 0;      // samples missing
+  std::uint64_t repeated = 0;     // samples left out because they came twice, or after one that follows
+  std::uint64_t restarts = 0;     // device counter or clock jumped back: it was switched off and on
+  std::uint64_t invalid = 0;      // samples with an axis that may not be used
+  std::uint64_t saturated = 0;    // of those: at or beyond full scale
+  std::uint64_t implausible = 0;  // of those: marked good, but a value that cannot be
   std::uint64_t channel_implausible = 0;  // values of channels that cannot be; the one before is held
-  std::uint64_t clock_steps = 0;          // times the wall clock was set: labels moved, nothing else
+  std::uint64_t clock_steps = 0;          // times the clock of the labels was set: they moved, nothing else
 };
 
 class Incrementer {
@@ -53,9 +54,13 @@ class Incrementer {
     bool gap = false;
     bool restarted = false;
     bool repeated = false;
+    bool clock_moved = false;  // the times of arrival have moved against the count, for good
+    double late_s = 0.0;       // later than the count, and nothing decided yet
   };
-  [[nodiscard]] Step step(const Reading& reading) const noexcept;
-  [[nodiscard]] Step step_by_counter(const Reading& reading, double elapsed_s) const noexcept;
+  [[nodiscard]] double elapsed_s(const Reading& reading) const noexcept;
+  [[nodiscard]] Step step(const Reading& reading) noexcept;
+  [[nodiscard]] DeviceCount::Frame frame_of(const Reading& reading, double elapsed_s) const noexcept;
+  [[nodiscard]] Step step_by_counter(const Reading& reading, const DeviceCount::Frame& frame) const noexcept;
   [[nodiscard]] Step step_by_clock(const Reading& reading, double elapsed_s) const noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading, double elapsed_s) const noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
@@ -65,11 +70,13 @@ class Incrementer {
   SensorFacts facts_;
   double period_s_;
   FittedClock clock_;
+  DeviceCount count_;  // of a device that counts
   bool started_ = false;
   bool reopened_ = false;
   Reading last_;
   std::int64_t known_arrival_ns_ = 0;  // latest arrival time that is known; 0: none yet
   double counted_s_ = 0.0;             // steps since then
+  double late_s_ = 0.0;                // of the last sample, undecided; of a device that does not count
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle

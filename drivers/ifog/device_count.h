@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many samples a device has taken from one frame to the next: by the counter that it sends, by its clock
+// where it has one, and by the times at which its frames came.
+//
+// The counter goes round. How often it did, the device's clock says; else the times of arrival, where whole
+// rounds fit the time to what those times and the rate are worth. A frame that comes late by more than
+// kLate_s and continues the count is either late, and then what follows was held up with it and comes at
+// once, or whole rounds were lost, and then what follows comes at its pace: that is decided when the next one
+// comes at its pace, and what was lost is counted there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace ifog {
+
+class DeviceCount {
+ public:
+  struct Frame {
+    std::uint32_t sequence = 0;
+    std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; -1: it has none
+    double elapsed_s = -1.0;           // since the frame before, by arrival; negative: not known
+    bool timed = true;                 // some arrival time has been known
+    bool reopened = false;             // the device was closed and opened in between
+    bool after_backlog = false;        // first of known arrival behind frames that were read late
+  };
+  struct Step {
+    std::uint64_t samples = 1;  // since the frame before; 0: the same count again, too soon for a round
+    double dt_s = 0.0;          // they took; by the device's clock where that agrees
+    bool gap = false;
+    bool restarted = false;    // counter or clock jumped: it was switched off and on
+    bool out_of_turn = false;  // came again, or after one that follows it; all else here says nothing
+    bool clock_moved = false;  // the times of arrival have moved against the count, for good
+    double late_s = 0.0;       // so much later than the count, undecided
+  };
+
+  // modulus: the counter's, > 0. period_s > 0.
+  DeviceCount(std::uint64_t modulus, double period_s) noexcept : modulus_(modulus), nominal_s_(period_s) {}
+
+  void first(const Frame& frame) noexcept { begin(frame); }
+  // Of the next frame; changes nothing.
+  [[nodiscard]] Step look(const Frame& frame) const noexcept {
+    Step step;
+    const std::uint64_t difference = (frame.sequence + modulus_ - last_.sequence % modulus_) % modulus_;
+    if (out_of_turn(frame, difference)) {
+      step.out_of_turn = true;
+      return step;
+    }
+    if (!by_clock(frame, difference, step)) by_arrival(frame, difference, step);
+    step.gap = step.gap || step.samples > 1 || step.restarted || frame.reopened;
+    return step;
+  }
+  // Of a frame that is used.
+  void take(const Frame& frame, const Step& step) noexcept {
+    if (step.restarted) {
+      begin(frame);
+      return;
+    }
+    const std::uint64_t samples = std::max<std::uint64_t>(step.samples, 1);
+    had_ = samples < 64 ? had_ << samples | 1U : 1U;
+    if (step.gap || step.clock_moved) {
+      took_s_ = counted_s_ = 0.0;
+    } else if (frame.elapsed_s >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0) {
+      const double counted_s = static_cast<double>(samples) * nominal_s_;
+      took_s_ += frame.elapsed_s;
+      counted_s_ += counted_s;
+      jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(frame.elapsed_s - counted_s), kLate_s));
+    }
+    last_ = frame;
+    late_s_ = step.late_s;
+  }
+
+ private:
+  // A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
+  // turn.
+  static constexpr double kPrompt_s = 0.05;
+  static constexpr double kLate_s = 1.0;
+  static constexpr double kPace = 0.75;  // of the period, and frames are not held up any more
+  // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
+  static constexpr double kRateDoubt = 0.05;
+  static constexpr double kLeastDoubt = 2e-5;
+  static constexpr double kEnough = 64;  // periods, and the rate is measured
+  static constexpr double kForgets = 0.9998;
+  // A step of counter or clock that exceeds what the arrival times allow by this much is a restart of the
+  // device.
+  static constexpr double kRestart_s = 10.0;
+  static constexpr double kRestartFactor = 1.5;
+  // Clock and counter of one device agree within this.
+  static constexpr double kClockSamples = 2.0;
+  static constexpr double kClockDoubt = 0.01;
+
+  void begin(const Frame& frame) noexcept {
+    had_ = 1;
+    late_s_ = took_s_ = counted_s_ = jitter_s_ = 0.0;
+    last_ = frame;
+  }
+
+  [[nodiscard]] bool measured() const noexcept { return counted_s_ >= kEnough * nominal_s_ && took_s_ > 0.0; }
+  [[nodiscard]] double period_s() const noexcept {
+    return measured() ? nominal_s_ * std::clamp(took_s_ / counted_s_, 0.5, 2.0) : nominal_s_;
+  }
+  [[nodiscard]] double rate_doubt() const noexcept {
+    return measured() ? std::min(kRateDoubt, kLeastDoubt + 2.0 * jitter_s_ / took_s_) : kRateDoubt;
+  }
+
+  // Came again, or after one that follows it: the count goes back by little, and on from there to here there
+  // was no time.
+  [[nodiscard]] bool out_of_turn(const Frame& frame, std::uint64_t difference) const noexcept {
+    const std::uint64_t back = modulus_ - difference;
+    if (frame.elapsed_s < 0.0 || frame.reopened || difference == 0 || back >= 64) return false;
+    if (frame.device_time_ns >= 0 && last_.device_time_ns >= 0 &&
+        frame.device_time_ns >= last_.device_time_ns)
+      return false;
+    const double forward_s = static_cast<double>(difference) * nominal_s_;
+    const bool had = (had_ >> back & 1U) != 0;
+    return had ? forward_s > frame.elapsed_s + late_s_ + kPrompt_s
+               : frame.elapsed_s + late_s_ < 0.5 * forward_s;
+  }
+
+  // False where there is no clock, or it does not agree with the counter.
+  [[nodiscard]] bool by_clock(const Frame& frame, std::uint64_t difference, Step& step) const noexcept {
+    if (frame.device_time_ns < 0 || last_.device_time_ns < 0) return false;
+    const double passed_s = static_cast<double>(frame.device_time_ns - last_.device_time_ns) * 1e-9;
+    const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
+    const auto counted = static_cast<double>(difference);
+    const double samples = passed_s / nominal_s_;
+    const double rounds = std::max(0.0, std::round((samples - counted) / static_cast<double>(modulus_)));
+    const double claimed = counted + rounds * static_cast<double>(modulus_);
+    const bool agrees = std::abs(claimed - samples) <= kClockSamples + kClockDoubt * std::abs(samples);
+    const bool possible = elapsed_s < 0.0 || passed_s <= kRestartFactor * elapsed_s + kRestart_s;
+    if (passed_s <= 0.0 || (!possible && difference != 1)) {
+      step.restarted = difference != 0 || passed_s < 0.0;
+      if (!step.restarted) return false;  // the same frame again
+      step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
+      step.dt_s = static_cast<double>(step.samples) * nominal_s_;
+      return true;
+    }
+    if (!possible) return false;  // the clock alone has jumped
+    // Where they disagree, the times of arrival say which of them to follow.
+    if (!agrees && elapsed_s >= 0.0 && std::abs(passed_s - elapsed_s) > kPrompt_s + kRateDoubt * elapsed_s)
+      return false;
+    step.samples = static_cast<std::uint64_t>(claimed);
+    step.dt_s = passed_s;
+    if (elapsed_s >= 0.0) lateness(frame, elapsed_s - passed_s, passed_s, step);
+    return true;
+  }
+
+  // How far behind its clock a frame is that is held up; it is over when they come at their pace.
+  void lateness(const Frame& frame, double late_s, double passed_s, Step& step) const noexcept {
+    if (late_s_ > 0.0 && frame.elapsed_s >= kPace * passed_s)
+      step.clock_moved = late_s > kLate_s;
+    else if (late_s_ > 0.0 || late_s > kLate_s)
+      step.late_s = std::max(0.0, late_s);
+  }
+
+  // Whole rounds of the counter in a time; 0 where no number of them fits it.
+  [[nodiscard]] double rounds_in(double spare_s, double elapsed_s, bool sure) const noexcept {
+    const double round_s = static_cast<double>(modulus_) * period_s();
+    const double rounds = std::floor(spare_s / round_s + 0.5);
+    if (rounds < 1.0 || rounds > 1e12) return 0.0;
+    const double slack_s = kPrompt_s + rate_doubt() * elapsed_s;
+    return sure || std::abs(spare_s - rounds * round_s) <= slack_s ? rounds : 0.0;
+  }
+
+  void by_arrival(const Frame& frame, std::uint64_t difference, Step& step) const noexcept {
+    const double period = period_s();
+    const bool known = frame.elapsed_s >= 0.0;
+    const double elapsed_s = frame.elapsed_s + late_s_;
+    step.samples = difference;
+    step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_s_;
+    const bool settles =
+        late_s_ > 0.0 &&
+        frame.elapsed_s >= kPace * period * static_cast<double>(std::max<std::uint64_t>(difference, 1));
+    if (known && elapsed_s > 0.0 && (difference != 1 || frame.reopened || frame.after_backlog || settles)) {
+      const double rounds = rounds_in(step.late_s, elapsed_s, frame.reopened);
+      step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
+      step.clock_moved = rounds == 0.0 && settles && difference == 1 && step.late_s > kLate_s;
+      if (rounds > 0.0 || settles) step.late_s = 0.0;
+    }
+    if (late_s_ == 0.0 && step.late_s < std::max(kLate_s, 3.0 * period)) step.late_s = 0.0;
+    if (step.samples == 0) {
+      step.late_s = late_s_;
+      step.gap = true;
+      step.dt_s = nominal_s_;
+      return;
+    }
+    const double claimed_s = static_cast<double>(step.samples) * nominal_s_;
+    const bool backwards = !frame.timed && difference > modulus_ / 2;  // no arrival times to ask, ever
+    if (step.samples > 1 && ((known && claimed_s > kRestartFactor * elapsed_s + kRestart_s) || backwards)) {
+      step.samples = known && elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
+      step.restarted = true;
+      step.late_s = 0.0;
+    }
+    step.dt_s = static_cast<double>(step.samples) * nominal_s_;
+  }
+
+  static std::uint64_t at_least_one(double samples) noexcept {
+    return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18))) : 1;
+  }
+
+  std::uint64_t modulus_;
+  double nominal_s_;
+  Frame last_;
+  std::uint64_t had_ = 1;  // bit i: the sample i before the last one came
+  double late_s_ = 0.0;    // the last frame, undecided
+  double took_s_ = 0.0,
+         counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
+  double jitter_s_ = 0.0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is late, lost, out of turn or begun anew, told from each other: a device of 100 Hz whose truth is
+// known, and whose frames come as a network, a bus or a recording brings them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "filters/chain/incrementer.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kRate_hz = 100.0;
+constexpr double kPeriod_s = 0.01;
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr double kTurning = 0.1;  // rad/s
+
+enum class Tells { nothing, counter, counter_and_clock };
+
+struct Sent {
+  std::uint64_t number;
+  double arrives_s;
+  double device_s;
+  std::uint32_t sequence;
+};
+
+struct Got {
+  IncrementerCounts counts;
+  double angle_rad = 0.0, dt_s = 0.0, covered_s = 0.0;
+  std::uint64_t clock_steps = 0;
+  bool backwards = false;      // a label before the one before it
+  double worst_label_s = 0.0;  // of the last second, against when the sample was taken
+};
+
+SensorFacts facts_of(Tells tells, std::uint32_t modulus) {
+  SensorFacts facts;
+  facts.nominal_rate_hz = kRate_hz;
+  facts.sequence_modulus = tells == Tells::nothing ? 0 : modulus;
+  return facts;
+}
+
+std::vector<Sent> on_time(std::uint64_t samples, std::uint32_t modulus = 128) {
+  std::vector<Sent> out;
+  for (std::uint64_t n = 0; n < samples; ++n) {
+    const double at = static_cast<double>(n) * kPeriod_s;
+    const double jitter_s = 1e-4 * static_cast<double>(n * 7919 % 101) / 101.0;
+    out.push_back({n, at + jitter_s, at, static_cast<std::uint32_t>(n % modulus)});
+  }
+  return out;
+}
+
+// All that comes from `begin` to `end` comes at `end`, in order.
+void hold(std::vector<Sent>& frames, double begin_s, double end_s) {
+  for (Sent& frame : frames)
+    if (frame.arrives_s >= begin_s && frame.arrives_s < end_s) frame.arrives_s = end_s;
+}
+void lose(std::vector<Sent>& frames, std::uint64_t first, std::uint64_t count) {
+  std::erase_if(frames,
+                [&](const Sent& frame) { return frame.number >= first && frame.number < first + count; });
+}
+
+Got run(const std::vector<Sent>& frames, Tells tells, std::uint32_t modulus = 128) {
+  Incrementer incrementer(facts_of(tells, modulus));
+  Got got;
+  Increment increment;
+  std::int64_t last_ns = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Sent& frame = frames[i];
+    Reading reading;
+    reading.arrival_ns = kStart_ns + std::llround(frame.arrives_s * 1e9);
+    reading.valid_axes = 1;
+    reading.value[0] = kTurning;
+    reading.has_sequence = tells != Tells::nothing;
+    reading.sequence = frame.sequence;
+    if (tells == Tells::counter_and_clock) reading.device_time_ns = std::llround(frame.device_s * 1e9);
+    if (!incrementer.next(reading, increment)) continue;
+    got.angle_rad += increment.delta_theta_rad[0];
+    got.dt_s += increment.dt_s;
+    got.covered_s += increment.covered_s[0];
+    got.clock_steps += (increment.flags & kClockStep) != 0 ? 1 : 0;
+    got.backwards = got.backwards || increment.utime_ns < last_ns;
+    last_ns = increment.utime_ns;
+    if (i + 100 >= frames.size())
+      got.worst_label_s = std::max(
+          got.worst_label_s, std::abs(static_cast<double>(increment.utime_ns - reading.arrival_ns) * 1e-9));
+  }
+  got.counts = incrementer.counts();
+  return got;
+}
+
+class HeldUp : public testing::TestWithParam<Tells> {};
+INSTANTIATE_TEST_SUITE_P(Devices, HeldUp,
+                         testing::Values(Tells::nothing, Tells::counter, Tells::counter_and_clock));
+
+TEST_P(HeldUp, WhatComesLateAndAtOnceIsNotMissing) {
+  for (const double held_s : {0.3, 0.5, 1.28, 1.3, 2.5, 2.56, 3.0, 10.0}) {
+    std::vector<Sent> frames = on_time(3000);
+    hold(frames, 7.0, 7.0 + held_s);
+    const Got got = run(frames, GetParam());
+    EXPECT_EQ(got.counts.missing, 0U) << held_s;
+    EXPECT_EQ(got.counts.gaps, 0U) << held_s;
+    EXPECT_NEAR(got.angle_rad, 3000 * kPeriod_s * kTurning, 1e-4 * kTurning) << held_s;
+    EXPECT_NEAR(got.dt_s, 3000 * kPeriod_s, 1e-4) << held_s;
+    EXPECT_FALSE(got.backwards) << held_s;
+    EXPECT_LT(got.worst_label_s, 2e-3) << held_s;
+  }
+}
+
+TEST_P(HeldUp, WhatWasLostIsCounted) {
+  for (const std::uint64_t lost : {50U, 127U, 128U, 129U, 200U, 256U, 1280U}) {
+    std::vector<Sent> frames = on_time(4000);
+    lose(frames, 1000, lost);
+    const Got got = run(frames, GetParam());
+    EXPECT_NEAR(static_cast<double>(got.counts.missing), static_cast<double>(lost),
+                GetParam() == Tells::nothing ? 1.0 : 0.0);
+    EXPECT_EQ(got.counts.gaps, 1U) << lost;
+    EXPECT_NEAR(got.dt_s, 4000 * kPeriod_s, 2e-2) << lost;
+    EXPECT_NEAR(got.covered_s, static_cast<double>(4000 - lost) * kPeriod_s, 1e-3) << lost;
+    EXPECT_FALSE(got.backwards) << lost;
+    EXPECT_LT(got.worst_label_s, 2e-3) << lost;
+  }
+}
+
+TEST_P(HeldUp, WhatIsLostOfWhatWasHeldUpIsCounted) {
+  if (GetParam() == Tells::nothing)
+    GTEST_SKIP() << "what does not count cannot tell: a device with a counter makes this run";
+  std::vector<Sent> frames = on_time(3000);
+  hold(frames, 7.0, 10.0);
+  lose(frames, 800, 40);
+  const Got got = run(frames, GetParam());
+  EXPECT_EQ(got.counts.missing, 40U);
+  EXPECT_NEAR(got.dt_s, 3000 * kPeriod_s, 1e-4);
+}
+
+class OutOfTurn : public testing::TestWithParam<Tells> {};
+INSTANTIATE_TEST_SUITE_P(Devices, OutOfTurn, testing::Values(Tells::counter, Tells::counter_and_clock));
+
+TEST_P(OutOfTurn, OfTwoThatChangePlacesOneIsLeftOutAndNoRoundIsMade) {
+  std::vector<Sent> frames = on_time(3000);
+  for (std::size_t i = 100; i < 3000; i += 100) {
+    std::swap(frames[i], frames[i + 1]);
+    std::swap(frames[i].arrives_s, frames[i + 1].arrives_s);
+  }
+  const Got got = run(frames, GetParam());
+  EXPECT_EQ(got.counts.missing, 29U);
+  EXPECT_EQ(got.counts.repeated, 29U);
+  EXPECT_EQ(got.counts.restarts, 0U);
+  EXPECT_EQ(got.counts.samples + got.counts.repeated, 3000U);
+  EXPECT_NEAR(got.dt_s, 3000 * kPeriod_s, 1e-6);
+}
+
+TEST_P(OutOfTurn, ABlockThatCameTwiceIsLeftOut) {
+  std::vector<Sent> frames = on_time(2000, 65536);
+  const std::vector<Sent> block(frames.begin() + 1000, frames.begin() + 1050);
+  frames.insert(frames.begin() + 1050, block.begin(), block.end());
+  const Got got = run(frames, GetParam(), 65536);
+  EXPECT_EQ(got.counts.repeated, 50U);
+  EXPECT_EQ(got.counts.restarts, 0U);
+  EXPECT_EQ(got.counts.missing, 0U);
+  EXPECT_NEAR(got.angle_rad, 2000 * kPeriod_s * kTurning, 1e-9);
+}
+
+TEST(Recorded, AClockThatWasSetWhileItWasRecordedLosesNothing) {
+  for (const double set_s : {3600.0, -3600.0, 10.0, -10.0}) {
+    std::vector<Sent> frames = on_time(2000, 65536);
+    for (std::size_t i = 1000; i < frames.size(); ++i) frames[i].arrives_s += set_s;
+    const Got got = run(frames, Tells::counter, 65536);
+    EXPECT_EQ(got.counts.missing, 0U) << set_s;
+    EXPECT_NEAR(got.dt_s, 2000 * kPeriod_s, 1e-9) << set_s;
+    EXPECT_EQ(got.clock_steps, 1U) << set_s;
+    EXPECT_LT(got.worst_label_s, 2e-3) << set_s;
+  }
+}
+
+TEST(DevicesClock, AJumpOfItAloneLosesNothing) {
+  std::vector<Sent> frames = on_time(2000);
+  for (std::size_t i = 1000; i < frames.size(); ++i) frames[i].device_s += 10.0;
+  const Got got = run(frames, Tells::counter_and_clock);
+  EXPECT_EQ(got.counts.missing, 0U);
+  EXPECT_NEAR(got.covered_s, 2000 * kPeriod_s, 1e-9);
+  EXPECT_NEAR(got.dt_s, 2000 * kPeriod_s, 1e-9);
+}
+
+TEST(DevicesClock, ARestartIsAsLongAsTheSilence) {
+  std::vector<Sent> frames = on_time(600);
+  for (Sent frame : on_time(600)) {
+    frame.arrives_s += 7.0;  // a second of silence, and it counts from 0
+    frames.push_back(frame);
+  }
+  const Got got = run(frames, Tells::counter_and_clock);
+  EXPECT_EQ(got.counts.restarts, 1U);
+  EXPECT_NEAR(got.dt_s, 13.0, 0.02);
+  EXPECT_NEAR(static_cast<double>(got.counts.missing), 100.0, 1.0);
+  EXPECT_NEAR(got.covered_s, 12.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace ifog
