@@ -16,7 +16,9 @@ bool never_known(const std::vector<double>& values) {
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
-    : description_(description) {
+    : description_(description),
+      counter_(std::max<std::uint32_t>(description.sequence_modulus, 1),
+               description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0) {
   for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
   capture_.rate_radps.resize(description.axes);
   capture_.reference_rate_radps.resize(description.axes);
@@ -41,17 +43,28 @@ void CaptureBuilder::choose_clock(const ifog_sample& sample) {
         "the samples carry no time: expected the option rate_hz with the samples a second of the device");
 }
 
-// How many samples the device has taken since the last one.
-std::uint64_t CaptureBuilder::steps_to(const ifog_sample& sample) const {
-  const std::uint64_t modulus = description_.sequence_modulus;
-  if (modulus == 0 || (sample.flags & last_.flags & IFOG_SAMPLE_SEQUENCE) == 0) return 1;
-  std::uint64_t steps = (sample.sequence + modulus - last_.sequence % modulus) % modulus;
-  // A pause of whole turns of the counter shows only in the arrival times.
-  const double paused =
-      static_cast<double>(sample.arrival_ns - last_.arrival_ns) * 1e-9 * description_.nominal_rate_hz;
-  const double turns = std::round((paused - static_cast<double>(steps)) / static_cast<double>(modulus));
-  if (turns >= 1.0 && turns < 1e9) steps += static_cast<std::uint64_t>(turns) * modulus;
-  return steps;
+// How many samples the device has taken since the last one; 0: this one came twice, or after one that
+// follows.
+std::uint64_t CaptureBuilder::steps_to(const ifog_sample& sample) {
+  if (description_.sequence_modulus == 0 || (sample.flags & last_.flags & IFOG_SAMPLE_SEQUENCE) == 0)
+    return 1;
+  const DeviceCount::Frame frame = frame_of(sample);
+  const DeviceCount::Step step = counter_.look(frame);
+  if (step.out_of_turn) return 0;
+  // A device whose counter stands still yet measures is followed.
+  const bool same = std::equal(sample.value, sample.value + description_.axes, last_.value,
+                               [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+  if (step.samples == 0 && same) return 0;
+  counter_.take(frame, step);
+  return std::max<std::uint64_t>(step.samples, 1);
+}
+
+DeviceCount::Frame CaptureBuilder::frame_of(const ifog_sample& sample) const {
+  DeviceCount::Frame frame;
+  frame.sequence = sample.sequence;
+  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) frame.device_time_ns = sample.device_time_ns;
+  frame.arrival_ns = sample.arrival_ns;
+  return frame;
 }
 
 double CaptureBuilder::seconds(const ifog_sample& sample) const {
@@ -110,6 +123,12 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   if (first) choose_clock(sample);
   bool anew = broken_ && !first;
   const std::uint64_t steps = first || anew ? 0 : steps_to(sample);
+  if (first || anew) {
+    counter_.first(frame_of(sample));
+  } else if (steps == 0) {
+    ++repeated_;
+    return;
+  }
   count_ += steps;
   if (steps > 1) missing_ += steps - 1;
   if (anew) begin_anew(sample);

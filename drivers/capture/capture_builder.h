@@ -10,6 +10,7 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/ifog/device_count.h"
 #include "drivers/ifog/driver.h"
 
 namespace ifog {
@@ -48,11 +49,14 @@ class CaptureBuilder {
   Capture finish();
 
   [[nodiscard]] std::size_t missing() const { return missing_; }  // samples the counter says were not there
+  // Samples left out because they came twice, or after one that follows.
+  [[nodiscard]] std::size_t repeated() const { return repeated_; }
 
  private:
   enum class Clock { undecided, device, counter, arrival, number };
   void choose_clock(const ifog_sample& sample);
-  std::uint64_t steps_to(const ifog_sample& sample) const;
+  std::uint64_t steps_to(const ifog_sample& sample);
+  [[nodiscard]] DeviceCount::Frame frame_of(const ifog_sample& sample) const;
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
   void begin_anew(const ifog_sample& sample);
   void refuse(double now) const;
@@ -62,9 +66,10 @@ class CaptureBuilder {
   Capture capture_;
   Clock clock_ = Clock::undecided;
   ifog_sample last_{};
+  DeviceCount counter_;      // as the daemon counts
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
-  std::size_t missing_ = 0;
+  std::size_t missing_ = 0, repeated_ = 0;
   std::size_t taken_ = 0;  // rows, by next_rows()
   double last_s_ = 0.0;    // time of the last row
   bool broken_ = false, restarts_ = false;

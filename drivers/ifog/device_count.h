@@ -20,10 +20,8 @@ class DeviceCount {
   struct Frame {
     std::uint32_t sequence = 0;
     std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; -1: it has none
-    double elapsed_s = -1.0;           // since the frame before, by arrival; negative: not known
-    bool timed = true;                 // some arrival time has been known
+    std::int64_t arrival_ns = 0;       // on a clock that nobody sets; 0: not known
     bool reopened = false;             // the device was closed and opened in between
-    bool after_backlog = false;        // first of known arrival behind frames that were read late
   };
   struct Step {
     std::uint64_t samples = 1;  // since the frame before; 0: the same count again, too soon for a round
@@ -38,9 +36,14 @@ class DeviceCount {
   // modulus: the counter's, > 0. period_s > 0.
   DeviceCount(std::uint64_t modulus, double period_s) noexcept : modulus_(modulus), nominal_s_(period_s) {}
 
-  void first(const Frame& frame) noexcept { begin(frame); }
+  void first(const Frame& frame) noexcept {
+    known_ns_ = 0;
+    begin(frame);
+    arrived(frame, 0.0);
+  }
   // Of the next frame; changes nothing.
-  [[nodiscard]] Step look(const Frame& frame) const noexcept {
+  [[nodiscard]] Step look(const Frame& next) const noexcept {
+    const Timed frame{next, elapsed_s(next)};
     Step step;
     const std::uint64_t difference = (frame.sequence + modulus_ - last_.sequence % modulus_) % modulus_;
     if (out_of_turn(frame, difference)) {
@@ -53,6 +56,8 @@ class DeviceCount {
   }
   // Of a frame that is used.
   void take(const Frame& frame, const Step& step) noexcept {
+    const double elapsed = elapsed_s(frame);
+    arrived(frame, step.dt_s);
     if (step.restarted) {
       begin(frame);
       return;
@@ -61,11 +66,11 @@ class DeviceCount {
     had_ = samples < 64 ? had_ << samples | 1U : 1U;
     if (step.gap || step.clock_moved) {
       took_s_ = counted_s_ = 0.0;
-    } else if (frame.elapsed_s >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0) {
+    } else if (elapsed >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0) {
       const double counted_s = static_cast<double>(samples) * nominal_s_;
-      took_s_ += frame.elapsed_s;
+      took_s_ += elapsed;
       counted_s_ += counted_s;
-      jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(frame.elapsed_s - counted_s), kLate_s));
+      jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
     }
     last_ = frame;
     late_s_ = step.late_s;
@@ -90,6 +95,21 @@ class DeviceCount {
   static constexpr double kClockSamples = 2.0;
   static constexpr double kClockDoubt = 0.01;
 
+  struct Timed : Frame {
+    double elapsed_s;  // since the frame before, by arrival; negative: not known
+  };
+
+  // Where the arrival of the frame before is not known, from the latest that is, less what has been counted
+  // since.
+  [[nodiscard]] double elapsed_s(const Frame& frame) const noexcept {
+    if (frame.arrival_ns <= 0 || known_ns_ <= 0) return -1.0;
+    return std::max(0.0, static_cast<double>(frame.arrival_ns - known_ns_) * 1e-9 - since_known_s_);
+  }
+  void arrived(const Frame& frame, double dt_s) noexcept {
+    if (frame.arrival_ns > 0) known_ns_ = frame.arrival_ns;
+    since_known_s_ = frame.arrival_ns > 0 ? 0.0 : since_known_s_ + dt_s;
+  }
+
   void begin(const Frame& frame) noexcept {
     had_ = 1;
     late_s_ = took_s_ = counted_s_ = jitter_s_ = 0.0;
@@ -106,7 +126,7 @@ class DeviceCount {
 
   // Came again, or after one that follows it: the count goes back by little, and on from there to here there
   // was no time.
-  [[nodiscard]] bool out_of_turn(const Frame& frame, std::uint64_t difference) const noexcept {
+  [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
     const std::uint64_t back = modulus_ - difference;
     if (frame.elapsed_s < 0.0 || frame.reopened || difference == 0 || back >= 64) return false;
     if (frame.device_time_ns >= 0 && last_.device_time_ns >= 0 &&
@@ -119,7 +139,7 @@ class DeviceCount {
   }
 
   // False where there is no clock, or it does not agree with the counter.
-  [[nodiscard]] bool by_clock(const Frame& frame, std::uint64_t difference, Step& step) const noexcept {
+  [[nodiscard]] bool by_clock(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
     if (frame.device_time_ns < 0 || last_.device_time_ns < 0) return false;
     const double passed_s = static_cast<double>(frame.device_time_ns - last_.device_time_ns) * 1e-9;
     const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
@@ -147,7 +167,7 @@ class DeviceCount {
   }
 
   // How far behind its clock a frame is that is held up; it is over when they come at their pace.
-  void lateness(const Frame& frame, double late_s, double passed_s, Step& step) const noexcept {
+  void lateness(const Timed& frame, double late_s, double passed_s, Step& step) const noexcept {
     if (late_s_ > 0.0 && frame.elapsed_s >= kPace * passed_s)
       step.clock_moved = late_s > kLate_s;
     else if (late_s_ > 0.0 || late_s > kLate_s)
@@ -163,16 +183,18 @@ class DeviceCount {
     return sure || std::abs(spare_s - rounds * round_s) <= slack_s ? rounds : 0.0;
   }
 
-  void by_arrival(const Frame& frame, std::uint64_t difference, Step& step) const noexcept {
+  void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
     const double period = period_s();
     const bool known = frame.elapsed_s >= 0.0;
     const double elapsed_s = frame.elapsed_s + late_s_;
     step.samples = difference;
     step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_s_;
+    // So do the times of arrival say it at the end of a backlog, whose own were not known.
+    const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
     const bool settles =
         late_s_ > 0.0 &&
         frame.elapsed_s >= kPace * period * static_cast<double>(std::max<std::uint64_t>(difference, 1));
-    if (known && elapsed_s > 0.0 && (difference != 1 || frame.reopened || frame.after_backlog || settles)) {
+    if (known && elapsed_s > 0.0 && (difference != 1 || frame.reopened || after_backlog || settles)) {
       const double rounds = rounds_in(step.late_s, elapsed_s, frame.reopened);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
       step.clock_moved = rounds == 0.0 && settles && difference == 1 && step.late_s > kLate_s;
@@ -186,7 +208,7 @@ class DeviceCount {
       return;
     }
     const double claimed_s = static_cast<double>(step.samples) * nominal_s_;
-    const bool backwards = !frame.timed && difference > modulus_ / 2;  // no arrival times to ask, ever
+    const bool backwards = known_ns_ <= 0 && difference > modulus_ / 2;  // no arrival times to ask, ever
     if (step.samples > 1 && ((known && claimed_s > kRestartFactor * elapsed_s + kRestart_s) || backwards)) {
       step.samples = known && elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
       step.restarted = true;
@@ -202,8 +224,10 @@ class DeviceCount {
   std::uint64_t modulus_;
   double nominal_s_;
   Frame last_;
-  std::uint64_t had_ = 1;  // bit i: the sample i before the last one came
-  double late_s_ = 0.0;    // the last frame, undecided
+  std::uint64_t had_ = 1;       // bit i: the sample i before the last one came
+  std::int64_t known_ns_ = 0;   // latest arrival that is known; 0: none yet
+  double since_known_s_ = 0.0;  // counted
+  double late_s_ = 0.0;         // the last frame, undecided
   double took_s_ = 0.0,
          counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
   double jitter_s_ = 0.0;

@@ -10,9 +10,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
-// A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
-// turn.
-constexpr double kPrompt_s = 0.05;
 constexpr double kPace = 0.75;      // of the period, and samples are not held up any more
 constexpr double kSetBack_s = 1.0;  // of the times of arrival: more than any order of delivery
 // A step of the device's clock that exceeds what the arrival times allow by this much is a restart of the
@@ -67,14 +64,12 @@ double Incrementer::clock_offset_ppm() const noexcept {
   return clock_.settled() ? (clock_.period_s() / period_s_ - 1.0) * 1e6 : 0.0;
 }
 
-DeviceCount::Frame Incrementer::frame_of(const Reading& reading, double elapsed_s) const noexcept {
+DeviceCount::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
   DeviceCount::Frame frame;
   frame.sequence = reading.sequence;
   frame.device_time_ns = reading.device_time_ns;
-  frame.elapsed_s = elapsed_s;
-  frame.timed = known_arrival_ns_ > 0;
+  frame.arrival_ns = reading.arrival_ns;
   frame.reopened = reopened_;
-  frame.after_backlog = last_.arrival_ns == 0 && elapsed_s > kPrompt_s;
   return frame;
 }
 
@@ -140,7 +135,7 @@ Incrementer::Step Incrementer::step(const Reading& reading) noexcept {
   const double elapsed = elapsed_s(reading);
   Step step;
   if (reading.has_sequence && facts_.sequence_modulus > 0) {
-    const DeviceCount::Frame frame = frame_of(reading, elapsed);
+    const DeviceCount::Frame frame = frame_of(reading);
     step = step_by_counter(reading, frame);
     if (!step.repeated)
       count_.take(frame,
@@ -248,7 +243,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   } else {
     now.dt_s = period_s_;
     sequence_ = reading.has_sequence ? reading.sequence : 0;
-    count_.first(frame_of(reading, -1.0));
+    count_.first(frame_of(reading));
   }
   out.flags = 0;
   if (started_ && now.gap) {

@@ -59,7 +59,7 @@ class Incrementer {
   };
   [[nodiscard]] double elapsed_s(const Reading& reading) const noexcept;
   [[nodiscard]] Step step(const Reading& reading) noexcept;
-  [[nodiscard]] DeviceCount::Frame frame_of(const Reading& reading, double elapsed_s) const noexcept;
+  [[nodiscard]] DeviceCount::Frame frame_of(const Reading& reading) const noexcept;
   [[nodiscard]] Step step_by_counter(const Reading& reading, const DeviceCount::Frame& frame) const noexcept;
   [[nodiscard]] Step step_by_clock(const Reading& reading, double elapsed_s) const noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading, double elapsed_s) const noexcept;

@@ -156,6 +156,9 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", path.c_str(), loss.c_str());
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter\n", path.c_str(), builder.missing());
+  if (builder.repeated() != 0)
+    warn("%s: %zu samples came twice or after one that follows, and are left out\n", path.c_str(),
+         builder.repeated());
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {

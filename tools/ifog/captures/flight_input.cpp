@@ -135,6 +135,9 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter\n", file_.path().c_str(), builder.missing());
+  if (builder.repeated() != 0)
+    warn("%s: %zu samples came twice or after one that follows, and are left out\n", file_.path().c_str(),
+         builder.repeated());
 }
 
 Capture FlightInput::capture(DriverInstance& driver) {
