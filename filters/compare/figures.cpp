@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 namespace ifog {
 
@@ -40,6 +42,30 @@ double misfit(std::span<const double> output, std::span<const double> reference,
   return n == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(n);
 }
 
+// Where the misfit of the shifts about none is smallest, in samples: of dips that are all but as deep, as a
+// turntable's programme has when it repeats, the one nearest to no shift.
+std::optional<double> nearest_dip(const std::vector<double>& at) {
+  constexpr double kAsDeep = 0.05;  // of the way from the smallest to the largest
+  const double best = *std::min_element(at.begin(), at.end());
+  const double worst = *std::max_element(at.begin(), at.end());
+  // A reference at rest fits at any shift. Asking for 5 % keeps the figure to records that show the lag.
+  if (worst < 1.05 * best) return std::nullopt;
+  const std::ptrdiff_t none = std::ssize(at) / 2;
+  std::optional<std::ptrdiff_t> dip;
+  for (std::ptrdiff_t i = 0; i < std::ssize(at); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool lowest = (k == 0 || at[k] <= at[k - 1]) && (k + 1 == at.size() || at[k] <= at[k + 1]);
+    if (lowest && at[k] <= best + kAsDeep * (worst - best) &&
+        (!dip || std::abs(i - none) < std::abs(*dip - none)))
+      dip = i;
+  }
+  if (!dip || *dip == 0 || *dip + 1 == std::ssize(at)) return std::nullopt;
+  const auto k = static_cast<std::size_t>(*dip);
+  const double curve = at[k - 1] - 2.0 * at[k] + at[k + 1];
+  const double fraction = curve > 0.0 ? 0.5 * (at[k - 1] - at[k + 1]) / curve : 0.0;
+  return static_cast<double>(*dip - none) + fraction;
+}
+
 }  // namespace
 
 AgainstReference against_reference(std::span<const double> output, std::span<const double> reference,
@@ -64,14 +90,8 @@ AgainstReference against_reference(std::span<const double> output, std::span<con
   at.reserve(2 * static_cast<std::size_t>(longest) + 1);
   for (int shift = -longest; shift <= longest; ++shift)
     at.push_back(misfit(output, reference, shift, longest));
-  const auto best = std::min_element(at.begin(), at.end());
-  const auto worst = std::max_element(at.begin(), at.end());
-  // A reference at rest fits at any shift. Asking for 5 % keeps the figure to records that show the lag.
-  if (best == at.begin() || best + 1 == at.end() || *worst < 1.05 * *best) return result;
-  const double left = *(best - 1), middle = *best, right = *(best + 1);
-  const double curve = left - 2.0 * middle + right;
-  const double fraction = curve > 0.0 ? 0.5 * (left - right) / curve : 0.0;
-  result.lag_s = (static_cast<double>(best - at.begin()) - longest + fraction) * period_s;
+  const auto lag = nearest_dip(at);
+  if (lag) result.lag_s = *lag * period_s;
   return result;
 }
 

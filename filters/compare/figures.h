@@ -19,7 +19,8 @@ struct AgainstReference {
 };
 
 // The lag is the shift in whole samples, up to `longest_samples`, that makes the spread of output − shifted
-// reference smallest, refined by the parabola through its neighbours.
+// reference smallest, refined by the parabola through its neighbours; of several that are all but as good the
+// nearest to none.
 [[nodiscard]] AgainstReference against_reference(std::span<const double> output,
                                                  std::span<const double> reference, double period_s,
                                                  int longest_samples);

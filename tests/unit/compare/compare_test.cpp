@@ -34,6 +34,22 @@ TEST(CompareFigures, LagOfADelayedSineIsTheDelay) {
   EXPECT_NEAR(against.bias.value(), 0.02, 1e-4);
 }
 
+// A turntable's programme comes again; an error that drifts makes the output fit its last round a little
+// better.
+TEST(CompareFigures, OfAProgrammeThatRepeatsTheLagIsTheOneNearestToNone) {
+  constexpr int kRound = 120, kDelay = 3;
+  const auto programme = [](int k) { return (k / 10 * 7 % 12) * 0.1; };
+  std::vector<double> reference, output;
+  for (int k = 0; k < 1200; ++k) {
+    reference.push_back(programme(k % kRound) * (1.0 - 1e-4 * k));
+    output.push_back(k < kDelay ? 0.0
+                                : programme((k - kDelay) % kRound) * (1.0 - 1e-4 * (k - kDelay - kRound)));
+  }
+  const auto against = ifog::against_reference(output, reference, 0.5, 250);
+  ASSERT_TRUE(against.lag_s.has_value());
+  EXPECT_NEAR(*against.lag_s, 0.5 * kDelay, 0.5 * 0.5);
+}
+
 TEST(CompareFigures, AReferenceAtRestTellsNoLag) {
   const auto output = noise(1, 4000);
   const std::vector<double> reference(output.size(), 0.0);
