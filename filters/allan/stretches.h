@@ -22,6 +22,7 @@ struct SampleClock {
   double worst_jitter_s = 0.0;  // largest distance of such a step from period_s
   std::size_t gaps = 0;         // steps longer than 1.5 periods
   std::size_t missing = 0;      // samples that fit into them
+  std::size_t beside = 2;       // samples on either side by which a gap is told
   std::size_t first_gap = 0;    // index of the sample before the first gap; meaningful when gaps > 0
 };
 
