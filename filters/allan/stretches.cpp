@@ -134,13 +134,17 @@ SampleClock sample_clock(const SeriesView& time_s) {
   return clock;
 }
 
-std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
-                               const SampleClock& clock) {
-  // The last samples before a hole.
+std::vector<std::size_t> holes(const SeriesView& time_s, const SampleClock& clock) {
   std::vector<std::size_t> gaps;
   for_each_step(time_s, clock.beside, [&](const Steps& steps, std::size_t i) {
     if (steps.is_gap(i, clock.period_s)) gaps.push_back(i);
   });
+  return gaps;
+}
+
+std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
+                               const SampleClock& clock) {
+  const std::vector<std::size_t> gaps = holes(time_s, clock);
   std::vector<Stretch> found;
   Stretch now;
   const auto close = [&](std::size_t next) {

@@ -11,6 +11,7 @@
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture.h"
+#include "filters/allan/stretches.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/console/progress.h"
@@ -84,14 +85,52 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
   return out;
 }
 
+// Of the median step, which holes cannot move; of the mean where the stamps are too coarse or scatter too
+// much for that.
+double rate_of(const SeriesView& time_s, const SampleClock& clock) {
+  constexpr double kCoarse = 1e-4;
+  const double median = 1.0 / median_step(time_s), mean = 1.0 / clock.period_s;
+  return clock.scatters() || std::abs(mean / median - 1.0) > kCoarse ? mean : median;
+}
+
+// The times of the rows: their stamps, or where those scatter an even clock, anew behind each hole.
+class RowTimes {
+ public:
+  RowTimes(const SeriesView& time_s, const SampleClock& clock)
+      : period_s_(clock.period_s), first_s_(time_s.at(0)) {
+    if (clock.scatters()) holes_ = holes(time_s, clock);
+    scatters_ = clock.scatters();
+  }
+  // ns since the first row, of each row in turn.
+  std::int64_t next(double stamp_s) {
+    if (!scatters_) return std::llround((stamp_s - first_s_) * 1e9);
+    if (row_ > 0) {
+      const bool hole = at_ < holes_.size() && holes_[at_] + 1 == row_;
+      at_ += hole ? 1 : 0;
+      even_s_ += hole ? period_s_ * std::max(2.0, std::round((stamp_s - last_s_) / period_s_)) : period_s_;
+    }
+    ++row_;
+    last_s_ = stamp_s;
+    return std::llround(even_s_ * 1e9);
+  }
+
+ private:
+  double period_s_, first_s_;
+  bool scatters_ = false;
+  std::vector<std::size_t> holes_;
+  std::size_t row_ = 0, at_ = 0;
+  double even_s_ = 0.0, last_s_ = 0.0;
+};
+
 ChainSettings chain_settings_of(const LongTable& capture, const CaptureShape& shape,
-                                const std::vector<std::size_t>& channels, const OfflineSettings& settings) {
+                                const std::vector<std::size_t>& channels, const OfflineSettings& settings,
+                                const SampleClock& clock) {
   ChainSettings out;
   out.facts.axes = static_cast<int>(shape.axes.size());
   if (capture.size() < 2 && settings.sensor.nominal_rate_hz <= 0.0)
     throw std::runtime_error("the capture has fewer than 2 samples");
   out.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz
-                                                                    : 1.0 / median_step(capture.time_s);
+                                                                    : rate_of(capture.time_s, clock);
   out.facts.frame_channels = out.facts.channels = static_cast<int>(channels.size());
   out.axes = shape.axes;
   for (const std::size_t c : channels) {
@@ -116,7 +155,8 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink) {
   const CaptureShape shape = capture_shape(capture.names(), name, capture);
   const std::vector<std::size_t> channels = chosen_channels(capture, shape, settings.model.get());
-  Chain chain(chain_settings_of(capture, shape, channels, settings), settings.first_sequence);
+  const SampleClock clock = capture.size() < 2 ? SampleClock{} : sample_clock(capture.time_s);
+  Chain chain(chain_settings_of(capture, shape, channels, settings, clock), settings.first_sequence);
   sink.begin(shape.axes);
   // The time, the axes, the channels.
   std::vector<SeriesView> views{capture.time_s};
@@ -129,7 +169,8 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
   std::vector<std::span<const double>> now(views.size());
   Reading reading;
   ChainOutput out;
-  const double first_s = capture.size() > 0 ? views[0].at(0) : 0.0;
+  std::optional<RowTimes> times;
+  if (capture.size() > 0) times.emplace(views[0], clock);
   Progress progress("denoising", capture.size());
   for (std::size_t begin = 0; begin < capture.size(); begin += kSeriesPiece) {
     progress.at(begin);
@@ -138,7 +179,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
     for (std::size_t i = 0; i < count; ++i) {
       // The column's own times are the device's clock; from the first sample on, as a clock cannot be
       // negative here.
-      reading.device_time_ns = std::llround((now[0][i] - first_s) * 1e9);
+      reading.device_time_ns = times->next(now[0][i]);
       reading.valid_axes = 0;
       for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
         reading.value[axis] = now[1 + axis][i];
