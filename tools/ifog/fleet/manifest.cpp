@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
@@ -91,8 +92,9 @@ std::vector<std::string> captures_of(const std::string& path, const toml::table&
 
 }  // namespace
 
-Manifest read_manifest(const std::string& path) {
-  const std::string text = read_toml_text(path);
+Manifest read_manifest(const std::string& path) { return parse_manifest(read_toml_text(path), path); }
+
+Manifest parse_manifest(std::string_view text, const std::string& path) {
   const toml::table table = parse_toml(text, path);
   refuse_unknown(path, table, {"type", "gyro"}, "type or [[gyro]]");
   Manifest manifest;

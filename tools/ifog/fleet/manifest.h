@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ifog::tools {
@@ -26,5 +27,7 @@ struct Manifest {
 // letters, digits, '.', '_' and '-', the first a letter, digit or '_', and stands once, whatever its case: it
 // names a folder.
 Manifest read_manifest(const std::string& path);
+// The same of a text; path: of the file that it would stand in.
+Manifest parse_manifest(std::string_view text, const std::string& path);
 
 }  // namespace ifog::tools
