@@ -21,6 +21,11 @@ bool axis_of(const std::string& name, std::string_view prefix, std::string& axis
   return axis.find('_') == std::string::npos;  // rate_ramp_x_radps is somebody's channel, not an axis
 }
 
+bool is_rate_column(const std::string& name) {
+  std::string axis;
+  return axis_of(name, "rate", axis) || axis_of(name, "reference_rate", axis);
+}
+
 std::string shortest(double value) {
   std::array<char, 40> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};

@@ -12,6 +12,9 @@ namespace ifog {
 // The axis of a rate column: "rate_radps" is "", "rate_x_radps" is "x". False: not such a column.
 bool axis_of(const std::string& name, std::string_view prefix, std::string& axis);
 
+// A rate or its reference, of any axis.
+bool is_rate_column(const std::string& name);
+
 // Shortest text that reads back the same.
 std::string shortest(double value);
 

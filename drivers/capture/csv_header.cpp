@@ -5,15 +5,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "drivers/capture/chosen_columns.h"
 #include "drivers/capture/column_names.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
-
-constexpr double kMostAngle_rad = 1e9;  // beyond, a float32 resolves 64 rad
 
 std::vector<std::string> split(std::string_view line, char separator) {
   std::vector<std::string> names;
@@ -33,18 +30,6 @@ void check_names(const std::vector<std::string>& names, const std::string& path,
     if (name.empty()) fail_at(path, line, "a column has no name");
     if (!seen.insert(name).second) fail_at(path, line, "column " + in_quotes(name) + " stands twice");
   }
-}
-
-bool is_rate(const std::string& column) {
-  std::string axis;
-  return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
-}
-
-// Of the capture's column, before its conversion.
-Measurable in_file_unit(const Measurable& range, const UnitConversion& conversion) {
-  const double a = (range.least - conversion.offset) / conversion.scale;
-  const double b = (range.most - conversion.offset) / conversion.scale;
-  return {std::min(a, b), std::max(a, b)};
 }
 
 // The place of a column that was asked for by its header.
@@ -68,11 +53,11 @@ void choose(const std::vector<std::string>& names, const CsvLayout& layout, cons
   const CsvTime time = layout.time.value_or(CsvTime{});
   header.time_place = place_of(time.header, names, path, header.line);
   CsvCell& time_cell = header.cells[header.time_place];
-  time_cell.range = in_file_unit(measurable("time_s"), {time.unit_s, 0.0});
+  time_cell.range = measurable_in_file(time);
   time_cell.column = CsvCell::kTime;
   if (!layout.chooses()) {
     for (std::size_t i = 1; i < names.size(); ++i) {
-      header.cells[i] = {names[i], measurable(names[i]), is_rate(names[i]), i - 1};
+      header.cells[i] = {names[i], measurable(names[i]), is_rate_column(names[i]), i - 1};
       header.names.push_back(names[i]);
     }
     return;
@@ -86,10 +71,8 @@ void choose(const std::vector<std::string>& names, const CsvLayout& layout, cons
     CsvCell& chosen = header.cells[place_of(column.header, names, path, header.line)];
     if (chosen.column != CsvCell::kPassedOver)
       fail_at(path, header.line, "column " + in_quotes(column.header) + " is chosen twice");
-    const Measurable range =
-        column.is_angle() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
-    chosen.range = in_file_unit(range, conversion_of(column));
-    chosen.rate = is_rate(column.name);
+    chosen.range = measurable_in_file(column);
+    chosen.rate = is_rate_column(column.name);
     chosen.column = i;
     header.names.push_back(column.name);
   }

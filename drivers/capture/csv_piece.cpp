@@ -88,9 +88,9 @@ class Rows {
     const bool possible = std::isnan(value) || cell.range.holds(value);
     to_[place]->push_back(possible ? value : kMissing);
     if (possible) return;
-    ImpossibleCells& impossible = piece_.impossible[place];
+    ImpossibleValues& impossible = piece_.impossible[place];
     if (impossible.count++ > 0) return;
-    impossible.first_line = line;
+    impossible.first_row = to_[place]->size() - 1;
     impossible.first = unquoted(text);
   }
 
@@ -126,9 +126,12 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char se
       continue;
     }
     rows.add(line, lines.number());
+    piece.row_bytes += line.size() + 1;
     const auto said = [&] { return cell_at(line, header.time_place, separator); };
     if (piece.impossible[header.time_place].count > 0)
-      fail_at(path, lines.number(), what_no_sensor_measures(time, piece.impossible[header.time_place].first));
+      fail_at(path, lines.number(),
+              what_no_sensor_measures(time.name, in_quotes(piece.impossible[header.time_place].first),
+                                      time.range));
     if (times.size() == 1) piece.decimals = said().find('.') != std::string_view::npos;
     if (std::isnan(times.back()))
       fail_at(path, lines.number(), printable(time.name) + " is missing, expected a time");
@@ -139,11 +142,6 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char se
   }
   piece.lines = lines.number() - lines_before;
   return piece;
-}
-
-std::string what_no_sensor_measures(const CsvCell& cell, const std::string& said) {
-  return printable(cell.name) + " is " + in_quotes(said) + ", which no sensor measures, expected " +
-         shortest(cell.range.least) + " to " + shortest(cell.range.most);
 }
 
 }  // namespace ifog

@@ -10,24 +10,19 @@
 #include <vector>
 
 #include "drivers/capture/csv_header.h"
+#include "drivers/capture/row_checks.h"
 #include "drivers/capture/row_sink.h"
 
 namespace ifog {
 
-// Cells that said what no sensor measures, and are taken for missing.
-struct ImpossibleCells {
-  std::size_t count = 0;
-  std::size_t first_line = 0;
-  std::string first;  // as it stands there
-};
-
 struct CsvPiece {
-  RowBlock rows;                            // times and values in the file's units
-  std::string comments;                     // as in RowNotes
-  std::vector<RowNotes::Skipped> skipped;   // likewise, from the piece's first row on
-  std::vector<ImpossibleCells> impossible;  // by cell of a row
+  RowBlock rows;                             // times and values in the file's units
+  std::string comments;                      // as in RowNotes
+  std::vector<RowNotes::Skipped> skipped;    // likewise, from the piece's first row on
+  std::vector<ImpossibleValues> impossible;  // by cell of a row; rows of the piece
   std::size_t lines = 0;
-  bool decimals = false;  // in the first time
+  std::size_t row_bytes = 0;  // of the lines that are rows
+  bool decimals = false;      // in the first time
 };
 
 // text: whole lines. lines_before: of the file; time_before: of the row before, NaN where it is not known.
@@ -35,8 +30,5 @@ struct CsvPiece {
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
                          const std::string& path, std::size_t lines_before,
                          double time_before = std::numeric_limits<double>::quiet_NaN());
-
-// "rate_radps is '1e9', which no sensor measures, expected …".
-std::string what_no_sensor_measures(const CsvCell& cell, const std::string& said);
 
 }  // namespace ifog

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <future>
 #include <limits>
 #include <optional>
@@ -12,18 +13,13 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/capture/chosen_columns.h"
-#include "drivers/capture/column_names.h"
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/csv_piece.h"
-#include "drivers/capture/input_file.h"
-#include "drivers/capture/leaps.h"
-#include "drivers/ifog/quoted.h"
+#include "drivers/capture/row_checks.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kMostImpossible = 0.01;  // of a column's cells; more are no single fault of a logger
 constexpr std::size_t kWorthAThread = std::size_t{1} << 17U;  // bytes
 
 // A text cut behind lines.
@@ -62,8 +58,10 @@ class TextPieces {
 
 class CsvRows {
  public:
-  CsvRows(const std::string& path, const CsvLayout& layout, RowSink& sink)
-      : path_(path), layout_(layout), sink_(sink) {}
+  // were_rows: hears of bytes that were.
+  using WereRows = std::function<void(std::size_t)>;
+  CsvRows(const std::string& path, const CsvLayout& layout, RowSink& sink, WereRows were_rows)
+      : path_(path), layout_(layout), sink_(sink), were_rows_(std::move(were_rows)) {}
 
   RowNotes read(TextPieces pieces) {
     std::string text;
@@ -82,27 +80,20 @@ class CsvRows {
   void begin(TextPieces& pieces, std::string& text);
   void in_order(TextPieces& pieces, std::string text);
   void deliver(Piece& piece);
-  void merge(const CsvPiece& piece, std::size_t lines_before);
-  void convert_and_pass(RowBlock& rows);
-  void pass_on(RowBlock& rows);
+  void merge(const CsvPiece& piece);
   void finish();
-  void tell_impossible();
-  void tell_leaps();
 
   const std::string& path_;
   const CsvLayout& layout_;
   RowSink& sink_;
+  const WereRows were_rows_;
   CsvHeader header_;
   RowNotes notes_;
-  std::vector<ImpossibleCells> impossible_;  // by cell of a row
-  std::vector<std::size_t> rates_;           // columns
-  std::optional<Leaps> leaps_;
-  std::optional<RowBlock> all_;  // where angles become rates
-  WholeTimes times_;
-  std::size_t lines_ = 0, rows_ = 0;
-  double last_ = std::numeric_limits<double>::quiet_NaN();    // time in the file's unit
-  double last_s_ = std::numeric_limits<double>::quiet_NaN();  // and in seconds
-  bool decimals_ = false;                                     // in the first time
+  std::vector<ImpossibleValues> impossible_;  // by column
+  std::optional<RowChecks> checks_;
+  std::size_t lines_ = 0;
+  double last_ = std::numeric_limits<double>::quiet_NaN();  // time in the file's unit
+  bool decimals_ = false;                                   // in the first time
 };
 
 // `text`: what follows the header in its piece.
@@ -122,14 +113,11 @@ void CsvRows::begin(TextPieces& pieces, std::string& text) {
   if (!found) throw std::runtime_error(path_ + ": no header line, expected 'time_s,rate_radps,…'");
   notes_.comments = std::move(header_.comments);
   notes_.header_line = header_.line;
-  impossible_.resize(header_.cells.size());
-  std::string axis;
-  for (std::size_t c = 0; c < header_.names.size(); ++c)
-    if (axis_of(header_.names[c], "rate", axis) || axis_of(header_.names[c], "reference_rate", axis))
-      rates_.push_back(c);
-  leaps_.emplace(rates_, [this](RowBlock& rows) { sink_.take(rows); });
-  if (std::any_of(layout_.columns.begin(), layout_.columns.end(), [](const auto& c) { return c.is_angle(); }))
-    all_.emplace();
+  impossible_.resize(header_.names.size());
+  std::vector<FileColumn> columns(header_.names.size());
+  for (const CsvCell& cell : header_.cells)
+    if (cell.column < columns.size()) columns[cell.column] = {cell.name, cell.range, cell.rate};
+  checks_.emplace(path_, layout_, std::move(columns), sink_, notes_);
   sink_.begin(header_.names);
 }
 
@@ -162,103 +150,55 @@ void CsvRows::in_order(TextPieces& pieces, std::string text) {
 
 void CsvRows::deliver(Piece& piece) {
   std::optional<CsvPiece> parsed = piece.parsed.get();
-  std::size_t lines_before = lines_;
   if (!parsed || (parsed->rows.size() > 0 && parsed->rows.time_s.front() <= last_)) {
     // Here it is known where the piece stands, and so what to say.
     parsed = parse_csv_piece(piece.text, header_, layout_.separator, path_, lines_, last_);
-    lines_before = 0;
   }
   piece.text = {};
-  merge(*parsed, lines_before);
+  merge(*parsed);
   lines_ += parsed->lines;
+  were_rows_(parsed->row_bytes);
   RowBlock& rows = parsed->rows;
   if (rows.size() == 0) return;
-  if (rows_ == 0) decimals_ = parsed->decimals;
+  if (checks_->rows() == 0) decimals_ = parsed->decimals;
   last_ = rows.time_s.back();
-  convert_and_pass(rows);
+  checks_->take(rows);
 }
 
-void CsvRows::merge(const CsvPiece& piece, std::size_t lines_before) {
+void CsvRows::merge(const CsvPiece& piece) {
+  const std::size_t rows = checks_->rows();
   notes_.comments += piece.comments;
   const std::size_t skipped = notes_.skipped.empty() ? 0 : notes_.skipped.back().lines;
   for (const RowNotes::Skipped& here : piece.skipped) {
-    if (notes_.skipped.empty() || notes_.skipped.back().row != rows_ + here.row)
-      notes_.skipped.push_back({rows_ + here.row, 0});
+    if (notes_.skipped.empty() || notes_.skipped.back().row != rows + here.row)
+      notes_.skipped.push_back({rows + here.row, 0});
     notes_.skipped.back().lines = skipped + here.lines;
   }
-  for (std::size_t i = 0; i < impossible_.size(); ++i) {
-    const ImpossibleCells& found = piece.impossible[i];
-    if (found.count == 0) continue;
-    ImpossibleCells& all = impossible_[i];
-    if (all.count == 0) all = {0, lines_before + found.first_line, found.first};
+  for (std::size_t i = 0; i < header_.cells.size(); ++i) {
+    const ImpossibleValues& found = piece.impossible[i];
+    if (found.count == 0 || header_.cells[i].column >= impossible_.size()) continue;
+    ImpossibleValues& all = impossible_[header_.cells[i].column];
+    if (all.count == 0) all = {0, rows + found.first_row, found.first};
     all.count += found.count;
   }
 }
 
-void CsvRows::convert_and_pass(RowBlock& rows) {
-  if (layout_.chooses()) convert(rows, layout_, notes_, path_, rows_, last_s_);
-  last_s_ = rows.time_s.back();
-  times_.take(rows.time_s);
-  rows_ += rows.size();
-  if (!all_) return leaps_->take(rows);
-  all_->columns.resize(rows.columns.size());
-  all_->time_s.insert(all_->time_s.end(), rows.time_s.begin(), rows.time_s.end());
-  for (std::size_t c = 0; c < rows.columns.size(); ++c)
-    all_->columns[c].insert(all_->columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
-}
-
 void CsvRows::finish() {
-  if (rows_ == 0) throw std::runtime_error(path_ + ": no rows after the header");
-  tell_impossible();
-  if (all_) {
-    as_rates(*all_, layout_, notes_, path_);
-    leaps_->take(*all_);
-  }
-  leaps_->finish();
-  tell_leaps();
-  if (const auto notice = times_.notice(path_); notice && !layout_.time && !decimals_)
-    notes_.notices.push_back(*notice);
-}
-
-// A cell here and there is a fault of the logger, and is missing; where many are, a rate is not what its name
-// says. A channel is only missing then: a broken thermometer is no reason to know nothing of the rate.
-void CsvRows::tell_impossible() {
-  for (std::size_t i = 0; i < impossible_.size(); ++i) {
-    const ImpossibleCells& found = impossible_[i];
-    const CsvCell& cell = header_.cells[i];
-    if (found.count == 0) continue;
-    std::string axis;
-    const bool rate = axis_of(cell.name, "rate", axis) || axis_of(cell.name, "reference_rate", axis);
-    const bool few = !rate || found.count == 1 ||
-                     static_cast<double>(found.count) <= kMostImpossible * static_cast<double>(rows_);
-    const std::string what = what_no_sensor_measures(cell, found.first);
-    if ((cell.rate && rows_ == 1) || !few)
-      fail_at(
-          path_, found.first_line,
-          what + (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : ""));
-    notes_.faults.push_back(path_ + ":" + std::to_string(found.first_line) + ": " + what + "; " +
-                            std::to_string(found.count) + (found.count == 1 ? " such cell" : " such cells") +
-                            " taken for missing");
-  }
-}
-
-void CsvRows::tell_leaps() {
-  for (std::size_t r = 0; r < rates_.size(); ++r) {
-    const Leaps::Found& found = leaps_->found()[r];
-    if (found.count == 0) continue;
-    notes_.faults.push_back(path_ + ":" + std::to_string(notes_.line_of_row(found.first_row)) + ": " +
-                            printable(header_.names[rates_[r]]) +
-                            " says more than half a turn within one sample, from standstill to standstill; " +
-                            std::to_string(found.count) + (found.count == 1 ? " such cell" : " such cells") +
-                            " taken for missing");
-  }
+  if (checks_->rows() == 0) throw std::runtime_error(path_ + ": no rows after the header");
+  checks_->finish(impossible_, decimals_);
 }
 
 }  // namespace
 
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece) {
-  return CsvRows(path, layout, sink).read(TextPieces(read, piece));
+  return CsvRows(path, layout, sink, [](std::size_t) {}).read(TextPieces(read, piece));
+}
+
+RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) {
+  const ReadBytes read = [&file](char* to, std::size_t most) { return file.read(to, most); };
+  return CsvRows(file.path(), layout, sink, [&file](std::size_t bytes) { file.were_rows(bytes); })
+      .read(TextPieces(read, kCsvPiece));
 }
 
 }  // namespace ifog

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "drivers/capture/csv_layout.h"
+#include "drivers/capture/input_file.h"
 #include "drivers/capture/row_sink.h"
 
 namespace ifog {
@@ -22,5 +23,7 @@ inline constexpr std::size_t kCsvPiece = std::size_t{4} << 20U;  // bytes of tex
 // thing that needs all rows at once: then they come as one block. `path` stands for the file in messages.
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece = kCsvPiece);
+// What a file has still to give, which hears how much of it were rows.
+RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink);
 
 }  // namespace ifog

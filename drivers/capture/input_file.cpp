@@ -51,7 +51,8 @@ std::deque<std::string> recordings_in(const std::string& folder) {
   return out;
 }
 
-// A gzip file's content is held to this many times its size, beyond what any memory has room for.
+// A gzip file's content is held to this many times its size, beyond what any memory has room for; but for
+// rows of numbers.
 constexpr std::size_t kMostGrowth = 100;
 constexpr std::size_t kGrowthFree = 256U << 20U;
 
@@ -149,7 +150,7 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
     if (n > 0) done += static_cast<std::size_t>(n);
     if (told_ && total_ > 0)
       told_(behind_ + static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get()))), total_);
-    if (n > 0 && most_ > 0 && (unpacked_ += static_cast<std::size_t>(n)) > most_)
+    if (n > 0 && most_ > 0 && (unpacked_ += static_cast<std::size_t>(n)) > most_ + rows_)
       throw std::runtime_error(path_ + ": grows to more than " + std::to_string(most_ >> 20U) + " MiB, " +
                                std::to_string(kMostGrowth) +
                                " times its size, when unpacked, expected a recording");

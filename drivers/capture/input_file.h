@@ -38,8 +38,11 @@ class InputFile {
 
   // Up to `most` further bytes, fewer only at the end, 0 there. Throws std::runtime_error with one line: a
   // gzip stream that ends early or is damaged, a packed file that grows beyond 256 MiB and 100 times its
-  // size, which no recording does and which would fill the memory; a device's error.
+  // size without were_rows(), which no recording does and which would fill the memory; a device's error.
   std::size_t read(char* to, std::size_t most);
+  // So many of the bytes read were rows of numbers, whose reader keeps no text of them: of columns that stay
+  // as they are a thousand times a packed file's size, and not held against it.
+  void were_rows(std::size_t bytes) { rows_ += bytes; }
   // All of the rest. Of a text a line longer than kLongestLine is refused with its number.
   std::string bytes();
   std::string text();
@@ -72,8 +75,8 @@ class InputFile {
   std::size_t taken_ = 0;
   bool reopens_ = false;
   Told told_;
-  std::size_t total_ = 0, behind_ = 0;   // bytes of all files, and of those that were read to their end
-  std::size_t unpacked_ = 0, most_ = 0;  // most_ 0: as much as comes
+  std::size_t total_ = 0, behind_ = 0;  // bytes of all files, and of those that were read to their end
+  std::size_t unpacked_ = 0, rows_ = 0, most_ = 0;  // most_ 0: as much as comes
 };
 
 }  // namespace ifog

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/capture/chosen_columns.h"
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/units/units.h"
@@ -17,6 +18,7 @@ namespace {
 
 // Until 2115, and 145 years either way of anything else: no difference of two in ns is beyond 64 bits.
 constexpr double kMostTime_s = 4.6e9;
+constexpr double kMostAngle_rad = 1e9;  // beyond, a float32 resolves 64 rad
 
 struct OfUnit {
   std::string_view unit;
@@ -57,13 +59,18 @@ std::string_view stated_unit(std::string_view column) {
   return {};
 }
 
+// Of the capture's column, before its conversion.
+Measurable before(const Measurable& range, const UnitConversion& conversion) {
+  const double a = (range.least - conversion.offset) / conversion.scale;
+  const double b = (range.most - conversion.offset) / conversion.scale;
+  return {std::min(a, b), std::max(a, b)};
+}
+
 }  // namespace
 
 Measurable measurable(const std::string& column) {
   if (column == "time_s") return {-kMostTime_s, kMostTime_s};
-  std::string axis;
-  if (axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis))
-    return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
+  if (is_rate_column(column)) return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
   const std::string_view unit = stated_unit(column);
   if (unit.empty()) return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
   for (const OfUnit& known : kUnits) {
@@ -73,6 +80,16 @@ Measurable measurable(const std::string& column) {
     return {converted(known.range.least), converted(known.range.most)};
   }
   return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
+}
+
+Measurable measurable_in_file(const CsvColumn& column) {
+  const Measurable range =
+      column.is_angle() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
+  return before(range, conversion_of(column));
+}
+
+Measurable measurable_in_file(const CsvTime& time) {
+  return before(measurable("time_s"), {time.unit_s, 0.0});
 }
 
 }  // namespace ifog

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "drivers/capture/csv_layout.h"
+
 namespace ifog {
 
 struct Measurable {
@@ -18,5 +20,9 @@ struct Measurable {
 // In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
 // can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.
 Measurable measurable(const std::string& column);
+
+// The same of a column as its file has it, in the file's unit. An angle may turn for long.
+Measurable measurable_in_file(const CsvColumn& column);
+Measurable measurable_in_file(const CsvTime& time);
 
 }  // namespace ifog

@@ -41,13 +41,6 @@ class TableSink final : public RowSink {
   std::size_t bytes_;
 };
 
-Table whole(const ReadBytes& read, std::size_t bytes, const std::string& path, const CsvLayout& layout) {
-  Table table;
-  TableSink sink(table, bytes);
-  static_cast<RowNotes&>(table) = read_csv_rows(read, path, layout, sink);
-  return table;
-}
-
 }  // namespace
 
 Table table_of(const std::function<RowNotes(RowSink&)>& read) {
@@ -65,11 +58,14 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
     rest.remove_prefix(n);
     return n;
   };
-  return whole(read, text.size(), path, layout);
+  Table table;
+  TableSink sink(table, text.size());
+  static_cast<RowNotes&>(table) = read_csv_rows(read, path, layout, sink);
+  return table;
 }
 
 Table read_table(InputFile& file, const CsvLayout& layout) {
-  return whole([&file](char* to, std::size_t most) { return file.read(to, most); }, 0, file.path(), layout);
+  return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
 }
 
 std::size_t RowNotes::line_of_row(std::size_t row) const {

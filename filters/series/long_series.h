@@ -4,8 +4,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "drivers/ifog/unnamed_file.h"
 
 namespace ifog {
 
@@ -16,7 +19,7 @@ class LongSeries {
 
   // in_memory: numbers kept there before the file is begun, in $TMPDIR or else /var/tmp or /tmp.
   explicit LongSeries(std::size_t in_memory = kInMemory) : most_(in_memory) {}
-  ~LongSeries();
+  ~LongSeries() = default;
   LongSeries(LongSeries&& other) noexcept;
   LongSeries& operator=(LongSeries&& other) noexcept;
   LongSeries(const LongSeries&) = delete;
@@ -40,7 +43,7 @@ class LongSeries {
   std::size_t most_;
   std::vector<double> recent_;
   std::size_t filed_ = 0;
-  int fd_ = -1;
+  std::optional<UnnamedFile> file_;
 };
 
 }  // namespace ifog

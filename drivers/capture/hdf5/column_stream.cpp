@@ -46,6 +46,7 @@ void send_header(const SendBytes& send, const Hdf5Header& header) {
   append(body, header.comments);
   append(body, header.notices);
   append(body, header.rows);
+  append(body, header.by_column ? 1 : 0);
   send(head(static_cast<unsigned char>(ColumnStream::Kind::header), body.size()));
   send(body);
 }
@@ -70,25 +71,45 @@ ColumnStream::ColumnStream(ReceiveBytes receive) : receive_(std::move(receive)) 
   header_.comments = texts(kMostHdf5Comments, kLongestHdf5Text);
   header_.notices = texts(kMostNotices, kLongestNotice);
   header_.rows = number();
-  if (header_.names.empty() || header_.units.size() != header_.names.size() || header_.rows == 0) no_stream();
+  const std::uint64_t by_column = number();
+  header_.by_column = by_column == 1;
+  if (header_.names.empty() || header_.units.size() != header_.names.size() || header_.rows == 0 ||
+      by_column > 1)
+    no_stream();
   left_ = header_.rows;
+}
+
+void ColumnStream::values(std::uint64_t most, std::vector<double>& to) {
+  const Message message = begin();
+  if (message.kind == Kind::refusal) refused(message.bytes);
+  if (message.kind != Kind::values || message.bytes % sizeof(double) != 0) no_stream();
+  const std::size_t count = message.bytes / sizeof(double);
+  if (count == 0 || count > kMostValues || count > most) no_stream();
+  to.resize(count);
+  take({reinterpret_cast<char*>(to.data()), message.bytes});
 }
 
 bool ColumnStream::next(std::vector<std::vector<double>>& block) {
   if (left_ == 0) return false;
+  if (header_.by_column) no_stream();
   block.resize(header_.names.size());
-  std::size_t rows = 0;
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const Message message = begin();
-    if (message.kind == Kind::refusal) refused(message.bytes);
-    if (message.kind != Kind::values || message.bytes % sizeof(double) != 0) no_stream();
-    const std::size_t count = message.bytes / sizeof(double);
-    if (count == 0 || count > kMostValues || count > left_ || (i != 0 && count != rows)) no_stream();
-    rows = count;
-    block[i].resize(count);
-    take({reinterpret_cast<char*>(block[i].data()), message.bytes});
+  for (std::vector<double>& column : block) {
+    values(left_, column);
+    if (column.size() != block.front().size()) no_stream();
   }
-  left_ -= rows;
+  left_ -= block.front().size();
+  return true;
+}
+
+bool ColumnStream::next(std::size_t& column, std::vector<double>& to) {
+  if (!header_.by_column) no_stream();
+  if (column_ == header_.names.size()) return false;
+  column = column_;
+  values(left_, to);
+  left_ -= to.size();
+  if (left_ > 0) return true;
+  ++column_;
+  left_ = header_.rows;
   return true;
 }
 

@@ -11,7 +11,10 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kLeastBlock = 65'536, kMostBlock = 1'048'576;  // rows
-constexpr std::size_t kCache = 8U << 20U;                            // bytes of unpacked chunks, a dataset
+// Bytes of unpacked chunks: of a dataset, of all together, and of a single one that is kept. The library
+// takes three times a chunk while it unpacks it, and all of it stands below what its process may have.
+constexpr std::size_t kLeastKept = 512U << 10U, kMostKept = 8U << 20U, kKeptOfAll = 512U << 20U;
+constexpr std::size_t kMostChunk = 640U << 20U;
 // What a chunk of one value packs into, a thousandth, and more than deflate can: rows come block by block,
 // and what is kept of them is bounded elsewhere.
 constexpr std::uint64_t kMostGrowth = 1100, kGrowthFree = 256U << 20U;
@@ -111,9 +114,9 @@ void Hdf5Columns::open(const Hdf5Source& source) {
   const auto stay = [](const char*, const char*, const char*, const char*, unsigned*, hid_t,
                        void*) -> herr_t { return -1; };
   hdf5_demand(how.good() && access_.good() && H5Pset_file_locking(how, false, true) >= 0 &&
-                  H5Pset_elink_cb(access_, stay, nullptr) >= 0 &&
-                  H5Pset_chunk_cache(access_, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, kCache, 1.0) >= 0,
+                  H5Pset_elink_cb(access_, stay, nullptr) >= 0,
               "the HDF5 library does not start");
+  keep_unpacked(kMostKept);
   const bool in_memory = !source.image.empty();
   if (in_memory)
     hdf5_demand(H5Pset_fapl_core(how, 1U << 20U, false) >= 0 &&
@@ -122,6 +125,13 @@ void Hdf5Columns::open(const Hdf5Source& source) {
   // An image takes a name that no file has.
   file_ = Hdf5Id(H5Fopen(in_memory ? "/dev/null/image" : source.name.c_str(), H5F_ACC_RDONLY, how));
   hdf5_demand(file_.good(), "cannot be read as HDF5");
+}
+
+// Of each dataset that is opened from here on and that is not open.
+void Hdf5Columns::keep_unpacked(std::size_t bytes) {
+  hdf5_demand(H5Pset_chunk_cache(access_, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, bytes, 1.0) >= 0,
+              "the HDF5 library does not start");
+  kept_ = bytes;
 }
 
 // Every link of the group that is no group: what is no dataset is refused where it is opened.
@@ -156,7 +166,10 @@ std::vector<std::string> Hdf5Columns::datasets_of_group() {
 }
 
 void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
-  for (const std::string& name : wanted.names.empty() ? datasets_of_group() : wanted.names) add_dataset(name);
+  const std::vector<std::string> names = wanted.names.empty() ? datasets_of_group() : wanted.names;
+  if (!names.empty()) keep_unpacked(std::clamp(kKeptOfAll / names.size(), kLeastKept, kMostKept));
+  for (const std::string& name : names) add_dataset(name);
+  header_.by_column = chunk_bytes_ > kept_;
   if (!groups_.empty() && !columns_.empty())
     header_.notices.push_back("passed over: the groups " + list_of(groups_) + "; --group reads one");
 }
@@ -175,6 +188,7 @@ void Hdf5Columns::add_dataset(const std::string& name) {
   const Hdf5Id type(H5Dget_type(found));
   demand_numbers(type, name);
   check(found, name);
+  stored_ += header_.rows * H5Tget_size(type);
   header_.names.push_back(name);
   header_.units.push_back(hdf5_unit(found));
   columns_.push_back({std::move(found), Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE))});
@@ -186,11 +200,23 @@ void Hdf5Columns::check(hid_t dataset, const std::string& name) {
   const Hdf5Id properties(H5Dget_create_plist(dataset));
   hdf5_demand(properties.good(), in_quotes(name) + " cannot be read");
   demand_readable(properties, name);
-  // Whole chunks, so that each is unpacked once.
+  take_chunk(dataset, properties, name);
+}
+
+// Whole chunks are read, so that each is unpacked once; of one that is larger than a block it is kept.
+void Hdf5Columns::take_chunk(hid_t dataset, hid_t properties, const std::string& name) {
   hsize_t chunk = 1;
   if (H5Pget_layout(properties) == H5D_CHUNKED && H5Pget_chunk(properties, 1, &chunk) != 1) chunk = 1;
   const auto rows = static_cast<std::size_t>(std::clamp<hsize_t>(chunk, 1, kMostBlock));
   block_rows_ = std::max(block_rows_, (kLeastBlock + rows - 1) / rows * rows);
+  if (H5Pget_nfilters(properties) == 0) return;  // parts of it are read as they lie
+  const Hdf5Id type(H5Dget_type(dataset));
+  const std::uint64_t bytes = chunk * H5Tget_size(type);
+  if (bytes > kMostChunk)
+    refuse(in_quotes(name) + " is packed in chunks of " + std::to_string(bytes >> 20U) +
+           " MiB, expected at most " + std::to_string(kMostChunk >> 20U) +
+           " MiB; 'h5repack -l CHUNK=65536' makes smaller ones");
+  chunk_bytes_ = std::max(chunk_bytes_, static_cast<std::size_t>(bytes));
 }
 
 void Hdf5Columns::take_rows(hid_t dataset, const std::string& name) {
@@ -208,11 +234,19 @@ void Hdf5Columns::take_rows(hid_t dataset, const std::string& name) {
            std::to_string(header_.rows) + " of " + in_quotes(header_.names.front()));
 }
 
+// All columns are of one dataset: a chunk of it is kept until each has been taken from it.
 void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
   Hdf5Id type(H5Dget_type(place_));
   if (H5Tget_class(type) != H5T_COMPOUND)
     refuse(in_quotes(wanted.group) +
            " is a dataset, expected the group that holds it, or a table of records");
+  check(place_, wanted.group);
+  if (chunk_bytes_ > kept_) {
+    keep_unpacked(chunk_bytes_);
+    place_ = {};  // what is open stays as it was opened
+    place_ = Hdf5Id(H5Oopen(file_, wanted.group.c_str(), access_));
+    hdf5_demand(place_.good(), in_quotes(wanted.group) + " cannot be read");
+  }
   const std::vector<std::string> there = members_of(type);
   if (there.size() > kMostHdf5Columns)
     refuse("a table of " + std::to_string(there.size()) + " columns, expected at most " +
@@ -222,9 +256,9 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
     if (member < 0) refuse("no column " + in_quotes(name) + ", the table has " + list_of(there));
     const Hdf5Id kind(H5Tget_member_type(type, static_cast<unsigned>(member)));
     demand_numbers(kind, name);
+    stored_ += header_.rows * H5Tget_size(kind);
     Hdf5Id dataset(H5Dopen2(place_, ".", access_));
     hdf5_demand(dataset.good(), in_quotes(wanted.group) + " cannot be read");
-    check(dataset, wanted.group);
     Hdf5Id one(H5Tcreate(H5T_COMPOUND, sizeof(double)));
     hdf5_demand(one.good() && H5Tinsert(one, name.c_str(), 0, H5T_NATIVE_DOUBLE) >= 0,
                 in_quotes(name) + " cannot be read");
@@ -240,12 +274,23 @@ void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
            (groups_.empty() ? "" : ", which has the groups " + list_of(groups_) + "; --group reads one"));
   if (header_.rows == 0) refuse("no rows in its datasets");
   const std::uint64_t most = std::max(kGrowthFree, wanted.file_bytes * kMostGrowth);
-  if (header_.rows > most / sizeof(double) / columns_.size())
+  if (header_.rows > most || stored_ > most)
     refuse("grows to more than " + std::to_string(most >> 20U) + " MiB, " + std::to_string(kMostGrowth) +
            " times its size, when unpacked, expected a recording");
 }
 
-void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double> to) const {
+// Only this one is open, and keeps the chunk that is being read.
+void Hdf5Columns::turn_to(std::size_t column) {
+  if (open_ == column) return;
+  for (Column& other : columns_) other.dataset = {};
+  keep_unpacked(chunk_bytes_);
+  columns_[column].dataset = Hdf5Id(H5Dopen2(place_, header_.names[column].c_str(), access_));
+  hdf5_demand(columns_[column].dataset.good(), in_quotes(header_.names[column]) + " cannot be read");
+  open_ = column;
+}
+
+void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double> to) {
+  if (header_.by_column) turn_to(column);
   const Column& from = columns_[column];
   const hsize_t start = first, count = to.size();
   const Hdf5Id space(H5Dget_space(from.dataset)), memory(H5Screate_simple(1, &count, nullptr));

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct Hdf5Header {
   std::vector<std::string> comments;
   std::vector<std::string> notices;
   std::uint64_t rows = 0;
+  // Each column comes whole before the next one: some are packed in chunks larger than may be kept of every
+  // column at once.
+  bool by_column = false;
 };
 
 inline constexpr std::size_t kMostHdf5Columns = 1000;
@@ -47,8 +51,11 @@ class Hdf5Columns {
   [[nodiscard]] const Hdf5Header& header() const { return header_; }
   // Rows to read at once: whole chunks of the file, within reason.
   [[nodiscard]] std::size_t block_rows() const { return block_rows_; }
-  // Rows from `first` on of a column, as double. Throws likewise.
-  void read(std::size_t column, std::uint64_t first, std::span<double> to) const;
+  // Bytes of the largest chunk, unpacked.
+  [[nodiscard]] std::size_t chunk_bytes() const { return chunk_bytes_; }
+  // Rows from `first` on of a column, as double. By column, one is read after the other and each from its
+  // first row to its last, so that a chunk is unpacked once. Throws likewise.
+  void read(std::size_t column, std::uint64_t first, std::span<double> to);
 
  private:
   struct Column {
@@ -61,13 +68,19 @@ class Hdf5Columns {
   void add_dataset(const std::string& name);
   void check(hid_t dataset, const std::string& name);
   void take_rows(hid_t dataset, const std::string& name);
+  void take_chunk(hid_t dataset, hid_t properties, const std::string& name);
   void check_size(const Hdf5Wanted& wanted) const;
+  void keep_unpacked(std::size_t bytes);
+  void turn_to(std::size_t column);
 
   Hdf5Id access_, file_, place_;
   Hdf5Header header_;
   std::vector<Column> columns_;
   std::vector<std::string> groups_;  // within the group
-  std::size_t block_rows_ = 0;
+  std::size_t block_rows_ = 0, chunk_bytes_ = 0;
+  std::size_t kept_ = 0;             // bytes of unpacked chunks, a dataset
+  std::uint64_t stored_ = 0;         // bytes of all values as the file has them, unpacked
+  std::optional<std::size_t> open_;  // by column: which is
 };
 
 }  // namespace ifog

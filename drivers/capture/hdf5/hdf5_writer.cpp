@@ -56,14 +56,15 @@ Hdf5Id packed(hsize_t chunk) {
   return properties;
 }
 
-// As any reader understands it: by itself the library takes the oldest format that holds what is in the file.
-std::string image_of(hid_t file) {
-  hdf5_demand(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "cannot finish the HDF5 file");
-  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  hdf5_demand(size > 0, "cannot finish the HDF5 file");
-  std::string image(static_cast<std::size_t>(size), '\0');
-  hdf5_demand(H5Fget_file_image(file, image.data(), image.size()) == size, "cannot finish the HDF5 file");
-  return image;
+// Where the library has it in memory, until the file is closed, and not once more. As any reader understands
+// it: by itself the library takes the oldest format that holds what is in the file.
+std::string_view image_of(hid_t file) {
+  void* where = nullptr;  // of the driver's own pointer
+  const bool flushed = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+  const ssize_t size = flushed ? H5Fget_file_image(file, nullptr, 0) : -1;
+  hdf5_demand(size > 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &where) >= 0 && where != nullptr,
+              "cannot finish the HDF5 file");
+  return {*static_cast<const char* const*>(where), static_cast<std::size_t>(size)};
 }
 
 template <typename Work>
@@ -137,14 +138,13 @@ void Hdf5Writer::flush(std::size_t rows) {
 }
 
 void Hdf5Writer::finish() {
-  const std::string image = with_name(path_, [&] {
+  const std::string_view image = with_name(path_, [&] {
     flush(held_.front().size());
     datasets_.clear();
-    std::string bytes = image_of(file_);
-    file_ = {};
-    return bytes;
+    return image_of(file_);
   });
   out_.write(image);
+  file_ = {};
   out_.finish();
 }
 

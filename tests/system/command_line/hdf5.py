@@ -275,6 +275,54 @@ class Checks:
         file = write(self.folder / "lzf.h5", random_columns(500, 4), compression="lzf", chunks=(100,))
         self.refused(file, "is packed by filter 32000 (lzf), which is not here, expected gzip")
 
+    def check_columns_that_stay_as_they_are_come_back(self):
+        """More than 256 MiB of text or numbers that pack into less than a hundredth or a thousandth of it: no bomb, and whole."""
+        rows, columns = 120_000, 120
+        still = {f"c{i}_counts": 1.2345678901234567e-05 * (i + 1) for i in range(columns)}
+        text, first, packed, again = (self.folder / name for name in ("still.csv", "still.h5", "still.csv.gz", "again.h5"))
+        cells = "," + ",".join(repr(value) for value in still.values()) + "\n"
+        with open(text, "w") as out:
+            out.write("time_s,rate_radps," + ",".join(still) + "\n")
+            for i in range(rows):
+                out.write(f"{i},0" + cells)
+        ifog("convert", text, first)
+        ifog("convert", first, packed)
+        ifog("convert", packed, again)
+        assert text.stat().st_size > max(256 << 20, 130 * packed.stat().st_size), packed.stat()
+        assert rows * columns * 8 > 700 * first.stat().st_size, first.stat()
+        assert again.read_bytes() == first.read_bytes(), "other numbers"
+        with h5py.File(again) as file:
+            for name, value in still.items():
+                assert file[name].shape == (rows,) and numpy.all(file[name][:] == value), name
+        for file in (text, first, packed, again):
+            file.unlink()
+        # Bytes that stay as they are grow eightfold once more, as numbers.
+        flags = {"time_s": numpy.arange(2_000_000, dtype="<i4"), "rate_radps": numpy.zeros(2_000_000, dtype="<i1")}
+        flags.update({f"flag_{i}_counts": numpy.full(2_000_000, i, dtype="<u1") for i in range(20)})
+        file = write(self.folder / "flags.h5", flags, compression="gzip", compression_opts=9, shuffle=True, chunks=(65536,))
+        assert 2_000_000 * len(flags) * 8 > max(256 << 20, 1100 * file.stat().st_size), file.stat()
+        ifog("convert", file, again)
+        with h5py.File(again) as back:
+            assert all(numpy.array_equal(back[name][:], values) for name, values in flags.items())
+
+    def check_reads_tables_of_one_chunk(self):
+        """Larger than what is kept of a dataset unless it is all in one chunk."""
+        rows = 700_000
+        expected = random_columns(rows, 7)
+        records = numpy.rec.fromarrays(list(expected.values()), names=list(expected))
+        file = self.folder / "table.h5"
+        with h5py.File(file, "w") as inside:
+            inside.create_dataset("t", data=records, chunks=(rows,), compression="gzip", compression_opts=1)
+        out = self.folder / "table_back.h5"
+        ifog("convert", file, out, "--group", "/t", *(word for name in list(expected)[1:] for word in ("--column", f"{name}={name}")))
+        with h5py.File(out) as back:
+            for name, values in expected.items():
+                assert back[name][:].tobytes() == values.tobytes(), name
+        with h5py.File(file, "w") as inside:  # and more than can be: 640 MiB
+            for name in ("time_s", "rate_radps"):
+                inside.create_dataset(name, data=numpy.arange(4.0), maxshape=(None,), chunks=(2**27,), compression="gzip")
+        self.refused(file, "is packed in chunks of 1024 MiB, expected at most 640 MiB; 'h5repack -l CHUNK=65536'")
+
     def check_more_than_there_is_is_not_believed(self):
         """A file of a few kilobytes that says it holds a thousand million rows."""
         file = self.folder / "bomb.h5"

@@ -2,6 +2,7 @@
 // What comes through the barrier between the HDF5 library and us, packed by hand; and that what is beyond it
 // can do as it likes. What others write and read is tried by system/command_line/hdf5.py.
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/hdf5/column_stream.h"
+#include "drivers/capture/hdf5/hdf5_id.h"
 #include "drivers/capture/hdf5/hdf5_input.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/capture/hdf5/hdf5_writer.h"
@@ -47,9 +49,10 @@ std::string packed_values(const std::vector<double>& values) {
 
 std::string message(char kind, const std::string& body) { return kind + packed(body.size()) + body; }
 
-std::string header(std::uint64_t rows, const std::vector<std::string>& units = {"s", ""}) {
+std::string header(std::uint64_t rows, const std::vector<std::string>& units = {"s", ""},
+                   std::uint64_t by_column = 0) {
   return message(1, packed_texts({"time_s", "rate_radps"}) + packed_texts(units) + packed_texts({"a gyro"}) +
-                        packed_texts({}) + packed(rows));
+                        packed_texts({}) + packed(rows) + packed(by_column));
 }
 
 std::string values(const std::vector<double>& of) { return message(2, packed_values(of)); }
@@ -71,8 +74,11 @@ Read read(std::string bytes) {
       return true;
     });
     out.columns.resize(stream.header().names.size());
+    std::vector<double> values;
+    for (std::size_t i = 0; stream.header().by_column && stream.next(i, values);)
+      out.columns[i].insert(out.columns[i].end(), values.begin(), values.end());
     std::vector<std::vector<double>> block;
-    while (stream.next(block))
+    while (!stream.header().by_column && stream.next(block))
       for (std::size_t i = 0; i < block.size(); ++i)
         out.columns[i].insert(out.columns[i].end(), block[i].begin(), block[i].end());
   } catch (const std::length_error& error) {
@@ -87,6 +93,19 @@ TEST(Hdf5Stream, TakesAHeaderAndRowsInBlocks) {
   const Read got = read(header(3) + values({0, 1}) + values({5, 6}) + values({2}) + values({7}));
   EXPECT_EQ(got.refusal + got.no_stream, "");
   EXPECT_EQ(got.columns, (std::vector<std::vector<double>>{{0, 1, 2}, {5, 6, 7}}));
+}
+
+TEST(Hdf5Stream, TakesColumnsOneAfterTheOther) {
+  const std::string by_column = header(3, {"s", ""}, 1);
+  const Read got = read(by_column + values({0, 1}) + values({2}) + values({5}) + values({6, 7}));
+  EXPECT_EQ(got.refusal + got.no_stream, "");
+  EXPECT_EQ(got.columns, (std::vector<std::vector<double>>{{0, 1, 2}, {5, 6, 7}}));
+  EXPECT_EQ(read(by_column + values({0, 1}) + message(3, "no more")).refusal, "no more");
+  for (const std::string& bytes :
+       {values({0, 1}), values({0, 1, 2, 3}), values({0, 1, 2}) + values({5, 6, 7, 8}),
+        values({0, 1, 2}) + values({}), std::string()})
+    EXPECT_NE(read(by_column + bytes).no_stream, "") << bytes.size();
+  EXPECT_NE(read(header(3, {"s", ""}, 2)).no_stream, "");
 }
 
 TEST(Hdf5Stream, ARefusalIsSaidWheneverItComesAndOnOneLine) {
@@ -179,6 +198,45 @@ TEST_F(Hdf5File, ALeftReaderIsGone) {
   }
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
   EXPECT_EQ(errno, ECHILD);
+}
+
+// As others write columns, in chunks of so many rows; the last one under two names.
+void write_chunks(const std::string& path, const std::vector<std::vector<double>>& columns, hsize_t chunk) {
+  const Hdf5Id file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  const Hdf5Id how(H5Pcreate(H5P_DATASET_CREATE));
+  ASSERT_TRUE(H5Pset_chunk(how, 1, &chunk) >= 0 && H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, 1) >= 0);
+  const std::vector<const char*> names = {"time_s", "rate_radps", "count_counts"};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const hsize_t rows = columns[i].size();
+    const Hdf5Id space(H5Screate_simple(1, &rows, nullptr));
+    const Hdf5Id set(H5Dcreate2(file, names[i], H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT));
+    ASSERT_GE(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, columns[i].data()), 0);
+  }
+  ASSERT_GE(H5Lcreate_hard(file, "count_counts", file, "again_counts", H5P_DEFAULT, H5P_DEFAULT), 0);
+}
+
+// In chunks larger than are kept of every column at once: one, two and a part of one, and one beyond the end.
+TEST_F(Hdf5File, ReadsChunksOfAnySizeToTheBit) {
+  constexpr std::size_t kRows = 2'500'001;
+  std::vector<std::vector<double>> columns(3, std::vector<double>(kRows));
+  for (std::size_t i = 0; i < kRows; ++i) {
+    columns[0][i] = static_cast<double>(i) / 1024.0;
+    columns[1][i] = static_cast<double>(i * 7919 % 1'000'003) * 1e-9;
+    columns[2][i] = static_cast<double>(i / 1000);
+  }
+  for (const std::size_t chunk : {kRows, std::size_t{1'200'000}, std::size_t{1'048'577}}) {
+    write_chunks(path("c.h5"), columns, chunk);
+    InputFile input(path("c.h5"));
+    Hdf5Input reader(input, "", {});
+    EXPECT_TRUE(reader.header().by_column);
+    const std::vector<std::size_t> of = {2, 2, 1, 0};  // again, count, rate, time, as they are sorted
+    ASSERT_EQ(reader.header().names.size(), of.size());
+    std::vector<std::vector<double>> got(of.size()), block;
+    while (reader.next(block))
+      for (std::size_t c = 0; c < block.size(); ++c)
+        got[c].insert(got[c].end(), block[c].begin(), block[c].end());
+    for (std::size_t c = 0; c < got.size(); ++c) EXPECT_TRUE(got[c] == columns[of[c]]) << chunk << " " << c;
+  }
 }
 
 }  // namespace

@@ -192,9 +192,7 @@ RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
     throw CLI::ValidationError("--group",
                                "stands beside " + in_quotes(file.path()) + ", expected an HDF5 file");
   const ReadingProgress progress(file);
-  const auto read = [&file](char* to, std::size_t most) { return file.read(to, most); };
-  RowNotes notes =
-      hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(read, file.path(), layout(), sink);
+  RowNotes notes = hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(file, layout(), sink);
   tell(notes.notices, notes.faults);
   return notes;
 }

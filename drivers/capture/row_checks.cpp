@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/row_checks.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "drivers/capture/column_names.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMostImpossible = 0.01;  // of a rate's values; more are no single fault of a logger
+
+std::vector<std::size_t> rates_of(const std::vector<FileColumn>& columns) {
+  std::vector<std::size_t> rates;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (columns[c].rate) rates.push_back(c);
+  return rates;
+}
+
+// "; 3 such cells taken for missing"
+std::string taken_for_missing(std::size_t count, const std::string& thing) {
+  return "; " + std::to_string(count) + " such " + thing + (count == 1 ? "" : "s") + " taken for missing";
+}
+
+}  // namespace
+
+std::string what_no_sensor_measures(const std::string& name, const std::string& said,
+                                    const Measurable& range) {
+  return printable(name) + " is " + said + ", which no sensor measures, expected " + shortest(range.least) +
+         " to " + shortest(range.most);
+}
+
+std::string in_row(std::size_t row) { return " in row " + std::to_string(row + 1); }
+
+RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns,
+                     RowSink& sink, RowNotes& notes)
+    : path_(path),
+      layout_(layout),
+      columns_(std::move(columns)),
+      notes_(notes),
+      rates_(rates_of(columns_)),
+      leaps_(rates_, [&sink](RowBlock& rows) { sink.take(rows); }) {
+  if (std::any_of(layout.columns.begin(), layout.columns.end(), [](const auto& c) { return c.is_angle(); }))
+    all_.emplace();
+}
+
+void RowChecks::take(RowBlock& rows) {
+  if (layout_.chooses()) convert(rows, layout_, notes_, path_, rows_, last_s_);
+  last_s_ = rows.time_s.back();
+  times_.take(rows.time_s);
+  rows_ += rows.size();
+  if (!all_) return leaps_.take(rows);
+  all_->columns.resize(rows.columns.size());
+  all_->time_s.insert(all_->time_s.end(), rows.time_s.begin(), rows.time_s.end());
+  for (std::size_t c = 0; c < rows.columns.size(); ++c)
+    all_->columns[c].insert(all_->columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
+}
+
+void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known) {
+  for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
+  if (all_) {
+    as_rates(*all_, layout_, notes_, path_);
+    leaps_.take(*all_);
+  }
+  leaps_.finish();
+  tell_leaps();
+  if (const auto notice = times_.notice(path_); notice && !layout_.time && !unit_known)
+    notes_.notices.push_back(*notice);
+}
+
+void RowChecks::told(std::size_t row, const std::string& what) {
+  const std::size_t line = notes_.line_of_row(row);
+  notes_.faults.push_back(path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what);
+}
+
+void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues& found) {
+  if (found.count == 0) return;
+  // Of a text the line is told, and what stands in it.
+  const std::size_t line = notes_.line_of_row(found.first_row);
+  const std::string thing = line == 0 ? "value" : "cell";
+  const std::string what = what_no_sensor_measures(
+      column.name, line == 0 ? found.first + in_row(found.first_row) : in_quotes(found.first), column.range);
+  const bool few =
+      found.count == 1 || static_cast<double>(found.count) <= kMostImpossible * static_cast<double>(rows_);
+  if (column.rate && (rows_ == 1 || !few))
+    fail_at(
+        path_, line,
+        what + (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its " + thing + "s"
+                                : ""));
+  told(found.first_row, what + taken_for_missing(found.count, thing));
+}
+
+void RowChecks::tell_leaps() {
+  for (std::size_t r = 0; r < rates_.size(); ++r) {
+    const Leaps::Found& found = leaps_.found()[r];
+    if (found.count == 0) continue;
+    const bool text = notes_.line_of_row(found.first_row) != 0;
+    told(found.first_row, printable(columns_[rates_[r]].name) +
+                              " says more than half a turn within one sample, from standstill to standstill" +
+                              (text ? "" : ", first" + in_row(found.first_row)) +
+                              taken_for_missing(found.count, text ? "cell" : "value"));
+  }
+}
+
+}  // namespace ifog

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rows of every format go through on their way to whom they are for: chosen columns are converted,
+// angles become rates, and what no sensor measures is missing from here on and told, or refused.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/chosen_columns.h"
+#include "drivers/capture/csv_layout.h"
+#include "drivers/capture/leaps.h"
+#include "drivers/capture/measurable.h"
+#include "drivers/capture/row_sink.h"
+
+namespace ifog {
+
+// A column of the file beside the time.
+struct FileColumn {
+  std::string name;   // in the file
+  Measurable range;   // in the file's unit
+  bool rate = false;  // of the capture: a rate or its reference
+};
+
+// Values of a column that said what no sensor measures, and are taken for missing.
+struct ImpossibleValues {
+  std::size_t count = 0;
+  std::size_t first_row = 0;  // counted from 0
+  std::string first;          // as it stands there
+};
+
+// "rate_radps is '1e9', which no sensor measures, expected …"; said: the value, as it is to be shown.
+std::string what_no_sensor_measures(const std::string& name, const std::string& said,
+                                    const Measurable& range);
+// " in row 3", of a file that has no lines.
+std::string in_row(std::size_t row);
+
+class RowChecks {
+ public:
+  // columns: in the order of the names that the sink was told. The path, the layout, the sink and the notes
+  // stay where they are while this is used.
+  RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
+            RowNotes& notes);
+
+  // The next rows in the file's units, at least one. Throws std::runtime_error with one line, as finish().
+  void take(RowBlock& rows);
+  // found: of each column. A value here and there is a fault of the logger, and is missing; where many are, a
+  // rate is not what its name says, and is refused. A channel is only missing then: a broken thermometer is
+  // no reason to know nothing of the rate. unit_known: the time says its unit by more than its name.
+  void finish(std::span<const ImpossibleValues> found, bool unit_known);
+
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+
+ private:
+  void tell_impossible(const FileColumn& column, const ImpossibleValues& found);
+  void tell_leaps();
+  void told(std::size_t row, const std::string& what);
+
+  const std::string& path_;
+  const CsvLayout& layout_;
+  const std::vector<FileColumn> columns_;
+  RowNotes& notes_;
+  const std::vector<std::size_t> rates_;  // columns
+  Leaps leaps_;
+  std::optional<RowBlock> all_;  // where angles become rates
+  WholeTimes times_;
+  std::size_t rows_ = 0;
+  double last_s_ = 0.0;  // time of the row before, once there is one
+};
+
+}  // namespace ifog

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Room for numbers that are more than memory is for: a file without a name in $TMPDIR or else /var/tmp or
+// /tmp, which nothing is left of when the program ends however it ends. Header only, for all above this.
+#pragma once
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace ifog {
+
+class UnnamedFile {
+ public:
+  // Throws std::runtime_error with one line, as all of it: no room there, an error of its device.
+  UnnamedFile() : fd_(opened()) {}
+  ~UnnamedFile() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  UnnamedFile(UnnamedFile&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  UnnamedFile& operator=(UnnamedFile&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+
+  // first: the place of the first of the numbers in the file, counted in numbers.
+  void write(std::size_t first, std::span<const double> numbers) {
+    const char* at = reinterpret_cast<const char*>(numbers.data());
+    std::size_t left = numbers.size_bytes(), offset = first * sizeof(double);
+    while (left > 0) {
+      const ssize_t n = ::pwrite(fd_, at, left, static_cast<off_t>(offset));
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) fail("cannot write");
+      at += n;
+      left -= static_cast<std::size_t>(n);
+      offset += static_cast<std::size_t>(n);
+    }
+  }
+
+  // to: as many as are wanted, all of them there. Several threads may read at once.
+  void read(std::size_t first, std::span<double> to) const {
+    char* at = reinterpret_cast<char*>(to.data());
+    std::size_t left = to.size_bytes(), offset = first * sizeof(double);
+    while (left > 0) {
+      const ssize_t n = ::pread(fd_, at, left, static_cast<off_t>(offset));
+      if (n < 0 && errno == EINTR) continue;
+      if (n == 0) errno = EIO;
+      if (n <= 0) fail("cannot read");
+      at += n;
+      left -= static_cast<std::size_t>(n);
+      offset += static_cast<std::size_t>(n);
+    }
+  }
+
+ private:
+  static std::string folder() {
+    const char* const named = std::getenv("TMPDIR");
+    if (named != nullptr && *named != '\0') return named;
+    // What is in /tmp may be memory again.
+    return ::access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
+  }
+
+  [[noreturn]] static void fail(const char* what) {
+    const std::string reason = std::generic_category().message(errno);
+    throw std::runtime_error(folder() + ": " + what + " a file for what is longer than memory is for: " +
+                             reason + "; expected room there, or TMPDIR with the name of another folder");
+  }
+
+  static int opened() {
+    const std::string where = folder();
+    const int fd = ::open(where.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (fd >= 0) return fd;
+    std::string name = where + "/ifog-XXXXXX";
+    const int named = ::mkostemp(name.data(), O_CLOEXEC);
+    if (named < 0) fail("cannot make");
+    ::unlink(name.c_str());
+    return named;
+  }
+
+  int fd_;
+};
+
+}  // namespace ifog
