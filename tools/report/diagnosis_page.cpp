@@ -7,139 +7,19 @@
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
 #include "tools/report/account.h"
-#include "tools/report/chart.h"
+#include "tools/report/diagnosis_pictures.h"
 #include "tools/report/interaction.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"
-#include "tools/report/traced.h"
 #include "tools/report/words.h"
 
 namespace ifog::report {
 namespace {
 
-using Series = std::vector<double>;
-
-// About its mean, which is the switch-on bias.
-Series centred(Series x, double scale) {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const double value : x)
-    if (std::isfinite(value)) sum += value, ++count;
-  for (double& value : x)
-    value = (value - sum / static_cast<double>(std::max<std::size_t>(count, 1))) * scale;
-  return x;
-}
-
-std::string figure_html(const std::string& svg, const std::string& caption) {
-  if (svg.empty()) return "";
-  return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
-}
-
 std::string section(const std::string& id, const std::string& heading, const std::string& body) {
   if (body.empty()) return "";
   return "<section aria-labelledby=\"" + id + "\">\n<h2 id=\"" + id + "\">" + heading + "</h2>\n" + body +
          "</section>\n";
-}
-
-// From the record's first moment: seconds since 1970 would leave a picture no digits.
-Series since_start(const Series& time_s, const TimeUnit& unit) {
-  Series out;
-  for (const double t : time_s) out.push_back((t - time_s.front()) / unit.seconds);
-  return out;
-}
-
-// "in 1 s means": the series are block means of whatever length kept them drawable.
-std::string block_words(const DiagnosisSeries& s) {
-  if (s.time_s.size() < 2) return "";
-  return duration(s.time_s[1] - s.time_s[0]) + " means";
-}
-
-std::string time_picture(const Diagnosis& d) {
-  const DiagnosisSeries& s = d.series;
-  if (s.time_s.empty()) return "";
-  const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
-  Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
-              {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
-  const Series t = since_start(s.time_s, unit);
-  chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
-  if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
-  // Bursts come in clusters: a word where there is room for one.
-  double named = -1e300;
-  for (const double burst : d.unexplained.times_s) {
-    const bool room = burst - named > 0.1 * (s.time_s.back() - s.time_s.front());
-    chart.mark_x((burst - s.time_s.front()) / unit.seconds, room ? "burst" : "");
-    if (room) named = burst;
-  }
-  return figure_html(chart.svg(), "The error, " + block_words(s) + ", about its mean.");
-}
-
-std::string spectrum_picture(const Diagnosis& d) {
-  const DiagnosisSeries& s = d.series;
-  Chart chart("Spectrum of the error, before and after",
-              "Amplitude spectral density over frequency, both on logarithmic axes.",
-              {"frequency (Hz)", true, {}, {}}, {"density (°/h/√Hz)", true, {}, {}});
-  chart.line(Role::kBefore, "before", s.frequency_hz, scaled(s.before_radps_rthz, 1.0 / kDegreePerHour));
-  if (!d.effects.empty())
-    chart.line(Role::kAfter, "after", s.frequency_hz, scaled(s.after_radps_rthz, 1.0 / kDegreePerHour));
-  if (d.unexplained.frequency_hz > 0.0)
-    chart.mark_x(d.unexplained.frequency_hz, number(d.unexplained.frequency_hz, 3) + " Hz");
-  return figure_html(chart.svg(), "Its spectrum. A line stands up; slow wander rises to the left.");
-}
-
-std::string allan_picture(const Diagnosis& d) {
-  const DiagnosisSeries& s = d.series;
-  Chart chart("Allan deviation, before and after",
-              "Allan deviation over averaging time tau, both on logarithmic axes.",
-              {"averaging time τ (s)", true, {}, {}}, {"Allan deviation (°/h)", true, {}, {}});
-  chart.line(Role::kBefore, "before", s.tau_s, scaled(s.before_adev_radps, 1.0 / kDegreePerHour));
-  if (!d.effects.empty())
-    chart.line(Role::kAfter, "after", s.tau_s, scaled(s.after_adev_radps, 1.0 / kDegreePerHour));
-  if (s.after_adev_low_radps.size() == s.tau_s.size() && s.after_adev_high_radps.size() == s.tau_s.size())
-    chart.band(Role::kAfter, s.tau_s, scaled(s.after_adev_low_radps, 1.0 / kDegreePerHour),
-               scaled(s.after_adev_high_radps, 1.0 / kDegreePerHour));
-  return figure_html(chart.svg(),
-                     "Allan deviation, with the interval that holds the true one in 68 % of cases: what is "
-                     "left when the rate is averaged over τ. White noise falls by half a decade "
-                     "a decade; a slope that ends or a hump is an error the averaging does not remove.");
-}
-
-std::string traced_picture(const PageAxis& axis, std::size_t index) {
-  const Diagnosis& d = *axis.diagnosis;
-  const Effect& effect = d.effects[index].effect;
-  const Traced t = trace(axis.records, d, index);
-  if (t.x.empty()) return "";
-  const double scale = t.angle ? 1e6 : 1.0 / kDegreePerHour;
-  Chart chart(
-      "The error against " + channel_words(effect.channel) + ", with the fitted effect",
-      "Means of the error without the other effects, over " + t.x_label + ", and the effect that was fitted.",
-      {t.x_label, false, {}, {}}, {t.y_label, false, {}, {}});
-  chart.points(Role::kBefore, "measured", t.x, scaled(t.y, scale));
-  chart.line(Role::kFit, "fitted", t.curve_x, scaled(t.curve_y, scale));
-  return figure_html(chart.svg(480, 320),
-                     "Against what it was traced to: each dot the mean of a ninetieth of the "
-                     "samples, all other effects taken away.");
-}
-
-std::string contribution_picture(const Diagnosis& d, std::size_t index) {
-  const DiagnosisSeries& s = d.series;
-  if (index >= s.contribution_radps.size() || s.contribution_radps[index].size() != s.time_s.size())
-    return "";
-  if (s.time_s.empty()) return "";
-  const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
-  const Series t = since_start(s.time_s, unit);
-  const Series& part = s.contribution_radps[index];
-  const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
-  Series with(effect);
-  for (std::size_t k = 0; k < with.size(); ++k) with[k] += after[k];
-  std::size_t turns = 0;  // an effect faster than a pixel is only a bar of ink
-  for (std::size_t k = 2; k < part.size(); ++k)
-    if ((effect[k] - effect[k - 1]) * (effect[k - 1] - effect[k - 2]) < 0.0) ++turns;
-  if (turns > 250 && turns > part.size() / 3) return "";
-  Chart chart("The effect over time", "The error without the other effects, and this effect's part of it.",
-              {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
-  chart.line(Role::kBefore, "measured", t, scaled(with, 1.0 / kDegreePerHour));
-  chart.line(Role::kFit, "fitted", t, scaled(effect, 1.0 / kDegreePerHour));
-  return figure_html(chart.svg(480, 320), "The same over time, " + block_words(s) + ".");
 }
 
 std::string parameter_rows(const Effect& e) {
@@ -259,21 +139,13 @@ std::string noise_table(const NoiseTerms& noise) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string heading_picture(const HeadingPrediction& h) {
+std::string heading_words(const HeadingPrediction& h) {
   if (h.after_s.empty()) return "";
-  const TimeUnit unit = time_unit(h.after_s.back());
-  Chart chart("Predicted heading error of the next capture",
-              "Standard deviation of the heading error over time.",
-              {std::string("time since the alignment (") + unit.name + ")", false, 0.0, {}},
-              {"heading error, 1 σ (°)", false, 0.0, {}});
-  chart.line(Role::kAfter, "", scaled(h.after_s, 1.0 / unit.seconds), scaled(h.sigma_rad, 1.0 / kDegree));
   return "<p>With the bias taken over the first " + duration(h.aligned_s) +
          " at rest and held, this sensor is expected "
          "to be " +
          number(h.sigma_rad.back() / kDegree, 2) + "° off (1 σ) after " + duration(h.after_s.back()) +
-         ".</p>\n" +
-         figure_html(chart.svg(720, 260),
-                     "Expected heading error of the next capture, one standard deviation.");
+         ".</p>\n";
 }
 
 std::string remaining(const Diagnosis& d) {
@@ -283,7 +155,7 @@ std::string remaining(const Diagnosis& d) {
     for (const std::string& remark : d.remarks) out += "<li>" + escaped(sentence(remark)) + "</li>\n";
     out += "</ul>\n";
   }
-  return out + noise_table(d.noise) + heading_picture(d.heading);
+  return out + noise_table(d.noise) + heading_words(d.heading) + heading_picture(d.heading);
 }
 
 std::string applying(const Page& page) {
@@ -329,7 +201,7 @@ std::string origin(const Page& page) {
          rows + "</tbody></table></div>\n";
 }
 
-std::string axis_sections(const Page& page, const PageAxis& axis) {
+std::string axis_sections(const PageAxis& axis) {
   const Diagnosis& d = *axis.diagnosis;
   const std::string id = axis.axis.empty() ? "" : "-" + axis.axis;
   const std::string of = axis.axis.empty() ? "" : ", axis " + escaped(axis.axis);
@@ -347,7 +219,6 @@ std::string axis_sections(const Page& page, const PageAxis& axis) {
   out += section("figures" + id, "Before and after in figures" + of, figures_table(d));
   out += section("confusable" + id, "What cannot be told apart" + of, confusable_list(d));
   out += section("remaining" + id, "What remains" + of, remaining(d));
-  (void)page;
   return out;
 }
 
@@ -390,7 +261,7 @@ std::string diagnosis_page(const Page& page) {
       "<link rel=\"icon\" href=\"data:,\">\n<title>" +
       title + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
       "</h1>\n<p class=\"sub\">" + names + " · " + size + "</p>\n" + contents(page);
-  for (const PageAxis& axis : page.axes) out += axis_sections(page, axis);
+  for (const PageAxis& axis : page.axes) out += axis_sections(axis);
   out += section("apply", "Applying it", applying(page));
   out += section("origin", "Where it comes from", origin(page));
   out +=

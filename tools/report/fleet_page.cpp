@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <set>
 
 #include "drivers/ifog/quoted.h"
@@ -52,28 +54,44 @@ std::string on_axis(const std::string& axis) { return axis.empty() ? "" : ", axi
 
 std::string count(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
 
+// Gyros from the left to the right, the first of the manifest being 1, none at the frame's edge.
+ChartAxis gyro_axis(std::size_t last) {
+  return {"gyro, in the manifest's order", false, 0.5, static_cast<double>(last) + 1.5};
+}
+
+// With room above and below, so that a band is seen to end.
+ChartAxis roomy_axis(const std::string& label, std::initializer_list<const std::vector<double>*> all) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const std::vector<double>* const values : all)
+    for (const double value : *values)
+      if (std::isfinite(value)) least = std::min(least, value), most = std::max(most, value);
+  if (!(most >= least)) return {label, false, {}, {}};
+  const double room = most > least ? 0.12 * (most - least) : std::max(std::abs(most), 1e-300) * 0.1;
+  return {label, false, least - room, most + room};
+}
+
 // Every gyro's coefficient alone and with what the type says, over its number in the manifest.
 std::string gyros_picture(const TypeEffect& effect) {
   const FieldUnit unit = field_unit(effect.effect.parameters.front().unit);
   std::vector<double> x, own, with_x, with, band_x, low, high;
   for (const EffectInGyro& each : effect.gyros) {
     if (!each.own) continue;
-    x.push_back(static_cast<double>(each.gyro));
+    x.push_back(static_cast<double>(each.gyro) + 1.0);
     own.push_back(each.own->value * unit.scale);
     if (!each.with_prior) continue;
     with_x.push_back(x.back());
     with.push_back(each.with_prior->value * unit.scale);
   }
   if (x.size() < 2) return "";
-  for (const double end : {x.front(), x.back()}) {
+  const ChartAxis along = gyro_axis(effect.gyros.back().gyro);
+  for (const double end : {*along.low, *along.high}) {
     band_x.push_back(end);
     low.push_back((effect.prior.mean - effect.prior.spread) * unit.scale);
     high.push_back((effect.prior.mean + effect.prior.spread) * unit.scale);
   }
   Chart chart("The coefficient in each gyro",
-              "Each gyro's coefficient by its own captures, and together with what the type says.",
-              {"gyro, in the manifest's order", false, {}, {}},
-              {"coefficient (" + unit.unit + ")", false, {}, {}});
+              "Each gyro's coefficient by its own captures, and together with what the type says.", along,
+              roomy_axis("coefficient (" + unit.unit + ")", {&own, &with, &low, &high}));
   chart.band(Role::kFit, band_x, low, high);
   chart.points(Role::kBefore, "its captures alone", x, own);
   chart.points(Role::kAfter, "with the type's prior", with_x, with);
@@ -137,20 +155,24 @@ std::string parameter_row(const PopulationParameter& each) {
 }
 
 std::string z_picture(const Population& p) {
+  if (p.serials.size() < 2) return "";
+  const ChartAxis along = gyro_axis(p.serials.size() - 1);
+  const std::vector<double> limits = {-kStandsOut, kStandsOut};  // seen also where no gyro is near them
+  std::vector<double> drawn = limits;
+  for (std::size_t i = 0; i < std::min(kMostDrawn, p.parameters.size()); ++i)
+    drawn.insert(drawn.end(), p.parameters[i].z.begin(), p.parameters[i].z.end());
   Chart chart("How far each gyro is from the median",
-              "Robust z of every parameter, over the gyro's number in the manifest.",
-              {"gyro, in the manifest's order", false, {}, {}},
-              {"distance from the median (robust σ)", false, {}, {}});
-  const double last = static_cast<double>(p.serials.size()) - 1.0;
-  for (const double limit : {-kStandsOut, kStandsOut})
-    chart.guide(Role::kRaw, {0.0, last}, {limit, limit}, {"", 0.0, limit, "start"});
+              "Robust z of every parameter, over the gyro's number in the manifest.", along,
+              roomy_axis("distance from the median (robust σ)", {&drawn}));
+  for (const double limit : limits)
+    chart.guide(Role::kRaw, {*along.low, *along.high}, {limit, limit}, {"", 0.0, limit, "start"});
   for (std::size_t i = 0; i < std::min(kMostDrawn, p.parameters.size()); ++i) {
     const PopulationParameter& each = p.parameters[i];
     std::vector<double> x;
-    for (const std::size_t gyro : each.gyros) x.push_back(static_cast<double>(gyro));
+    for (const std::size_t gyro : each.gyros) x.push_back(static_cast<double>(gyro) + 1.0);
     chart.points(role_of(i), parameter_label(each), x, each.z);
   }
-  if (chart.empty() || p.serials.size() < 2) return "";
+  if (chart.empty()) return "";
   return figure_html(chart.svg(),
                      "Beyond the thin lines, 3.5 robust standard deviations, a gyro stands out.");
 }
