@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
+#include "msgs/axis_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
@@ -79,8 +81,9 @@ void tell_innovations(const Watched& watched) {
   std::string text;
   for (std::size_t a = 0; a < watched.nis.size(); ++a) {
     char figures[80];
-    std::snprintf(figures, sizeof figures, "%sNIS %.3f, whiteness %+.3f", a == 0 ? "" : "; ", watched.nis[a],
-                  watched.whiteness[a]);
+    const std::string_view axis = axis_name(a, watched.nis.size());
+    std::snprintf(figures, sizeof figures, "%s%.*s NIS %.3f, whiteness %+.3f", a == 0 ? "" : "; ",
+                  static_cast<int>(axis.size()), axis.data(), watched.nis[a], watched.whiteness[a]);
     text += figures;
   }
   say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds, text.c_str(),

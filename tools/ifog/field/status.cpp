@@ -8,9 +8,11 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
+#include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/json_file.h"
@@ -105,8 +107,9 @@ void say_live(const status_t& status) {
   std::string health;
   for (std::size_t a = 0; a < status.nis_mean.size(); ++a) {
     std::array<char, 80> text{};
-    std::snprintf(text.data(), text.size(), "%sNIS %.2f, whiteness %+.2f", a == 0 ? "" : "; ",
-                  status.nis_mean[a], status.whiteness[a]);
+    const std::string_view axis = axis_name(a, status.nis_mean.size());
+    std::snprintf(text.data(), text.size(), "%s%.*s NIS %.2f, whiteness %+.2f", a == 0 ? "" : "; ",
+                  static_cast<int>(axis.size()), axis.data(), status.nis_mean[a], status.whiteness[a]);
     health += text.data();
   }
   say("  health: %s; %lld manoeuvres, %lld divergences, %lld samples out of the model's range\n",

@@ -9,6 +9,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
+#include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/field/books.h"
 #include "tools/ifog/monitor/spark_line.h"
@@ -120,11 +121,6 @@ std::vector<std::string> counted(const std::vector<SensorView::Count>& counts) {
 }
 
 }  // namespace
-
-std::string_view axis_name(std::size_t axis, std::size_t axes) {
-  constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
-  return axes == 1 ? "rate" : axis < kNames.size() ? kNames[axis] : "?";
-}
 
 std::size_t columns_of(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(

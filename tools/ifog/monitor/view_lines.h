@@ -26,9 +26,6 @@ struct LineStyle {
 // Names from the network in them are as they came, but without control characters.
 std::vector<std::string> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style);
 
-// x, y, z; of a single axis that has no name, "rate".
-std::string_view axis_name(std::size_t axis, std::size_t axes);
-
 // Columns that a text takes on a terminal: bytes that begin a character.
 std::size_t columns_of(std::string_view text);
 
