@@ -184,7 +184,7 @@ void Hdf5Rows::take_out_impossible(std::size_t column, std::vector<double>& valu
       refuse(path_, printable(from.name) + " is infinite" + in_row(checks_->rows() + row) +
                         ", expected a finite number or nan");
     if (found.count++ == 0) found = {1, checks_->rows() + row, shortest(value)};
-    value = std::numeric_limits<double>::quiet_NaN();
+    value = kMissing;
   }
 }
 
