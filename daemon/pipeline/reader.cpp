@@ -128,9 +128,9 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
     events_.report({.kind = EventKind::reopened});
   }
   if (!delivery.empty() || delivery.restarted) {
-    turn_ns_ = arrival_clock_ns();
+    turn_ns_ = delivery.read_ns;
     // A recording that is read at its own pace brings its own times of day.
-    if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.now();
+    if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.at(turn_ns_);
     look_outside();
   }
   const auto sink = [this](const ifog_sample& sample) { take(sample); };

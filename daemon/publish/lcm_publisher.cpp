@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <lcm/lcm.h>
 
+#include <cerrno>
 #include <stdexcept>
 
 #include "daemon/publish/publisher.h"
@@ -22,7 +23,13 @@ class LcmPublisher final : public Publisher {
   LcmPublisher& operator=(const LcmPublisher&) = delete;
 
   bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
-    return lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0;
+    // A send that waits for room in the socket may be interrupted by the reader's alarm, and then nothing was
+    // sent. (LCM does not say why a send failed, but leaves errno as the system call set it.)
+    for (;;) {
+      errno = 0;
+      if (lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0) return true;
+      if (errno != EINTR) return false;
+    }
   }
 
  private:

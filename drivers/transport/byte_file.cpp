@@ -53,6 +53,10 @@ void ByteFile::open(const std::string& path) {
   owned_ = !standard_input;
   regular_ = S_ISREG(info.st_mode);
   fifo_ = S_ISFIFO(info.st_mode) && owned_;
+  // Another's standard input is left as it is.
+  const int flags = fcntl(fd, F_GETFL);
+  blocks_ = S_ISFIFO(info.st_mode) && flags >= 0 &&
+            (owned_ ? fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) == 0 : (flags & O_NONBLOCK) == 0);
   buffer_.resize(kCapacity);
   begin_ = end_ = 0;
 }
@@ -85,16 +89,13 @@ ByteFile::Fill ByteFile::fill() noexcept {
     if (error == Z_ERRNO) return Fill::error;
     return error == Z_OK || error == Z_STREAM_END ? Fill::end : Fill::truncated;
   }
-  for (;;) {
-    const ssize_t n = ::read(fd_, buffer_.data() + end_, room);
-    if (n > 0) {
-      end_ += static_cast<std::size_t>(n);
-      return Fill::more;
-    }
-    if (n == 0) return Fill::end;
-    if (errno == EINTR) continue;
-    return errno == EAGAIN || errno == EWOULDBLOCK ? Fill::none : Fill::error;
+  const ssize_t n = ::read(fd_, buffer_.data() + end_, room);
+  if (n > 0) {
+    end_ += static_cast<std::size_t>(n);
+    return Fill::more;
   }
+  if (n == 0) return Fill::end;
+  return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? Fill::none : Fill::error;
 }
 
 }  // namespace ifog

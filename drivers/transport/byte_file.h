@@ -15,7 +15,7 @@ class ByteFile {
  public:
   enum class Fill {
     more,       // bytes were added, or the buffer is full
-    none,       // nothing there now: poll fd()
+    none,       // nothing there now (poll fd()), or interrupted while it waited for some
     end,        // the end of a file, or a FIFO's writer went away
     error,      // errno says why
     truncated,  // a gzip stream that ends early or is damaged
@@ -35,7 +35,10 @@ class ByteFile {
   // Readable when fill() may bring something; −1: always (a regular file).
   [[nodiscard]] int poll_fd() const { return regular_ ? -1 : fd_; }
 
-  // Reads once, without waiting, without allocating.
+  // True: fill() waits until something is there, which only pipes are let.
+  [[nodiscard]] bool blocks() const { return blocks_; }
+
+  // Reads once, without allocating.
   Fill fill() noexcept;
   [[nodiscard]] std::span<const std::uint8_t> unread() const {
     return {buffer_.data() + begin_, end_ - begin_};
@@ -46,7 +49,7 @@ class ByteFile {
 
  private:
   int fd_ = -1;
-  bool owned_ = false, regular_ = false, fifo_ = false;
+  bool owned_ = false, regular_ = false, fifo_ = false, blocks_ = false;
   gzFile_s* gz_ = nullptr;
   std::vector<std::uint8_t> buffer_;
   std::size_t begin_ = 0, end_ = 0;

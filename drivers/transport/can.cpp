@@ -3,9 +3,9 @@
 #include "drivers/transport/clock.h"
 
 #include <linux/sock_diag.h>
-#include <poll.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -33,13 +33,17 @@ class CanTransport final : public Transport {
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   int receive_waiting() noexcept;
-  std::span<const ifog_can_frame> accept(std::size_t received) noexcept;
+  bool leaves_for(int error) noexcept;
+  int receive_batch(int flags) noexcept;
+  std::span<const ifog_can_frame> accept(std::size_t received, std::int64_t read_at) noexcept;
   void count_losses() noexcept override;
   void count_drops(std::uint32_t drops) noexcept;
 
   CanSettings settings_;
   CanSocket socket_;
   std::uint32_t drops_ = 0;
+  bool blocks_ = false;
+  std::size_t filled_ = kBatch;  // messages_ that are to be made ready
   int leaving_ = 0;  // the interface went away with this errno; what waits in the socket is still read
   KernelStamps stamps_;
   std::array<canfd_frame, kBatch> raw_{};
@@ -63,20 +67,28 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_drops(socket_.fd());
   ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
   ask_for_times(socket_.fd(), name(), warning);
+  blocks_ = let_block(socket_.fd());
   return true;
 }
 
 Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
-  short happened = 0;
-  const Wake wake = leaving_ != 0 ? Wake::ready : wait(socket_.fd(), POLLIN, until_ns, happened);
-  if (wake != Wake::ready) {
-    count_losses();
-    return {};
+  int n = 0;
+  if (leaving_ == 0) {
+    const Received got = receive_by(socket_.fd(), blocks_, until_ns, [this](bool may_wait) {
+      return ssize_t{receive_batch(may_wait ? MSG_WAITFORONE : MSG_DONTWAIT)};
+    });
+    if (got.wake != Wake::ready) {
+      count_losses();
+      return {};
+    }
+    n = static_cast<int>(got.n);
+    if (n <= 0 && !leaves_for(got.error)) return {};
   }
-  const int n = receive_waiting();
+  if (n <= 0) n = receive_waiting();
   if (n > 0) {
     Delivery delivery;
-    delivery.frames = accept(static_cast<std::size_t>(n));
+    delivery.read_ns = arrival_clock_ns();
+    delivery.frames = accept(static_cast<std::size_t>(n), delivery.read_ns);
     return delivery;
   }
   if (leaving_ == 0) return {};
@@ -90,19 +102,31 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
 // ENODEV (taken away) are each said once; frames that came before are read after them.
 int CanTransport::receive_waiting() noexcept {
   constexpr int kErrors = 4;  // more than can be said of one socket
-  for (int errors = 0; errors < kErrors;) {
-    for (mmsghdr& message : messages_) {
-      message.msg_hdr.msg_controllen = sizeof(ControlRoom);
-      message.msg_hdr.msg_flags = 0;
-    }
-    const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
+  for (int errors = 0; errors < kErrors; ++errors) {
+    const int n = receive_batch(MSG_DONTWAIT);
     if (n > 0) return n;
-    const int error = n < 0 ? errno : ENODEV;
-    if (error == EINTR || error == EAGAIN) return 0;
-    leaving_ = error;
-    ++errors;
+    if (!leaves_for(n < 0 ? errno : 0)) return 0;
   }
   return 0;
+}
+
+// False: it is no reason, only nothing there.
+bool CanTransport::leaves_for(int error) noexcept {
+  if (error == EINTR || error == EAGAIN) return false;
+  leaving_ = error != 0 ? error : ENODEV;
+  return true;
+}
+
+int CanTransport::receive_batch(int flags) noexcept {
+  // What the call before has written to.
+  for (std::size_t i = 0; i < filled_; ++i) {
+    messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
+    messages_[i].msg_hdr.msg_flags = 0;
+  }
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, flags, nullptr);
+  // One that failed may have been begun.
+  filled_ = std::min(kBatch, static_cast<std::size_t>(std::max(n, 0)) + 1);
+  return n;
 }
 
 // Beside a frame the kernel says what it had no room for until then; after the last one it must be asked.
@@ -122,9 +146,8 @@ void CanTransport::count_drops(std::uint32_t drops) noexcept {
   drops_ = drops;
 }
 
-std::span<const ifog_can_frame> CanTransport::accept(std::size_t received) noexcept {
+std::span<const ifog_can_frame> CanTransport::accept(std::size_t received, std::int64_t read_at) noexcept {
   std::size_t kept = 0;
-  const std::int64_t read_at = arrival_clock_ns();
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < received; ++i) {
     const ReceiveControl said = receive_control(messages_[i].msg_hdr);

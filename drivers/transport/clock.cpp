@@ -54,8 +54,7 @@ std::int64_t WallShift::from(std::int64_t realtime, std::int64_t arrival) noexce
   return shift_ns_;
 }
 
-std::int64_t WallShift::now() noexcept {
-  const std::int64_t arrival = arrival_clock_ns();
+std::int64_t WallShift::at(std::int64_t arrival) noexcept {
   if (std::abs(realtime_ns() - arrival - shift_ns_) <= kSame_ns) return shift_ns_;
   return from(wall_less_boot_ns() - epoch_ns(), 0);
 }

@@ -28,8 +28,9 @@ std::int64_t arrival_clock_at_boot_ns() noexcept;
 // sets it by more than the reading of two clocks can tell (50 µs): a label must not jitter.
 class WallShift {
  public:
-  // Looks at both clocks. No allocation, no system call where the clocks need none.
-  std::int64_t now() noexcept;
+  // Now; `arrival`: a reading of the arrival clock that was taken just before. Looks at both clocks anew
+  // where that was too long ago to tell. No allocation, no system call where the clocks need none.
+  std::int64_t at(std::int64_t arrival) noexcept;
   // The same from readings of the two clocks, taken together.
   std::int64_t from(std::int64_t realtime, std::int64_t arrival) noexcept;
 

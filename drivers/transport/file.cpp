@@ -67,12 +67,15 @@ class FileTransport : public Transport {
   Pace pace_;
   int read_error_ = 0;
   bool at_end_ = false;
+  // Somebody has written since it was opened. Until then it is polled: reading a FIFO that no writer has
+  // opened yet looks like its end.
+  bool written_ = false;
 };
 
 // Nobody listens at the other end of a recording: opening() is not sent.
 void FileTransport::reopen() {
   file_.open(settings_.path);
-  at_end_ = false;
+  at_end_ = written_ = false;
   pace_ = Pace(settings_.speed);
   begin();
 }
@@ -105,11 +108,21 @@ void FileTransport::finish() noexcept {
 
 bool FileTransport::fill(std::int64_t until_ns) noexcept {
   while (!at_end_) {
-    // Asked first, because reading a FIFO that no writer has opened yet looks like its end.
-    short happened = 0;
-    if (file_.poll_fd() >= 0 && wait(file_.poll_fd(), POLLIN, until_ns, happened) != Wake::ready)
-      return false;
-    switch (file_.fill()) {
+    ByteFile::Fill filled = ByteFile::Fill::none;
+    const auto read = [&](bool) -> ssize_t {
+      filled = file_.fill();
+      return filled == ByteFile::Fill::more ? 1 : filled == ByteFile::Fill::end ? 0 : -1;
+    };
+    int error = 0;
+    if (file_.poll_fd() >= 0) {
+      const Received got = receive_by(file_.poll_fd(), file_.blocks() && written_, until_ns, read);
+      if (got.wake != Wake::ready) return false;
+      error = got.error;
+      written_ = true;
+    } else if (read(true) < 0) {
+      error = errno;
+    }
+    switch (filled) {
       case ByteFile::Fill::more:
         return true;
       case ByteFile::Fill::none:
@@ -119,7 +132,7 @@ bool FileTransport::fill(std::int64_t until_ns) noexcept {
         at_end_ = true;
         break;
       case ByteFile::Fill::error:
-        read_error_ = errno;
+        read_error_ = error;
         at_end_ = true;
         break;
       case ByteFile::Fill::end:
@@ -181,7 +194,7 @@ Delivery BytesFile::take(std::int64_t until_ns) noexcept {
   Delivery delivery;
   delivery.bytes = unread().first(n);
   if (recorded() || settings().bytes_per_second <= 0.0)
-    delivery.arrival_ns = arrival_clock_ns();
+    delivery.arrival_ns = delivery.read_ns = arrival_clock_ns();
   else
     delivery.arrival_ns = opened_ns_ + recorded_ns(delivered_);
   return delivery;

@@ -3,6 +3,7 @@
 #include "drivers/transport/clock.h"
 
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -17,6 +18,16 @@ constexpr std::int64_t kSendLimit_ns = 1'000'000'000;
 // Once the device is gone its driver tells no more, so what the line has counted by then is as old as this at
 // most.
 constexpr std::int64_t kErrorPeriod_ns = 100'000'000;
+
+// A read waits for the first byte and brings what is there. False: it cannot be had, the line is to be
+// polled.
+bool wait_for_bytes(int fd) {
+  termios line{};
+  if (tcgetattr(fd, &line) != 0) return false;
+  line.c_cc[VMIN] = 1;
+  line.c_cc[VTIME] = 0;
+  return tcsetattr(fd, TCSANOW, &line) == 0;
+}
 
 class SerialTransport final : public Transport {
  public:
@@ -37,7 +48,7 @@ class SerialTransport final : public Transport {
   SerialOpener open_port_;
   std::unique_ptr<SerialPort> port_;
   LineErrors errors_;
-  bool errors_known_ = false;
+  bool errors_known_ = false, blocks_ = false;
   std::int64_t next_errors_ns_ = 0;
   std::array<std::uint8_t, 16384> buffer_{};
 };
@@ -46,8 +57,9 @@ bool SerialTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   port_.reset();
   port_ = open_port_(settings_, warning);
   send_opening();
+  blocks_ = wait_for_bytes(port_->fd()) && let_block(port_->fd());
   errors_known_ = port_->errors(errors_);
-  next_errors_ns_ = monotonic_ns() + kErrorPeriod_ns;
+  next_errors_ns_ = arrival_clock_ns() + kErrorPeriod_ns;
   return true;
 }
 
@@ -73,26 +85,27 @@ void SerialTransport::send_opening() {
 }
 
 Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
-  short happened = 0;
-  const Wake wake = wait(port_->fd(), POLLIN, until_ns, happened);
-  const std::int64_t now = monotonic_ns();
-  if (now >= next_errors_ns_) {
-    next_errors_ns_ = now + kErrorPeriod_ns;
+  const Received got = receive_by(port_->fd(), blocks_, until_ns,
+                                  [&](bool) { return ::read(port_->fd(), buffer_.data(), buffer_.size()); });
+  Delivery delivery;
+  delivery.read_ns = arrival_clock_ns();
+  if (delivery.read_ns >= next_errors_ns_) {
+    next_errors_ns_ = delivery.read_ns + kErrorPeriod_ns;
     count_losses();
   }
-  if (wake != Wake::ready) return {};
-
-  const ssize_t n = ::read(port_->fd(), buffer_.data(), buffer_.size());
-  if (n > 0) {
-    Delivery delivery;
-    delivery.arrival_ns = arrival_clock_ns();
-    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(n));
+  if (got.wake != Wake::ready) return {};
+  if (got.n > 0) {
+    delivery.arrival_ns = delivery.read_ns;
+    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
     return delivery;
   }
   // Nothing to read is no fault of the device (another process may have taken it), a hang-up is.
-  const int error = n < 0 ? errno : 0;
-  const bool hung_up = (happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
-  if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) return {};
+  const int error = got.error;
+  const bool hung_up = (got.happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) {
+    blocks_ = false;  // it does not wait for bytes, or no longer does: another process has set it otherwise
+    return {};
+  }
   count_losses();
   // Closed at once: while it is held open the kernel gives a returning USB adapter another name.
   port_.reset();

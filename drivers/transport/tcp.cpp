@@ -46,6 +46,7 @@ class TcpTransport final : public Transport {
   TcpSettings settings_;
   IpAddress host_;
   IpSocket socket_;
+  bool blocks_ = false;
   std::int64_t limit_ns_ = 0;  // of the attempt under way
   KernelStamps stamps_;
   ControlRoom control_{};
@@ -74,6 +75,7 @@ bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
   ask_for_times(socket_.fd(), name(), warning);
   stamps_.begin(realtime_ns(), arrival_clock_ns());
   send_opening();
+  blocks_ = let_block(socket_.fd());
   return true;
 }
 
@@ -118,25 +120,26 @@ void TcpTransport::send_opening() {
 }
 
 Delivery TcpTransport::receive(std::int64_t until_ns) noexcept {
-  short happened = 0;
-  if (wait(socket_.fd(), POLLIN, until_ns, happened) != Wake::ready) return {};
   iovec room{buffer_.data(), buffer_.size()};
   msghdr message{};
   message.msg_iov = &room;
   message.msg_iovlen = 1;
   message.msg_control = control_.bytes;
   message.msg_controllen = sizeof control_.bytes;
-  const ssize_t n = recvmsg(socket_.fd(), &message, MSG_DONTWAIT);
-  if (n > 0) {
+  const Received got = receive_by(socket_.fd(), blocks_, until_ns, [&](bool may_wait) {
+    return recvmsg(socket_.fd(), &message, may_wait ? 0 : MSG_DONTWAIT);
+  });
+  if (got.wake != Wake::ready) return {};
+  if (got.n > 0) {
     Delivery delivery;
-    delivery.arrival_ns = arrival_clock_ns();
+    delivery.arrival_ns = delivery.read_ns = arrival_clock_ns();
     stamps_.begin(realtime_ns(), delivery.arrival_ns);
     if (const ReceiveControl said = receive_control(message); said.arrival_ns != 0)
       delivery.arrival_ns = stamps_.on_arrival_clock(said.arrival_ns);
-    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(n));
+    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
     return delivery;
   }
-  const int error = n < 0 ? errno : ECONNRESET;
+  const int error = got.n < 0 ? got.error : ECONNRESET;
   if (error == EINTR || error == EAGAIN) return {};
   socket_.close();
   lost(error);

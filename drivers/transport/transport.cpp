@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/transport.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -37,10 +38,11 @@ Transport::~Transport() { close(stop_event_); }
 
 void Transport::stop() noexcept {
   const int before = errno;  // a signal handler leaves errno as it was
-  stopped_.store(true, std::memory_order_relaxed);
+  stopped_.store(true);
   // Never read again, so the event stays set and every later wait returns at once.
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = write(stop_event_, &one, sizeof one);
+  ReadAlarm::ring(alarm_.load());
   errno = before;
 }
 
@@ -78,7 +80,8 @@ Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
   if (stopped() || state() == TransportState::ended) return {};
   if (!connected_ && !regain(until)) return {};
   Delivery delivery = receive(until);
-  if (!times_are_recorded() && backlog_.read(entered_ns, arrival_clock_ns(), timeout.count())) {
+  if (delivery.read_ns == 0) delivery.read_ns = arrival_clock_ns();
+  if (!times_are_recorded() && backlog_.read(entered_ns, delivery.read_ns, timeout.count())) {
     if (!delivery.stamped) delivery.arrival_ns = 0;
     if (backlog_.may_be_over() && !more_waits()) backlog_.over();
   }
@@ -99,6 +102,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     short happened = 0;
     if (wait(-1, 0, attempt, happened) == Wake::stopped) return false;
     if (attempt < backoff_.next_ns()) return false;
+    ReadAlarm::of_this_thread().off();
     try {
       std::string warning;
       if (!connect(warning, until_ns)) return false;
@@ -152,6 +156,30 @@ Transport::Wake Transport::wait(int fd, short events, std::int64_t until_ns, sho
     }
     // Interrupted by a signal: wait for the rest.
   }
+}
+
+const short Transport::kReadable = POLLIN;
+
+Transport::Entry Transport::enter_call(std::int64_t until_ns) noexcept {
+  ReadAlarm& alarm = ReadAlarm::of_this_thread();
+  if (alarm.number() != alarm_.load(std::memory_order_relaxed)) alarm_.store(alarm.number());
+  do {
+    if (!alarm.is_set(until_ns) && (until_ns <= monotonic_ns() || !alarm.set(until_ns)))
+      return Entry::poll_first;
+    // After the alarm is set: what stop() rings from now on is not set again.
+    if (stopped_.load()) return Entry::stopped;
+  } while (!alarm.enter());
+  return Entry::call;
+}
+
+short Transport::happened_to(int fd) noexcept {
+  pollfd asked{fd, POLLIN, 0};
+  return ::poll(&asked, 1, 0) > 0 ? asked.revents : short{0};
+}
+
+bool Transport::let_block(int fd) noexcept {
+  const int flags = fcntl(fd, F_GETFL);
+  return flags >= 0 && fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) == 0;
 }
 
 void Transport::enter(TransportState state, int reason) noexcept {

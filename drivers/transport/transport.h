@@ -6,8 +6,11 @@
 // fault() and take_warning() may be called from any thread, stop() also from a signal handler.
 #pragma once
 
+#include <sys/types.h>
+
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <mutex>
@@ -20,6 +23,7 @@
 #include "drivers/transport/backlog.h"
 #include "drivers/transport/backoff.h"
 #include "drivers/transport/counter.h"
+#include "drivers/transport/read_alarm.h"
 
 namespace ifog {
 
@@ -29,6 +33,7 @@ struct Delivery {
   // Of the last of `bytes`, arrival clock; 0: not known, because this process was held up and read late what
   // may have come at any time since.
   std::int64_t arrival_ns = 0;
+  std::int64_t read_ns = 0;                // when it was read, arrival clock
   bool stamped = false;                    // by the kernel: arrival_ns is right however late it was read
   std::span<const ifog_can_frame> frames;  // a CAN transport; each frame has its own time
   bool restarted = false;  // the first since the device was opened again: forget half-read frames
@@ -132,6 +137,41 @@ class Transport {
   // answer.
   Wake wait(int fd, short events, std::int64_t until_ns, short& happened) noexcept;
 
+  // What came of a system call that reads.
+  struct Received {
+    Wake wake = Wake::ready;
+    ssize_t n = 0;       // what it returned
+    int error = 0;       // errno, where that is below 0; never EINTR from a descriptor that blocks
+    short happened = 0;  // poll's answer, of a call that brought nothing
+  };
+  // Reads `fd` once by `call(bool may_wait)` when something is there: until `until_ns`, and until stop(). A
+  // descriptor that blocks costs a single system call, for the waiting and the reading: `call` then waits
+  // where it is told that it may, and is interrupted by the thread's alarm. Another one is polled first.
+  template <typename Call>
+  Received receive_by(int fd, bool blocks, std::int64_t until_ns, Call&& call) noexcept {
+    Received got;
+    const auto make = [&](bool may_wait) {
+      got.n = call(may_wait);
+      got.error = got.n < 0 ? errno : 0;
+    };
+    while (blocks) {
+      const Entry entry = enter_call(until_ns);
+      if (entry == Entry::stopped) return {.wake = Wake::stopped};
+      if (entry == Entry::poll_first) break;
+      make(true);
+      leave_call();
+      if (got.n > 0) return got;
+      if (got.error == EINTR) continue;
+      got.happened = happened_to(fd);
+      return got;
+    }
+    got.wake = wait(fd, kReadable, until_ns, got.happened);
+    if (got.wake == Wake::ready) make(false);
+    return got;
+  }
+  // Lets a descriptor block. False: it cannot, and is to be polled.
+  static bool let_block(int fd) noexcept;
+
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
   // The device went away: connect() will be tried again.
   void lost(int reason) noexcept;
@@ -144,6 +184,14 @@ class Transport {
   Counter kernel_drops_, error_frames_;
 
  private:
+  enum class Entry { call, poll_first, stopped };
+  static const short kReadable;
+  // Whether a call that waits may be made now: `call` when it will be interrupted in time; leave_call() then
+  // follows it.
+  Entry enter_call(std::int64_t until_ns) noexcept;
+  static void leave_call() noexcept { ReadAlarm::of_this_thread().leave(); }
+  static short happened_to(int fd) noexcept;
+
   bool regain(std::int64_t until_ns) noexcept;
   void keep_warning(std::string&& warning);
   void enter(TransportState state, int reason) noexcept;
@@ -159,6 +207,9 @@ class Transport {
   bool returning_ = false;  // the next delivery is the first since the device came back
   Backlog backlog_;
   int stop_event_;
+  // Of the thread that reads. In one order with stopped_: either stop() finds it and rings, or the reader
+  // finds that it is stopped.
+  std::atomic<int> alarm_{-1};
   // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person;
   // stop() wakes a waiting read() by the event, not by this flag. The fault's line is published by the fault.
   std::atomic<bool> stopped_{false};

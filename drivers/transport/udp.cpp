@@ -82,7 +82,9 @@ class UdpTransport final : public Transport {
   void join(const IpSocket& socket) const;
   void send_opening(const IpSocket& socket) const;
   void look_at_interface() noexcept;
-  void fill() noexcept;
+  int receive_batch(bool may_wait) noexcept;
+  void take(std::size_t received) noexcept;
+  void give_up(int error) noexcept;
   Delivery next() noexcept;
 
   UdpSettings settings_;
@@ -98,6 +100,8 @@ class UdpTransport final : public Transport {
   std::array<ControlRoom, kBatch> control_{};
   std::array<mmsghdr, kBatch> messages_{};
   std::array<Arrival, kBatch> arrivals_{};
+  bool blocks_ = false;
+  std::size_t filled_ = kBatch;       // messages_ that are to be made ready
   std::size_t count_ = 0, next_ = 0;  // read, and handed on of these
 };
 
@@ -144,6 +148,7 @@ bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_times(fresh.fd(), name(), warning);
   stamps_.begin(realtime_ns(), arrival_clock_ns());
   send_opening(fresh);
+  blocks_ = let_block(fresh.fd());
   socket_ = std::move(fresh);
   return true;
 }
@@ -177,11 +182,15 @@ void UdpTransport::send_opening(const IpSocket& socket) const {
 
 Delivery UdpTransport::receive(std::int64_t until_ns) noexcept {
   if (const Delivery waiting = next(); !waiting.empty()) return waiting;
-  short happened = 0;
-  const Wake wake = wait(socket_.fd(), POLLIN, until_ns, happened);
-  if (wake == Wake::timeout) look_at_interface();
-  if (wake != Wake::ready) return {};
-  fill();
+  count_ = next_ = 0;
+  const Received got = receive_by(socket_.fd(), blocks_, until_ns,
+                                  [this](bool may_wait) { return ssize_t{receive_batch(may_wait)}; });
+  if (got.wake == Wake::timeout) look_at_interface();
+  if (got.wake != Wake::ready) return {};
+  if (got.n > 0)
+    take(static_cast<std::size_t>(got.n));
+  else
+    give_up(got.n < 0 ? got.error : EAGAIN);
   return next();
 }
 
@@ -196,23 +205,29 @@ void UdpTransport::look_at_interface() noexcept {
   lost(ENODEV);
 }
 
-void UdpTransport::fill() noexcept {
-  count_ = next_ = 0;
-  for (mmsghdr& message : messages_) {
-    message.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
-    message.msg_hdr.msg_controllen = sizeof(ControlRoom);
-    message.msg_hdr.msg_flags = 0;
+int UdpTransport::receive_batch(bool may_wait) noexcept {
+  // What the call before has written to.
+  for (std::size_t i = 0; i < filled_; ++i) {
+    messages_[i].msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+    messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
+    messages_[i].msg_hdr.msg_flags = 0;
   }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
-  if (n <= 0) {
-    const int error = n < 0 ? errno : EAGAIN;
-    // An answer to the opening bytes that nobody listens yet: the sensor may still wake up.
-    if (error == EINTR || error == EAGAIN || error == ECONNREFUSED) return;
-    socket_.close();
-    lost(error);
-    return;
-  }
-  count_ = static_cast<std::size_t>(n);
+  const int n =
+      recvmmsg(socket_.fd(), messages_.data(), kBatch, may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
+  // One that failed may have been begun.
+  filled_ = std::min(kBatch, static_cast<std::size_t>(std::max(n, 0)) + 1);
+  return n;
+}
+
+void UdpTransport::give_up(int error) noexcept {
+  // An answer to the opening bytes that nobody listens yet: the sensor may still wake up.
+  if (error == EINTR || error == EAGAIN || error == ECONNREFUSED) return;
+  socket_.close();
+  lost(error);
+}
+
+void UdpTransport::take(std::size_t received) noexcept {
+  count_ = received;
   const std::int64_t read_at = arrival_clock_ns();
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < count_; ++i) {

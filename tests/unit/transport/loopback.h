@@ -12,6 +12,8 @@
 #include <cstring>
 #include <string>
 
+#include "drivers/transport/udp.h"
+
 namespace ifog {
 
 // A socket bound to a port of the loopback that the system picks, IPv4 or IPv6.
@@ -84,6 +86,14 @@ inline std::uint16_t free_port(int family, int type) {
   LoopbackSocket probe(family, type);
   EXPECT_TRUE(probe.bind(0));
   return probe.port();
+}
+
+// Datagrams to a port of IPv4's loopback address.
+inline UdpSettings on_loopback(std::uint16_t port) {
+  UdpSettings settings;
+  settings.port = port;
+  settings.bind = "127.0.0.1";
+  return settings;
 }
 
 }  // namespace ifog
