@@ -32,10 +32,10 @@ class StreamingAllan {
       Level& level = level_[static_cast<std::size_t>(k)];
       level.push(mean);
       if (k == 0) {
-        take(0, level, 1);
-        take(1, level, 2);
+        take<1>(0, level);
+        take<2>(1, level);
       }
-      if (k + 2 < kOctaves) take(k + 2, level, 4);
+      if (k + 2 < kOctaves) take<4>(k + 2, level);
       if ((level.filled & 1U) != 0) return;  // half of the next level's average
       mean = 0.5 * (level.at(0) + level.at(1));
     }
@@ -76,11 +76,13 @@ class StreamingAllan {
     std::uint64_t count = 0;
   };
 
-  void take(int octave, const Level& level, std::uint64_t units) noexcept {
-    if (level.filled < 2 * units) return;
+  // kUnits: of the level, a power of two.
+  template <std::uint64_t kUnits>
+  void take(int octave, const Level& level) noexcept {
+    if (level.filled < 2 * kUnits) return;
     double difference = 0.0;
-    for (std::uint64_t u = 0; u < units; ++u) difference += level.at(u) - level.at(u + units);
-    difference /= static_cast<double>(units);
+    for (std::uint64_t u = 0; u < kUnits; ++u) difference += level.at(u) - level.at(u + kUnits);
+    difference *= 1.0 / static_cast<double>(kUnits);
     Sum& sum = sum_[static_cast<std::size_t>(octave)];
     sum.squares += difference * difference;
     ++sum.count;

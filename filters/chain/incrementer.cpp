@@ -284,7 +284,8 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = reading;
+  last_ = {reading.arrival_ns, reading.wall_shift_ns, reading.device_time_ns, reading.sequence,
+           reading.value};
   started_ = true;
   reopened_ = false;
   return true;

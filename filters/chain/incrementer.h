@@ -73,7 +73,13 @@ class Incrementer {
   DeviceCount count_;  // of a device that counts
   bool started_ = false;
   bool reopened_ = false;
-  Reading last_;
+  // Of the reading before; its channels are kept below.
+  struct Last {
+    std::int64_t arrival_ns = 0, wall_shift_ns = 0, device_time_ns = -1;
+    std::uint32_t sequence = 0;
+    Axes value{};
+  };
+  Last last_;
   std::int64_t known_arrival_ns_ = 0;  // latest arrival time that is known; 0: none yet
   double counted_s_ = 0.0;             // steps since then
   double late_s_ = 0.0;                // of the last sample, undecided; of a device that does not count

@@ -43,6 +43,13 @@ ChangeTest::ChangeTest(bool rate_alone) : rate_alone_(rate_alone) {
   for (Contest& contest : contests_) contest.usual = rate_alone ? 0.0 : kModelDoubt;
 }
 
+ChangeTest::Horizon::Horizon(double length)
+    : samples(length),
+      share(1.0 / length),
+      keep(1.0 - share),
+      white(1.0 - keep * keep),
+      evidence(kEvidence - logarithm(length / kLeastHorizon)) {}
+
 double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
 
 void ChangeTest::restart() noexcept {
@@ -57,16 +64,15 @@ void ChangeTest::restart() noexcept {
 
 // Learns how wide the sums are at rest; gives by how much the test is to believe them wider than white
 // noise's.
-double ChangeTest::widen(Sum& sum, double normalised, double horizon, const NoiseScale& noise) noexcept {
-  const double keep = 1.0 - 1.0 / horizon;
-  sum.normalised = keep * sum.normalised + normalised;
-  const double found = sum.normalised * sum.normalised * (1.0 - keep * keep);
-  sum.horizons = std::min(sum.horizons + 1.0 / horizon, kHorizonsKept);
+double ChangeTest::widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept {
+  sum.normalised = over.keep * sum.normalised + normalised;
+  const double found = sum.normalised * sum.normalised * over.white;
+  sum.horizons = std::min(sum.horizons + over.share, kHorizonsKept);
   sum.widening += (std::min(found, kWideningClip * std::max(sum.widening, 1.0)) - sum.widening) /
-                  (horizon * (sum.horizons + 1.0));
+                  (over.samples * (sum.horizons + 1.0));
   if (noise.white()) return 1.0;
   // Of coloured noise nothing known yet: all that is not rough may be as slow as the horizon.
-  const double most = std::max(1.0, horizon * (1.0 - 1.0 / noise.colour()));
+  const double most = std::max(1.0, over.samples * (1.0 - 1.0 / noise.colour()));
   const double believed =
       (kHorizonsBelieved * most + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
   return kWideningMargin * std::max(1.0, believed);
@@ -90,23 +96,32 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
   hint_.reset();
   double loudest = kHint;
   std::optional<std::size_t> best;
+  for (; known_ < trackers.size(); ++known_) horizons_[known_] = Horizon(horizon(trackers.memory(known_)));
+  // What all trackers are held against is worked out once.
+  Axes rest{}, spoke_for_rest{}, normalised{}, angle{};
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    if ((now.valid >> a & 1U) == 0) continue;
+    rest[a] = now.innovation[a] * now.innovation[a] / (now.rest_factor * now.scale[a]);
+    spoke_for_rest[a] = std::min(rest[a], 2.0 * most) + log_rest;
+    normalised[a] = now.innovation[a] / std::sqrt(now.scale[a]);
+    angle[a] = now.innovation[a] * now.covered_s[a];
+  }
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     Contest& contest = contests_[j];
-    const double h = horizon(trackers.memory(j)), keep = 1.0 - 1.0 / h;
+    const Horizon& over = horizons_[j];
+    const double h = over.samples, keep = over.keep;
     double gained = 0.0, rest_square = 0.0, tracker_square = 0.0, widest = 1.0;
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
       if ((now.valid >> a & 1U) == 0) continue;
-      const double scale = now.scale[a], apart = now.rate[a] - trackers.rate(j, a);
-      const double rest = now.innovation[a] * now.innovation[a] / (now.rest_factor * scale);
-      const double tracker = apart * apart / (trackers.factor(j) * scale);
+      const double apart = now.rate[a] - trackers.rate(j, a);
+      const double tracker = apart * apart / (trackers.factor(j) * now.scale[a]);
       Sum& sum = contest.sums[a];
-      sum.angle = keep * sum.angle + now.innovation[a] * now.covered_s[a];
-      const double wide = widen(sum, now.innovation[a] / std::sqrt(scale), h, noise[a]);
-      gained +=
-          0.5 *
-          (std::min(rest, 2.0 * most) + log_rest - std::min(tracker, 2.0 * most) - trackers.log_factor(j)) /
-          wide;
-      rest_square += std::min(rest, kSquareClip);
+      sum.angle = keep * sum.angle + angle[a];
+      const double wide = widen(sum, normalised[a], over, noise[a]);
+      const double spoken =
+          0.5 * (spoke_for_rest[a] - std::min(tracker, 2.0 * most) - trackers.log_factor(j));
+      gained += wide == 1.0 ? spoken : spoken / wide;  // white noise, nearly always: without a division
+      rest_square += std::min(rest[a], kSquareClip);
       tracker_square += std::min(tracker, kSquareClip);
       widest = std::max(widest, wide);
     }
@@ -119,8 +134,7 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
     contest.rest = keep * contest.rest + rest_square;
     contest.tracker = keep * contest.tracker + tracker_square;
     contest.rest_squares = keep * contest.rest_squares + rest_square * rest_square;
-    // A ratio over a long horizon is not looked at afresh with each sample.
-    const double whole = kEvidence - logarithm(h / kLeastHorizon), asked = whole - relaxed_;
+    const double whole = over.evidence, asked = whole - relaxed_;
     const double hinted = std::min(loudest, kSuspicion * whole);
     if (contest.begun <= hinted && contest.ratio - asked <= greatest) continue;
     const double unknown = unknown_variance(contest) / widest;

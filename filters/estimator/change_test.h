@@ -81,12 +81,24 @@ class ChangeTest {
     std::array<Sum, kMaxAxes> sums{};
   };
 
+  // What is the same for every measurement.
+  struct Horizon {
+    Horizon() = default;
+    explicit Horizon(double length);
+    double samples = 0.0;
+    double share = 0.0, keep = 0.0;  // of one measurement, and what is kept of those before
+    double white = 0.0;              // one over the variance of a sum over it of white noise
+    double evidence = 0.0;  // asked for: a ratio over a long horizon is not looked at afresh each time
+  };
+
   void suspect(std::size_t tracker, double unknown, double enough, double& loudest) noexcept;
-  double widen(Sum& sum, double normalised, double horizon, const NoiseScale& noise) noexcept;
+  double widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
 
   bool rate_alone_;
   std::array<Contest, TrackerBank::kMost> contests_{};
+  std::array<Horizon, TrackerBank::kMost> horizons_{};
+  std::size_t known_ = 0;  // of horizons_
   double relaxed_ = 0.0;
   bool suspected_ = false;
   std::optional<std::size_t> hint_;

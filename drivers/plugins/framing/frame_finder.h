@@ -43,6 +43,8 @@ struct Announced {
 //   static constexpr std::size_t kLongest;                         of a frame, bytes
 //   Announced at(std::span<const std::uint8_t>) const noexcept;    of the header there; at least a byte
 //   bool intact(std::span<const std::uint8_t>) const noexcept;     checksum of a whole frame
+// and, where every header begins with the same byte,
+//   static constexpr std::uint8_t kFirst;
 template <typename Protocol>
 class FrameFinder {
  public:
@@ -63,8 +65,7 @@ class FrameFinder {
   // Forgets what is half read; the bytes count as skipped.
   void reset() noexcept {
     counters_.bytes_skipped += waiting();
-    begin_ = end_ = 0;
-    failed_.reset();
+    forget();
   }
 
   // As the host wants them. `unused`: of the intact frames, those the driver was told not to take.
@@ -113,25 +114,32 @@ class FrameFinder {
           return first;
         }
       } else if (announced.is == Announced::Is::none) {
-        failed_.set(at);
+        fail(at);
       } else {
         keep = std::min(keep, at);
       }
     }
     counters_.bytes_skipped += keep - begin_;
     begin_ = keep;
-    if (begin_ == end_) {
-      begin_ = end_ = 0;
-      failed_.reset();
-    }
+    if (begin_ == end_) forget();
     return std::nullopt;
+  }
+
+  void fail(std::size_t at) noexcept {
+    failed_.set(at);
+    any_failed_ = true;
+  }
+  void forget() noexcept {
+    begin_ = end_ = 0;
+    // Frame by frame, as from a line, there is seldom anything to clear.
+    if (std::exchange(any_failed_, false)) failed_.reset();
   }
 
   // The sum of a frame is tried once, however the stream comes in portions.
   bool intact(std::size_t at, std::size_t length) noexcept {
     if (protocol_.intact({buffer_.data() + at, length})) return true;
     ++counters_.checksum_failed;
-    failed_.set(at);
+    fail(at);
     return false;
   }
 
@@ -139,7 +147,7 @@ class FrameFinder {
   Place ends_first(Place outer) noexcept {
     std::size_t end = outer.at + outer.length;
     Place first = outer;
-    for (std::size_t at = outer.at + 1; at < end; ++at) {
+    for (std::size_t at = candidate(outer.at + 1, end); at < end; at = candidate(at + 1, end)) {
       if (failed_.test(at)) continue;
       const Announced announced = protocol_.at({buffer_.data() + at, end - at});
       if (announced.is != Announced::Is::frame || at + announced.length >= end) continue;
@@ -148,6 +156,17 @@ class FrameFinder {
       end = at + announced.length;
     }
     return first;
+  }
+
+  // The first position from `at` on that may hold a header; `end` for none before it.
+  [[nodiscard]] std::size_t candidate(std::size_t at, std::size_t end) const noexcept {
+    if constexpr (requires { Protocol::kFirst; }) {
+      const auto* const found =
+          static_cast<const std::uint8_t*>(std::memchr(buffer_.data() + at, Protocol::kFirst, end - at));
+      return found != nullptr ? static_cast<std::size_t>(found - buffer_.data()) : end;
+    } else {
+      return at;
+    }
   }
 
   void accept(std::size_t at, std::size_t length) noexcept {
@@ -161,6 +180,7 @@ class FrameFinder {
   Protocol protocol_;
   std::array<std::uint8_t, kBuffer> buffer_{};
   std::bitset<kBuffer> failed_;  // positions known to begin no frame
+  bool any_failed_ = false;
   std::size_t begin_ = 0, end_ = 0;
   FrameCounters counters_;
 };

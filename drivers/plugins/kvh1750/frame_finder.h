@@ -14,10 +14,11 @@ namespace ifog::kvh {
 
 struct Protocol {
   static constexpr std::size_t kLongest = kLongestFrame;
+  static constexpr std::uint8_t kFirst = 0xFE;
 
   [[nodiscard]] static framing::Announced at(std::span<const std::uint8_t> bytes) noexcept {
     using Is = framing::Announced::Is;
-    constexpr std::array<std::uint8_t, kHeaderLength - 1> kBegin{0xFE, 0x81, 0xFF};
+    constexpr std::array<std::uint8_t, kHeaderLength - 1> kBegin{kFirst, 0x81, 0xFF};
     const std::size_t n = std::min(bytes.size(), kBegin.size());
     if (!std::equal(kBegin.begin(), kBegin.begin() + n, bytes.begin())) return {};
     if (bytes.size() < kHeaderLength) return {Is::unknown_yet};

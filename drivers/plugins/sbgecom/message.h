@@ -56,6 +56,7 @@ std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept;
 // For the finder of intact frames.
 struct Protocol {
   static constexpr std::size_t kLongest = kHeader + kMostData + kTrailer;
+  static constexpr std::uint8_t kFirst = 0xFF;
 
   [[nodiscard]] static framing::Announced at(std::span<const std::uint8_t> bytes) noexcept;
   [[nodiscard]] static bool intact(std::span<const std::uint8_t> frame) noexcept;

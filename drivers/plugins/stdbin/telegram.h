@@ -47,6 +47,7 @@ std::size_t pack(const Telegram& telegram, std::span<std::uint8_t, kLongestTeleg
 // For the finder of intact frames.
 struct Protocol {
   static constexpr std::size_t kLongest = kLongestTelegram;
+  static constexpr std::uint8_t kFirst = 'I';
 
   [[nodiscard]] static framing::Announced at(std::span<const std::uint8_t> bytes) noexcept;
   [[nodiscard]] static bool intact(std::span<const std::uint8_t> telegram) noexcept;
