@@ -60,6 +60,9 @@ std::string lock_memory() {
   // What malloc has it keeps: giving pages back and taking them again would fault in the loop.
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
+  // One heap for all threads: one each is 64 MiB of address space that counts as locked. The hot path, which
+  // a shared one could hold up, allocates nothing.
+  mallopt(M_ARENA_MAX, 1);
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "";
   return "memory not locked: " + reason(errno) + " (needs CAP_IPC_LOCK or LimitMEMLOCK)";
 }
