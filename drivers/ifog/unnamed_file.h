@@ -59,18 +59,30 @@ class UnnamedFile {
     }
   }
 
+  // Room for so many bytes, all of them zero, taken at once, so that no later write finds the disk full.
+  void reserve(std::size_t bytes) {
+    int error = 0;
+    do error = ::posix_fallocate(fd_, 0, static_cast<off_t>(bytes));
+    while (error == EINTR);
+    errno = error;
+    if (error != 0) fail("cannot write");
+  }
+
+  // The file's, for what maps it.
+  [[nodiscard]] int descriptor() const { return fd_; }
+  // what: that could not be done, with errno as it was left.
+  [[noreturn]] static void fail(const char* what) {
+    const std::string reason = std::generic_category().message(errno);
+    throw std::runtime_error(folder() + ": " + what + " a file for what is longer than memory is for: " +
+                             reason + "; expected room there, or TMPDIR with the name of another folder");
+  }
+
  private:
   static std::string folder() {
     const char* const named = std::getenv("TMPDIR");
     if (named != nullptr && *named != '\0') return named;
     // What is in /tmp may be memory again.
     return ::access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
-  }
-
-  [[noreturn]] static void fail(const char* what) {
-    const std::string reason = std::generic_category().message(errno);
-    throw std::runtime_error(folder() + ": " + what + " a file for what is longer than memory is for: " +
-                             reason + "; expected room there, or TMPDIR with the name of another folder");
   }
 
   static int opened() {

@@ -10,7 +10,7 @@ namespace ifog {
 
 AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
   find_mean(rate_radps, stretches);
-  if (rate_radps.in_memory().size() < rate_radps.size()) {
+  if (rate_radps.in_memory().size() < rate_radps.size() || rate_radps.size() > kMostInMemory) {
     sum_up(rate_radps, stretches, [this](double angle) { long_.add(angle); });
     return;
   }

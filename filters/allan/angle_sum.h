@@ -18,6 +18,9 @@ namespace ifog {
 // one sample.
 class AngleSum {
  public:
+  // Of more rates, wherever they are, the angles are in a file.
+  static constexpr std::size_t kMostInMemory = std::size_t{1} << 23U;
+
   // No NaN inside a stretch. Takes 8 bytes a sample, in memory where the rates are, else in a file.
   AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches);
   // The same in the samples' own memory, where one stretch covers them all and the vector has room for one

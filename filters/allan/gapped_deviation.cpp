@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "filters/allan/deviation.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Running sums, above the first value there is, and numbers of values.
 struct GappedSum {
-  std::vector<double> sum, there;
+  Samples sum, there;
 
   explicit GappedSum(std::span<const double> rate) : sum(rate.size() + 1, 0.0), there(rate.size() + 1, 0.0) {
     const auto first = std::find_if(rate.begin(), rate.end(), [](double v) { return std::isfinite(v); });

@@ -10,12 +10,8 @@
 
 #include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/channel_faults.h"
-#include "filters/diagnosis/record/derived_channels.h"
-#include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
-#include "filters/diagnosis/record/reference_delay.h"
-#include "filters/diagnosis/record/turned.h"
 #include "filters/diagnosis/record/unused_channels.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
@@ -182,8 +178,7 @@ class Run {
     if (data_.reference < 0 || data_.grid.dwells) return;
     FoundZone found;
     for (const Record& record : records_)
-      found.rates.push_back(on_even_grid(record, data_.grid.sample_s,
-                                         {record.reference_radps.begin(), record.reference_radps.end()}));
+      found.rates.push_back(on_even_grid(record, data_.grid.sample_s, record.reference_radps));
     const auto zone = find_dead_zone(errors_, found.rates, data_.grid.sample_s, options_.significance);
     if (!zone) return;
     found.zone = *zone;
@@ -360,21 +355,13 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
   if (!(options.fit_from < options.fit_to))
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
-  check_columns(records);
-  // An angle's wraps are no faults, and differences are of channels without any.
-  const DerivedRecords whole = with_unwrapped_angles(records);
-  const RepairedRecords repaired = repair_records(whole.records);
-  const AlignedRecords aligned = align_references(repaired.records);
-  const DerivedRecords derived = with_derived_channels(aligned.records);
-  const WithoutTurns resting = without_turns(derived.records);
-  const std::vector<Record> fitted = share.whole() ? resting.records : fitted_parts(resting.records, share);
-  const WithoutRamps without = take_out_ramps(fitted, options.significance);
-  const bool faults = share.whole() && !repaired.values.empty();
-  Diagnosis diagnosis = Run(fitted, faults ? &whole.records : nullptr, without, options).run();
-  diagnosis.reference_delays = aligned.delays;
-  for (const auto* remarks : {&resting.remarks, &aligned.remarks, &repaired.remarks})
-    diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks->begin(), remarks->end());
-  if (!share.whole()) judge(resting.records, share, diagnosis);
+  const PreparedRecords prepared(records, share, options.significance);
+  const std::vector<Record>* const as_logged = share.whole() ? prepared.as_logged() : nullptr;
+  Diagnosis diagnosis = Run(prepared.fitted(), as_logged, prepared.without_ramps(), options).run();
+  diagnosis.reference_delays = prepared.delays();
+  const std::vector<std::string> remarks = prepared.remarks();
+  diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
+  if (!share.whole()) judge(prepared.whole(), share, diagnosis);
   return diagnosis;
 }
 

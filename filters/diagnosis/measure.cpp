@@ -6,12 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "filters/diagnosis/record/channel_faults.h"
-#include "filters/diagnosis/record/derived_channels.h"
-#include "filters/diagnosis/record/ramps_out.h"
+#include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
-#include "filters/diagnosis/record/reference_delay.h"
-#include "filters/diagnosis/record/turned.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/report/findings.h"
@@ -193,14 +189,8 @@ MeasuredEffects measure_effects(const std::vector<Record>& records, const Effect
                                 const std::string& axis, double significance) {
   if (!wanted.instead.empty() && wanted.instead.size() != wanted.together.size())
     throw std::invalid_argument("others in the place of effects, expected a list for each");
-  check_columns(records);
-  const DerivedRecords whole = with_unwrapped_angles(records);
-  const RepairedRecords repaired = repair_records(whole.records);
-  const AlignedRecords aligned = align_references(repaired.records);
-  const DerivedRecords derived = with_derived_channels(aligned.records);
-  const WithoutTurns resting = without_turns(derived.records);
-  const WithoutRamps without = take_out_ramps(resting.records, significance);
-  const BlockData data = cut_to_blocks(without.records);
+  const PreparedRecords prepared(records, {}, significance);
+  const BlockData data = cut_to_blocks(prepared.without_ramps().records);
   const BlockData reconstructed = with_reconstructed_channels(data);
   return Measuring(reconstructed, wanted, axis).run();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "filters/effects/compensator.h"
+#include "filters/series/series_view.h"
 
 namespace ifog {
 
@@ -20,6 +21,8 @@ struct SeriesToCompensate {
 
 // The median step; what goes more than half a step beyond it is a gap. 0 of fewer than two samples.
 inline double usual_step(std::span<const double> time_s) {
+  constexpr std::size_t kInMemory = std::size_t{1} << 20U;
+  if (time_s.size() > kInMemory) return median_step(time_s);
   std::vector<double> steps;
   steps.reserve(time_s.size());
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);

@@ -3,17 +3,25 @@
 
 #include <glib.h>
 
-#include <memory>
-
 namespace ifog {
 
 std::string sha256_hex(std::string_view bytes) {
-  const auto* data = reinterpret_cast<const guchar*>(bytes.data());
-  const std::unique_ptr<gchar, decltype(&g_free)> hex(
-      g_compute_checksum_for_data(G_CHECKSUM_SHA256,
-                                  bytes.empty() ? reinterpret_cast<const guchar*>("") : data, bytes.size()),
-      &g_free);
-  return hex.get();
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.hex();
 }
+
+Sha256::Sha256() : checksum_(g_checksum_new(G_CHECKSUM_SHA256)) {}
+
+void Sha256::Free::operator()(_GChecksum* checksum) const { g_checksum_free(checksum); }
+
+void Sha256::add(std::string_view bytes) {
+  // GLib counts by gssize, and by all of a text that ends in zero where that is negative.
+  if (!bytes.empty())
+    g_checksum_update(checksum_.get(), reinterpret_cast<const guchar*>(bytes.data()),
+                      static_cast<gssize>(bytes.size()));
+}
+
+std::string Sha256::hex() const { return g_checksum_get_string(checksum_.get()); }
 
 }  // namespace ifog

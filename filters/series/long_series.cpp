@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "filters/series/mapped_file.h"
+
 namespace ifog {
 namespace {
 
@@ -11,18 +13,33 @@ constexpr std::size_t kAtOnce = std::size_t{1} << 16U;  // numbers written toget
 
 }  // namespace
 
+LongSeries::~LongSeries() { unmap(); }
+
 LongSeries::LongSeries(LongSeries&& other) noexcept
     : most_(other.most_),
       recent_(std::exchange(other.recent_, {})),
       filed_(std::exchange(other.filed_, 0)),
-      file_(std::exchange(other.file_, std::nullopt)) {}
+      file_(std::exchange(other.file_, std::nullopt)),
+      mapped_(std::exchange(other.mapped_, nullptr)) {}
 
 LongSeries& LongSeries::operator=(LongSeries&& other) noexcept {
   std::swap(most_, other.most_);
   std::swap(recent_, other.recent_);
   std::swap(filed_, other.filed_);
   std::swap(file_, other.file_);
+  std::swap(mapped_, other.mapped_);
   return *this;
+}
+
+std::span<const double> LongSeries::all() {
+  if (filed_ == 0) return recent_;
+  if (!recent_.empty()) file_recent();
+  if (mapped_ == nullptr) mapped_ = static_cast<const double*>(map_file(*file_, filed_ * sizeof(double)));
+  return {mapped_, filed_};
+}
+
+void LongSeries::unmap() {
+  if (mapped_ != nullptr) unmap_file(std::exchange(mapped_, nullptr), filed_ * sizeof(double));
 }
 
 void LongSeries::add(double value) {
@@ -36,6 +53,7 @@ void LongSeries::add(std::span<const double> values) {
 }
 
 void LongSeries::file_recent() {
+  unmap();
   const bool first = !file_;
   if (first) file_.emplace();
   file_->write(filed_, recent_);

@@ -19,7 +19,7 @@ class LongSeries {
 
   // in_memory: numbers kept there before the file is begun, in $TMPDIR or else /var/tmp or /tmp.
   explicit LongSeries(std::size_t in_memory = kInMemory) : most_(in_memory) {}
-  ~LongSeries() = default;
+  ~LongSeries();
   LongSeries(LongSeries&& other) noexcept;
   LongSeries& operator=(LongSeries&& other) noexcept;
   LongSeries(const LongSeries&) = delete;
@@ -36,14 +36,19 @@ class LongSeries {
   [[nodiscard]] std::size_t filed() const { return filed_; }  // numbers in the file, the first ones
   // to: as many as are wanted, all of them there. Several threads may read at once.
   void read(std::size_t first, std::span<double> to) const;
+  // All of them as memory, for what wants them so: mapped where they are in the file, and of the file's
+  // pages only some at a time are in memory (mapped_file.h). Valid until more are added. Throws as add().
+  [[nodiscard]] std::span<const double> all();
 
  private:
   void file_recent();
+  void unmap();
 
   std::size_t most_;
   std::vector<double> recent_;
   std::size_t filed_ = 0;
   std::optional<UnnamedFile> file_;
+  const double* mapped_ = nullptr;  // the file's numbers
 };
 
 }  // namespace ifog

@@ -40,9 +40,8 @@ struct Options {
 };
 
 // Of all axes together; a sensor that was mostly turned is refused.
-Rest rest_of(const Capture& capture, double period_s, const std::string& path) {
-  const std::vector<std::span<const double>> axes(capture.rate_radps.begin(), capture.rate_radps.end());
-  Rest rest = find_rest(axes, period_s);
+Rest rest_of(const CaptureView& capture, double period_s, const std::string& path) {
+  Rest rest = find_rest(capture.rate_radps, period_s);
   try {
     require_rest(rest, period_s, capture.time_s.front());
   } catch (const std::invalid_argument& error) {
@@ -54,7 +53,7 @@ Rest rest_of(const Capture& capture, double period_s, const std::string& path) {
 // Evenly spaced columns: a sample that moved or is missing from the record becomes a NaN, so that the
 // filter's step stays the period. Returns one column an axis, at most `most` samples of each, and says how
 // many were left out.
-std::vector<std::vector<double>> even(const Capture& capture, const Rest& rest, double period_s,
+std::vector<std::vector<double>> even(const CaptureView& capture, const Rest& rest, double period_s,
                                       std::size_t most, std::size_t& left) {
   std::vector<std::vector<double>> out(capture.axes.size());
   std::size_t row = 0, part = 0;
@@ -190,11 +189,11 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
 using NoiseByAxis = std::map<std::string, NoiseCoefficients>;
 
 // An axis too short for them has none, and is said to.
-NoiseByAxis noise_of(const Capture& capture, const SampleClock& clock, const Rest& rest,
+NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<std::string>& notes) {
   NoiseByAxis noise;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    const std::vector<double>& rate = capture.rate_radps[a];
+    const std::span<const double> rate = capture.rate_radps[a];
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
     try {
       noise[capture.axes[a]] = noise_coefficients(AngleSum(rate, parts), clock.period_s);
@@ -228,8 +227,10 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
 void run(const Options& options) {
   will_write("--json", options.json_file);
   will_write("--write-model", options.model);
-  Capture capture = options.input.read(options.capture);
-  options.part.cut(capture, options.capture);
+  LongCapture read = options.input.read_long_capture(
+      options.capture, nullptr, [](const std::string& column) { return column.starts_with("rate"); });
+  read.cut(options.part, options.capture);
+  const CaptureView& capture = read.view();
   if (capture.size() < 3)
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
                              " rows, expected at least 200");

@@ -13,7 +13,7 @@
 namespace ifog::report {
 namespace {
 
-using Series = std::vector<double>;
+using Series = Samples;
 
 std::span<const double> column(const Record& record, const std::string& name) {
   if (is_reference_rate(name)) return record.reference_radps;
@@ -92,12 +92,12 @@ Series integrated(const Record& record, const Series& error, const Series& x, do
   return out;
 }
 
-void bin(Series& x, Series& y, std::size_t bins) {
-  std::vector<std::size_t> order;
+// Means of x and y over so many bins of x.
+void bin(const Series& x, const Series& y, std::size_t bins, Traced& out) {
+  FiledVector<std::size_t> order;
   for (std::size_t k = 0; k < x.size(); ++k)
     if (std::isfinite(x[k]) && std::isfinite(y[k])) order.push_back(k);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
-  Series bx, by;
   for (std::size_t b = 0; b < std::min(bins, order.size()); ++b) {
     const std::size_t from = b * order.size() / bins, to = std::max(from + 1, (b + 1) * order.size() / bins);
     if (to > order.size()) break;
@@ -106,14 +106,12 @@ void bin(Series& x, Series& y, std::size_t bins) {
       sx += x[order[i]];
       sy += y[order[i]];
     }
-    bx.push_back(sx / static_cast<double>(to - from));
-    by.push_back(sy / static_cast<double>(to - from));
+    out.x.push_back(sx / static_cast<double>(to - from));
+    out.y.push_back(sy / static_cast<double>(to - from));
   }
-  x = std::move(bx);
-  y = std::move(by);
 }
 
-double mean(const Series& x) {
+double mean(std::span<const double> x) {
   return x.empty() ? 0.0 : std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
 }
 
@@ -126,14 +124,15 @@ Traced trace(const std::vector<Record>& records, const Diagnosis& diagnosis, std
   const std::optional<Form> form = form_named(effect.form);
   if (!form || !has_channel(*form) || describes_noise(*form) || effect.channel.empty()) return out;
   out.angle = *form == Form::kLookup && effect.angle;
+  Series all_x, all_y;
   for (const Record& record : records) {
     const Series x = abscissa(record, effect);
     Series y = error_without(record, diagnosis, index);
     if (out.angle) y = integrated(record, y, x, effect.period);
-    out.x.insert(out.x.end(), x.begin(), x.end());
-    out.y.insert(out.y.end(), y.begin(), y.end());
+    all_x.insert(all_x.end(), x.begin(), x.end());
+    all_y.insert(all_y.end(), y.begin(), y.end());
   }
-  bin(out.x, out.y, bins);
+  bin(all_x, all_y, bins, out);
   if (out.x.size() < 2 || out.x.back() - out.x.front() <= 0.0) return {};
   out.x_label = abscissa_label(effect);
   out.y_label = out.angle ? "angle error (µrad)" : "error (°/h)";

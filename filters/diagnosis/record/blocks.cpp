@@ -90,12 +90,24 @@ std::size_t fine_index(const Record& record, std::size_t i, double fine_s) {
   return static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s[0]) / fine_s + 0.5));
 }
 
+// The first sample of each step of a record's fine grid, and behind the last step the number of samples.
+std::vector<std::size_t> step_starts(const Record& record, double fine_s, std::size_t steps) {
+  std::vector<std::size_t> first;
+  first.reserve(steps + 1);
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const std::size_t k = std::min(fine_index(record, i, fine_s), steps - 1);
+    while (first.size() <= k) first.push_back(i);
+  }
+  first.resize(steps + 1, record.time_s.size());
+  return first;
+}
+
 // Where the record has no rows the channel went on: linear between the steps beside such a hole. Held there
 // and then jumping, its derivative would be that of no temperature.
-void bridge_holes(const Record& record, double fine_s, std::span<double> means) {
+void bridge_holes(const std::vector<std::size_t>& first, std::span<double> means) {
   std::size_t last = 0;
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    const std::size_t k = std::min(fine_index(record, i, fine_s), means.size() - 1);
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    if (first[k] == first[k + 1]) continue;
     for (std::size_t j = last + 1; j < k; ++j)
       means[j] = means[last] +
                  (means[k] - means[last]) * static_cast<double>(j - last) / static_cast<double>(k - last);
@@ -104,29 +116,30 @@ void bridge_holes(const Record& record, double fine_s, std::span<double> means) 
 }
 
 // Means of one column over the fine grid of one record; steps without a value hold the last one.
-void fill(const Record& record, std::span<const double> values, double fine_s, std::size_t steps,
-          std::vector<double>& means, std::vector<double>* power) {
-  std::vector<double> sum(steps, 0.0);
-  std::vector<double> square(power ? steps : 0, 0.0);
-  std::vector<std::uint32_t> count(steps, 0);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t k = std::min(fine_index(record, i, fine_s), steps - 1);
-    if (!std::isfinite(values[i])) continue;
-    sum[k] += values[i];
-    if (power) square[k] += values[i] * values[i];
-    ++count[k];
-  }
-  double held = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t k = 0; k < steps && !std::isfinite(held); ++k) {
-    if (count[k]) held = sum[k] / count[k];
-  }
-  if (!std::isfinite(held)) held = 0.0;
+void fill(const std::vector<std::size_t>& first, std::span<const double> values, std::vector<double>& means,
+          std::vector<double>* power) {
+  const std::size_t steps = first.size() - 1;
+  const std::size_t begin = means.size();
+  bool known = false;  // steps before the first value hold that
+  double held = 0.0;
   for (std::size_t k = 0; k < steps; ++k) {
-    if (count[k]) held = sum[k] / count[k];
+    double sum = 0.0, square = 0.0;
+    std::uint32_t count = 0;
+    for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
+      if (!std::isfinite(values[i])) continue;
+      sum += values[i];
+      square += values[i] * values[i];
+      ++count;
+    }
+    if (count && !known) {
+      held = sum / count;
+      std::fill(means.begin() + static_cast<std::ptrdiff_t>(begin), means.end(), held);
+    }
+    if (count) held = sum / count, known = true;
     means.push_back(held);
-    if (power) power->push_back(count[k] ? std::max(0.0, square[k] / count[k] - held * held) : 0.0);
+    if (power) power->push_back(count ? std::max(0.0, square / count - held * held) : 0.0);
   }
-  bridge_holes(record, fine_s, std::span(means).last(steps));
+  bridge_holes(first, std::span(means).last(steps));
 }
 
 void describe(FineChannel& channel) {
@@ -153,39 +166,40 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
   return grid;
 }
 
-void add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
+// The first samples of the steps of its fine grid.
+std::vector<std::size_t> add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
   const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
   grid.records.push_back({grid.size(), grid.size() + blocks});
-  std::vector<double> sum(blocks, 0.0);
-  std::vector<double> count(blocks, 0.0);
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    double value = record.rate_radps[i];
-    if (!record.reference_radps.empty()) value -= record.reference_radps[i];
-    if (!std::isfinite(value)) continue;
-    const std::size_t b = fine_index(record, i, grid.fine_s) / grid.fine;
-    sum[b] += value;
-    count[b] += 1.0;
-  }
+  std::vector<std::size_t> first = step_starts(record, grid.fine_s, blocks * grid.fine);
   const double full = grid.block_s / grid.sample_s;
   for (std::size_t b = 0; b < blocks; ++b) {
-    const bool enough = count[b] >= std::max(1.0, kLeastShare * full);
+    double sum = 0.0, count = 0.0;
+    for (std::size_t i = first[b * grid.fine]; i < first[(b + 1) * grid.fine]; ++i) {
+      double value = record.rate_radps[i];
+      if (!record.reference_radps.empty()) value -= record.reference_radps[i];
+      if (!std::isfinite(value)) continue;
+      sum += value;
+      count += 1.0;
+    }
+    const bool enough = count >= std::max(1.0, kLeastShare * full);
     grid.valid.push_back(enough ? 1 : 0);
-    error.push_back(enough ? sum[b] / count[b] : 0.0);
+    error.push_back(enough ? sum / count : 0.0);
     grid.time_s.push_back(record.time_s[0] + (static_cast<double>(b) + 0.5) * grid.block_s -
                           0.5 * grid.fine_s);
   }
+  return first;
 }
 
 template <class ValuesOf>
-FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& grid, const std::string& name,
+FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& grid,
+                         const std::vector<std::vector<std::size_t>>& starts, const std::string& name,
                          ValuesOf&& values_in) {
   FineChannel channel;
   channel.name = name;
   const bool several = grid.fine_s > grid.sample_s;  // samples a step
   for (std::size_t r = 0; r < records.size(); ++r) {
-    fill(records[r], values_in(records[r]), grid.fine_s, grid.records[r].size() * grid.fine, channel.values,
-         several ? &channel.power : nullptr);
+    fill(starts[r], values_in(records[r]), channel.values, several ? &channel.power : nullptr);
   }
   describe(channel);
   return channel;
@@ -222,14 +236,15 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   BlockData data;
   data.grid = steps_and_blocks(records, most_blocks);
   std::vector<double> error;
-  for (const Record& record : records) add_blocks_of(record, data.grid, error);
+  std::vector<std::vector<std::size_t>> starts;  // by record: the first samples of its steps
+  for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
   if (data.grid.used() < 32) throw std::invalid_argument(too_few(data.grid.used()));
 
   for (const RecordChannel& channel : records.front().channels) {
     const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };
     if (!std::all_of(records.begin(), records.end(), has_it)) continue;
-    data.channels.push_back(fine_channel(records, data.grid, channel.name, [&](const Record& record) {
+    data.channels.push_back(fine_channel(records, data.grid, starts, channel.name, [&](const Record& record) {
       return values_of(record, channel.name);
     }));
     data.channels.back().two_valued = is_switch(records, channel.name);
@@ -239,7 +254,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   if (std::all_of(records.begin(), records.end(),
                   [](const Record& r) { return !r.reference_radps.empty(); })) {
     data.reference = static_cast<std::ptrdiff_t>(data.channels.size());
-    data.channels.push_back(fine_channel(records, data.grid, records.front().reference_name,
+    data.channels.push_back(fine_channel(records, data.grid, starts, records.front().reference_name,
                                          [](const Record& record) { return record.reference_radps; }));
     // Averages of seconds at rates that were set: whatever drifts between them is not sampled as drift.
     data.grid.dwells = data.grid.sample_s > 1.0 && data.channels.back().varies;

@@ -90,10 +90,10 @@ struct Readings {
   [[nodiscard]] std::size_t row(std::size_t reading) const { return rows.empty() ? reading : rows[reading]; }
 
   std::span<const double> time_s, values;
-  std::vector<std::size_t> rows;  // of the readings; empty: all
+  FiledVector<std::size_t> rows;  // of the readings; empty: all
 
  private:
-  std::vector<double> times_, values_;
+  Samples times_, values_;
 };
 
 struct Run {
@@ -160,7 +160,7 @@ std::vector<Run> stuck_stretches(std::span<const double> values, const Usual& us
 }
 
 // Linear in time between the reading before the run and the one behind it; held where one of them is missing.
-void interpolate(const Readings& of, const Run& run, std::vector<double>& values) {
+void interpolate(const Readings& of, const Run& run, Samples& values) {
   const bool before = run.from > 0;
   const bool behind = run.to < values.size();
   if (!before && !behind) return;
@@ -191,17 +191,20 @@ std::string excursions_in_words(std::span<const double> values, const std::vecto
 }
 
 // The channel with its faults repaired, each told in `remarks`; nothing where it has none.
-std::optional<std::vector<double>> repaired_channel(const Record& record, const RecordChannel& channel,
+std::optional<Samples> repaired_channel(const Record& record, const RecordChannel& channel,
                                                     const std::string& where,
                                                     std::vector<std::string>& remarks) {
   const Readings of(record, channel.values);
   const Usual usual = usual_of(of.values);
   if (!usual.varied) return std::nullopt;
   const std::vector<Run> away = excursions(of, usual);
-  std::vector<double> values(of.values.begin(), of.values.end());
+  Samples values;  // none where they are as they were read
+  if (!away.empty()) values.assign(of.values.begin(), of.values.end());
   for (const Run& run : away) interpolate(of, run, values);
-  const std::vector<Run> stuck = usual.slow ? stuck_stretches(values, usual) : std::vector<Run>{};
+  const std::vector<Run> stuck =
+      usual.slow ? stuck_stretches(away.empty() ? of.values : values, usual) : std::vector<Run>{};
   if (away.empty() && stuck.empty()) return std::nullopt;
+  if (away.empty()) values.assign(of.values.begin(), of.values.end());
   if (!away.empty()) remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
   for (const Run& run : stuck) {
     remarks.push_back(
@@ -212,21 +215,21 @@ std::optional<std::vector<double>> repaired_channel(const Record& record, const 
     interpolate(of, {run.from + 1, run.to}, values);
   }
   if (of.rows.empty()) return values;
-  std::vector<double> all(channel.values.begin(), channel.values.end());
+  Samples all(channel.values.begin(), channel.values.end());
   for (std::size_t i = 0; i < values.size(); ++i) all[of.rows[i]] = values[i];
   return all;
 }
 
 // A sample or two of the rate, less the reference, that leap away from both their neighbours by twenty spans
 // of all the others: a knock, or a fault of the logger. Nothing that an effect could be fitted to.
-std::optional<std::vector<double>> rate_without_knocks(const Record& record, const std::string& where,
+std::optional<Samples> rate_without_knocks(const Record& record, const std::string& where,
                                                        std::vector<std::string>& remarks) {
-  const std::vector<double> error = error_of(record);
+  const Samples error = error_of(record);
   const Readings of(record, error);
   const Usual usual = usual_of(of.values);
   const double far = kFar * (usual.high - usual.low);
   if (!(far > 0.0)) return std::nullopt;
-  std::vector<double> rate;
+  Samples rate;
   std::size_t samples = 0;
   double farthest = 0.0;
   const auto is_away = [&](std::size_t i) {
@@ -260,7 +263,7 @@ std::optional<std::vector<double>> rate_without_knocks(const Record& record, con
 RepairedRecords repair_records(const std::vector<Record>& records) {
   RepairedRecords repaired;
   repaired.records = records;
-  const auto keep = [&](std::vector<double> values) {
+  const auto keep = [&](Samples values) {
     return std::span<const double>(repaired.values.emplace_back(std::move(values)));
   };
   for (Record& record : repaired.records) {

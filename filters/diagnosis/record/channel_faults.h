@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "filters/diagnosis/record.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
 struct RepairedRecords {
   std::vector<Record> records;              // as given, but for the columns repaired
-  std::vector<std::vector<double>> values;  // which those columns' spans show; keep as long as `records`
+  std::vector<Samples> values;  // which those columns' spans show; keep as long as `records`
   std::vector<std::string> remarks;         // one a fault found, for people
 };
 

@@ -7,12 +7,12 @@
 
 namespace ifog {
 
-std::vector<double> compensated_error(const Record& record, const Model& model) {
+Samples compensated_error(const Record& record, const Model& model) {
   Compensator compensator(model, {""}, std::numeric_limits<double>::infinity(), 0.0);
   SeriesToCompensate series{record.time_s, {record.rate_radps}, {}};
   series.channels.reserve(compensator.channels().size());
   for (const std::string& name : compensator.channels()) series.channels.push_back(values_of(record, name));
-  std::vector<double> error(record.time_s.size());
+  Samples error(record.time_s.size());
   compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& out) {
     error[i] = out.compensated_radps[0];
     if (!record.reference_radps.empty()) error[i] -= record.reference_radps[i];

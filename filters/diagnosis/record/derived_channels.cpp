@@ -69,7 +69,7 @@ void add_difference(const std::string& one, const std::string& other, DerivedRec
   for (Record& record : derived.records) {
     const std::span<const double> a = values_of(record, one);
     const std::span<const double> b = values_of(record, other);
-    std::vector<double>& difference = derived.values.emplace_back(a.size());
+    Samples& difference = derived.values.emplace_back(a.size());
     double held_a = std::nan("");  // loggers poll their thermometers in turn
     double held_b = std::nan("");
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -132,7 +132,7 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
     for (Record& record : derived.records) {
       for (RecordChannel& mine : record.channels) {
         if (mine.name != channel.name) continue;
-        std::vector<double>& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
+        Samples& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
         const std::optional<Turn> turn = turn_of(mine.values, period);
         double before = std::nan("");
         for (double& value : whole) {

@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "filters/diagnosis/record.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
 struct DerivedRecords {
   std::vector<Record> records;
-  std::list<std::vector<double>> values;  // which new channels' spans show; keep as long as `records`
+  std::list<Samples> values;  // which new channels' spans show; keep as long as `records`
 };
 
 // 2 pi, 360 or 1 when the channel is an angle by its unit (rad, deg, turns) that stays within a turn and

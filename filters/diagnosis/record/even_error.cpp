@@ -13,7 +13,7 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
   for (std::size_t r = 0; r < records.size(); ++r) {
     EvenError error;
     error.start_s = records[r].time_s.front();
-    std::vector<double> held_out = error_of(records[r]);
+    Samples held_out = error_of(records[r]);
     error.before = on_even_grid(records[r], sample_s, held_out);
     error.rest = on_even_grid(records[r], sample_s, error_of(without.records[r]));
     for (const RampFit& ramp : without.ramps) {
@@ -33,7 +33,7 @@ const EvenError& longest_of(const std::vector<EvenError>& errors) {
 
 void refuse_constant(const std::vector<Record>& records) {
   for (const Record& record : records) {
-    const std::vector<double> error = error_of(record);
+    const Samples error = error_of(record);
     const double first = error.empty() ? 0.0 : error.front();
     if (!std::all_of(error.begin(), error.end(), [&](double value) { return value == first; })) return;
   }

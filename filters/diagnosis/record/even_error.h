@@ -12,15 +12,15 @@ namespace ifog {
 // Of one record; NaN where no sample is.
 struct EvenError {
   double start_s = 0.0;
-  std::vector<double> before;         // rate - reference
-  std::vector<double> rest;           // less ramps, and later lines: what effects are sought in
-  std::vector<double> rest_held_out;  // the same, less ramps as fitted without the sample's own part
-  std::vector<double> after;          // less the effects, too
+  Samples before;         // rate - reference
+  Samples rest;           // less ramps, and later lines: what effects are sought in
+  Samples rest_held_out;  // the same, less ramps as fitted without the sample's own part
+  Samples after;          // less the effects, too
   // Less what is corrected online, by coefficients that were fitted without the sample's own part.
-  std::vector<double> held_out;
-  std::vector<double>
+  Samples held_out;
+  Samples
       written;                 // what the daemon's own correction leaves of `before`, by the model as written
-  std::vector<double> logged;  // the same with channels as they were logged, faults and all
+  Samples logged;  // the same with channels as they were logged, faults and all
 };
 
 // after, held_out and written: still empty. Throws as on_even_grid() does.

@@ -8,14 +8,14 @@
 
 namespace ifog {
 
-std::vector<double> on_even_grid(const Record& record, double sample_s, const std::vector<double>& values) {
+Samples on_even_grid(const Record& record, double sample_s, std::span<const double> values) {
   const double span = record.time_s.back() - record.time_s.front();
   const double steps = std::floor(span / sample_s + 0.5) + 1.0;
   if (steps > 100.0 * static_cast<double>(values.size())) {
     throw std::invalid_argument(
         record.name + ": gaps are a hundred times the samples; give the parts as captures of their own");
   }
-  std::vector<double> even(static_cast<std::size_t>(steps), std::numeric_limits<double>::quiet_NaN());
+  Samples even(static_cast<std::size_t>(steps), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto k =
         static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s.front()) / sample_s + 0.5));
@@ -24,8 +24,8 @@ std::vector<double> on_even_grid(const Record& record, double sample_s, const st
   return even;
 }
 
-std::vector<double> error_of(const Record& record) {
-  std::vector<double> error(record.rate_radps.begin(), record.rate_radps.end());
+Samples error_of(const Record& record) {
+  Samples error(record.rate_radps.begin(), record.rate_radps.end());
   if (record.reference_radps.empty()) return error;
   for (std::size_t i = 0; i < error.size(); ++i) error[i] -= record.reference_radps[i];
   return error;

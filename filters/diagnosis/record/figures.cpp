@@ -60,8 +60,9 @@ double heading_drift(std::span<const double> error, double period_s) {
 
 }  // namespace
 
-std::vector<double> means_over(std::span<const double> error, std::size_t count) {
-  std::vector<double> means;
+Samples means_over(std::span<const double> error, std::size_t count) {
+  Samples means;
+  means.reserve(error.size() / count);
   for (std::size_t from = 0; from + count <= error.size(); from += count) {
     double sum = 0.0;
     std::size_t n = 0;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "filters/series/samples.h"
+
 namespace ifog {
 
 // Even steps of period_s; NaN missing. Keys: residual_rms_radps, rms_<T>s_radps and adev_<T>s_radps for T of
@@ -20,6 +22,6 @@ std::map<std::string, double> pooled(const std::vector<std::map<std::string, dou
                                      const std::vector<double>& weights);
 
 // Means over `count` samples, NaN where fewer than half are there.
-std::vector<double> means_over(std::span<const double> error, std::size_t count);
+Samples means_over(std::span<const double> error, std::size_t count);
 
 }  // namespace ifog

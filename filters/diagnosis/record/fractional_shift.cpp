@@ -30,7 +30,7 @@ Kernel kernel_at(double fraction) {
 
 }  // namespace
 
-std::vector<double> shifted(std::span<const double> values, double steps) {
+Samples shifted(std::span<const double> values, double steps) {
   const double whole = std::floor(steps);
   const double fraction = steps - whole;
   const Kernel kernel = kernel_at(fraction);
@@ -39,7 +39,7 @@ std::vector<double> shifted(std::span<const double> values, double steps) {
   const auto at = [&](std::ptrdiff_t i) {
     return i >= 0 && i < n ? values[static_cast<std::size_t>(i)] : std::numeric_limits<double>::quiet_NaN();
   };
-  std::vector<double> out(values.size());
+  Samples out(values.size());
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const std::ptrdiff_t here = i + from;
     double sum = 0.0;

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <span>
-#include <vector>
+
+#include "filters/series/samples.h"
 
 namespace ifog {
 
 // values at k + steps for every k, by a sinc under a Hann window of 24 steps: white noise stays as white and
 // as loud as it was, so that no shift is preferred for being smooth. Beside holes linear; NaN where there is
 // nothing to interpolate between.
-std::vector<double> shifted(std::span<const double> values, double steps);
+Samples shifted(std::span<const double> values, double steps);
 
 }  // namespace ifog

@@ -241,8 +241,8 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
   fit.effect = table_effect(channel, period, all, table);
 
   for (const Record& record : records) {
-    std::vector<double> correction(record.time_s.size(), 0.0);
-    std::vector<double> held_out = correction;
+    Samples correction(record.time_s.size(), 0.0);
+    Samples held_out = correction;
     each_sample(record, values_of(record, channel), period, table.size(),
                 [&](std::size_t i, int part, const Hats& hats, double) {
                   const Eigen::VectorXd& without = crossed.without[static_cast<std::size_t>(part)];

@@ -13,6 +13,7 @@
 
 #include "filters/diagnosis/record.h"
 #include "filters/model_file/model.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
@@ -23,8 +24,8 @@ struct RampFit {
   Effect effect;       // an angle lookup; the table's ends may differ: the flyback is not exactly 2 pi
   double ratio = 0.0;  // twice the log-likelihood gained in white noise
   double p_value = 1.0;
-  std::vector<std::vector<double>> correction;  // by record and sample, rad/s, of the fit to all
-  std::vector<std::vector<double>> held_out;    // each part from the fit to the other parts
+  std::vector<Samples> correction;  // by record and sample, rad/s, of the fit to all
+  std::vector<Samples> held_out;    // each part from the fit to the other parts
 };
 
 // Of one channel of the records; nothing when the table does not predict the parts held out of its fit, or by

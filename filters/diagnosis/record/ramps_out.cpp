@@ -28,7 +28,7 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
   }
   if (parts.ramps.empty()) return parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    std::vector<double> rate(records[r].rate_radps.begin(), records[r].rate_radps.end());
+    Samples rate(records[r].rate_radps.begin(), records[r].rate_radps.end());
     for (const RampFit& ramp : parts.ramps) {
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
     }

@@ -12,7 +12,7 @@ namespace ifog {
 struct WithoutRamps {
   std::vector<RampFit> ramps;
   std::vector<Record> records;             // without channels that wrap, and less what the ramps explain
-  std::vector<std::vector<double>> rates;  // what their rates point to, when a ramp was found
+  std::vector<Samples> rates;  // what their rates point to, when a ramp was found
   std::string remark;                      // why one that was not logged is not rebuilt, where that is known
 };
 

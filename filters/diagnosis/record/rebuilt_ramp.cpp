@@ -137,7 +137,7 @@ void correct_all(const std::vector<Record>& records, std::size_t fitted, const U
 double energy_taken(const std::vector<Record>& records, const RampFit& fit) {
   double taken = 0.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::vector<double> error = error_of(records[r]);
+    const Samples error = error_of(records[r]);
     double mean = 0.0;
     double n = 0.0;
     for (const double e : error) {

@@ -89,8 +89,8 @@ Series differences(const Series& series) {
   return out;
 }
 
-Series means(const Series& series, std::size_t count) {
-  if (count == 1) return series;
+Series means(std::span<const double> series, std::size_t count) {
+  if (count == 1) return {series.begin(), series.end()};
   Series out(series.size() / count);
   for (std::size_t i = 0; i < out.size(); ++i) {
     double sum = 0.0;  // NaN as soon as one is missing: a mean of some would come from another time
@@ -107,16 +107,14 @@ std::optional<Pair> pair_of(const Record& record) {
   try {
     period_s = sample_clock(record.time_s).period_s;
     if (period_s > kSlowest_s) return std::nullopt;
-    pair.rate = on_even_grid(record, period_s, {record.rate_radps.begin(), record.rate_radps.end()});
-    pair.reference =
-        on_even_grid(record, period_s, {record.reference_radps.begin(), record.reference_radps.end()});
+    const Samples rate = on_even_grid(record, period_s, record.rate_radps);
+    const std::size_t count = (rate.size() + kMost - 1) / kMost;
+    pair.rate = means(rate, count);
+    pair.reference = means(on_even_grid(record, period_s, record.reference_radps), count);
+    pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // no even clock, or hardly anything on it
   }
-  const std::size_t count = (pair.rate.size() + kMost - 1) / kMost;
-  pair.rate = means(pair.rate, count);
-  pair.reference = means(pair.reference, count);
-  pair.step_s = period_s * static_cast<double>(count);
   return pair;
 }
 
@@ -163,7 +161,7 @@ struct Regressors {
 
 Regressors regressors_at(const Series& reference, double scale, double steps, bool with_slope) {
   Regressors out;
-  const Series moved = shifted(reference, steps);
+  const Samples moved = shifted(reference, steps);
   for (std::size_t p = 0; p < kPowers; ++p) {
     out.powers[p].resize(moved.size());
     for (std::size_t i = 0; i < moved.size(); ++i)
@@ -171,8 +169,9 @@ Regressors regressors_at(const Series& reference, double scale, double steps, bo
   }
   if (!with_slope) return out;
   constexpr double kAside = 0.25;
-  out.slope = shifted(reference, steps + kAside);
-  const Series before = shifted(reference, steps - kAside);
+  const Samples behind = shifted(reference, steps + kAside);
+  out.slope.assign(behind.begin(), behind.end());
+  const Samples before = shifted(reference, steps - kAside);
   for (std::size_t i = 0; i < before.size(); ++i) out.slope[i] = (out.slope[i] - before[i]) / (2.0 * kAside);
   return out;
 }
@@ -284,12 +283,11 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
 }
 
 // By row of the record, the reference as it would have been without delay.
-Series moved_reference(const Record& record, double delay_s) {
+Samples moved_reference(const Record& record, double delay_s) {
   const double period_s = sample_clock(record.time_s).period_s;
-  const Series even =
-      shifted(on_even_grid(record, period_s, {record.reference_radps.begin(), record.reference_radps.end()}),
-              delay_s / period_s);
-  Series out(record.time_s.size());
+  const Samples even =
+      shifted(on_even_grid(record, period_s, record.reference_radps), delay_s / period_s);
+  Samples out(record.time_s.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto k =
         static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s.front()) / period_s + 0.5));

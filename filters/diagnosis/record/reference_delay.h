@@ -8,12 +8,13 @@
 
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
 struct AlignedRecords {
   std::vector<Record> records;                  // as given, but for references that were shifted
-  std::vector<std::vector<double>> references;  // which those show; keep as long as `records`
+  std::vector<Samples> references;  // which those show; keep as long as `records`
   std::vector<ReferenceDelay> delays;           // of those
   std::vector<std::string> remarks;             // one a delay, for people
 };

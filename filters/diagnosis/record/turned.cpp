@@ -40,7 +40,7 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(std::string(error.what()) + ", or a reference rate beside it");
     }
-    std::vector<double>& rate = out.rates.emplace_back(record.rate_radps.size(), std::nan(""));
+    Samples& rate = out.rates.emplace_back(record.rate_radps.size(), std::nan(""));
     for (const Stretch& part : rest.at_rest)
       for (std::size_t i = part.begin; i < part.end; ++i) rate[i] = record.rate_radps[i];
     out.records.back().rate_radps = rate;

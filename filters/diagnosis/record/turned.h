@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "filters/diagnosis/record.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
@@ -15,7 +16,7 @@ struct WithoutTurns {
   // Turned parts missing, and what is at rest known; as given where a reference stands beside. What is only
   // shaken stays: its means are right.
   std::vector<Record> records;
-  std::list<std::vector<double>> rates;  // that the records point to
+  std::list<Samples> rates;  // that the records point to
   std::vector<std::string> remarks;
 };
 

@@ -16,16 +16,14 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
   std::vector<double> weight;
   for (const Record& record : records) {
     const SampleRange part = samples_in(record, fitted);
-    const std::vector<double> raw = error_of(record);
-    const std::vector<double> left = compensated_error(record, model);
+    const Samples raw = error_of(record);
+    const Samples left = compensated_error(record, model);
     // Each judged piece on its own: what lies between them was fitted.
     for (const SampleRange judged : {SampleRange{0, part.from}, SampleRange{part.to, record.time_s.size()}}) {
       if (judged.size() < 32) continue;
       const Record piece = part_of(record, judged);
-      const auto of = [&](const std::vector<double>& all) {
-        const std::vector<double> values(all.begin() + static_cast<std::ptrdiff_t>(judged.from),
-                                         all.begin() + static_cast<std::ptrdiff_t>(judged.to));
-        return error_figures(on_even_grid(piece, sample_s, values), sample_s);
+      const auto of = [&](std::span<const double> all) {
+        return error_figures(on_even_grid(piece, sample_s, all.subspan(judged.from, judged.size())), sample_s);
       };
       before.push_back(of(raw));
       after.push_back(of(left));

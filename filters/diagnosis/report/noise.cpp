@@ -21,23 +21,23 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
 // What the effects leave of the samples at rest, all records one after the other.
 AngleSum angle_at_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
                        double sample_s) {
-  std::vector<double> all;
+  Samples all;
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
-    std::vector<double> resting(record.time_s.size(), record.at_rest.empty() ? 1.0 : std::nan(""));
+    Samples resting(record.time_s.size(), record.at_rest.empty() ? 1.0 : std::nan(""));
     for (const Stretch& part : record.at_rest)
       std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
                 resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
-    const std::vector<double> rests = on_even_grid(record, sample_s, resting);
-    std::vector<double> rate = errors[r].after;
+    const Samples rests = on_even_grid(record, sample_s, resting);
+    Samples rate = errors[r].after;
     for (std::size_t i = 0; i < rate.size(); ++i)
       if (std::isnan(rests[i])) rate[i] = std::nan("");
-    for (const Stretch& part : stretches({}, rate, {}))
+    for (const Stretch& part : stretches({}, std::span<const double>(rate), {}))
       parts.push_back({all.size() + part.begin, all.size() + part.end});
     all.insert(all.end(), rate.begin(), rate.end());
   }
-  return AngleSum(all, parts);
+  return AngleSum(std::span<const double>(all), parts);
 }
 
 }  // namespace

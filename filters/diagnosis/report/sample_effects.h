@@ -16,7 +16,7 @@ namespace ifog {
 // A dead zone with the true rates it was found in, by record, and the name of their column.
 struct FoundZone {
   DeadZone zone;
-  std::vector<std::vector<double>> rates;
+  std::vector<Samples> rates;
   std::string channel;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kSeriesPoints = 4000;
 
-double mean_of_block(const BlockGrid& grid, const std::vector<double>& error, std::size_t block) {
+double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::size_t block) {
   const double samples = grid.block_s / grid.sample_s;
   const auto from = static_cast<std::size_t>(std::lround(static_cast<double>(block) * samples));
   const auto to = static_cast<std::size_t>(std::lround(static_cast<double>(block + 1) * samples));
@@ -85,7 +85,7 @@ void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& n
   const auto squared = [](const std::optional<double>& value) { return value ? *value * *value : 0.0; };
   const TermVariances terms{squared(noise.Q) / (sample_s * sample_s), squared(noise.N) / sample_s,
                             squared(noise.B), squared(noise.K) * sample_s};
-  const std::vector<Stretch> whole = stretches({}, error.written, {});
+  const std::vector<Stretch> whole = stretches({}, std::span<const double>(error.written), {});
   if (whole.empty()) return;
   const AngleSum sum(std::span<const double>(error.written), whole);
   std::vector<std::size_t> counts;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kPieces = 2000;
 
-double error_in_means(const std::vector<double>& error) {
+double error_in_means(std::span<const double> error) {
   return variance_of(means_over(error, std::max<std::size_t>(1, error.size() / kPieces)));
 }
 

@@ -255,13 +255,13 @@ std::optional<DeadZone> zone_in(const BlockData& data, double significance) {
 }  // namespace
 
 std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
-                                       const std::vector<std::vector<double>>& rates, double sample_s,
+                                       const std::vector<Samples>& rates, double sample_s,
                                        double significance) {
-  std::vector<std::vector<double>> times, measured;
+  std::vector<Samples> times, measured;
   std::vector<Record> records;
   for (std::size_t r = 0; r < errors.size(); ++r) {
-    std::vector<double>& time = times.emplace_back();
-    std::vector<double>& rate = measured.emplace_back();
+    Samples& time = times.emplace_back();
+    Samples& rate = measured.emplace_back();
     for (std::size_t i = 0; i < rates[r].size(); ++i) {
       time.push_back(static_cast<double>(i) * sample_s);
       rate.push_back(rates[r][i] + errors[r].after[i]);
@@ -281,19 +281,19 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   return zone_in(data, significance);
 }
 
-std::vector<double> hidden_by(const DeadZone& zone, const std::vector<double>& rate) {
-  std::vector<double> hidden;
+Samples hidden_by(const DeadZone& zone, std::span<const double> rate) {
+  Samples hidden;
   hidden.reserve(rate.size());
   for (const double each : rate)
     hidden.push_back(std::abs(each) < zone.half_width ? zone.coefficient * each : 0.0);
   return hidden;
 }
 
-void take_out(const DeadZone& zone, const std::vector<std::vector<double>>& rates, BlockGrid& grid,
+void take_out(const DeadZone& zone, const std::vector<Samples>& rates, BlockGrid& grid,
               std::vector<EvenError>& errors) {
   const double steps = grid.sample_s / grid.fine_s;
   for (std::size_t r = 0; r < errors.size(); ++r) {
-    const std::vector<double> hidden = hidden_by(zone, rates[r]);
+    const Samples hidden = hidden_by(zone, rates[r]);
     const BlockRange& record = grid.records[r];
     std::vector<double> sum(record.size(), 0.0);
     std::vector<double> count(record.size(), 0.0);

@@ -25,14 +25,14 @@ struct DeadZone {
 // Nothing where chance, one passage alone, or a scale factor and its nonlinearity would do as well, or where
 // the coefficient is another than -1.
 std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
-                                       const std::vector<std::vector<double>>& rates, double sample_s,
+                                       const std::vector<Samples>& rates, double sample_s,
                                        double significance);
 
 // What the zone makes of a rate, sample by sample; zero where that is missing.
-std::vector<double> hidden_by(const DeadZone& zone, const std::vector<double>& rate);
+Samples hidden_by(const DeadZone& zone, std::span<const double> rate);
 
 // Out of the rest of the errors, and of the means over the grid's blocks.
-void take_out(const DeadZone& zone, const std::vector<std::vector<double>>& rates, BlockGrid& grid,
+void take_out(const DeadZone& zone, const std::vector<Samples>& rates, BlockGrid& grid,
               std::vector<EvenError>& errors);
 
 }  // namespace ifog

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/residual/lines.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <complex>
 #include <cstdint>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
+#include <vector>
+
+#include "filters/diagnosis/residual/periodogram.h"
 
 namespace ifog {
 namespace {
@@ -30,33 +34,10 @@ double mean_of(std::span<const double> values) {
   return n ? sum / static_cast<double>(n) : 0.0;
 }
 
-// Power of bins 0 … n/2, not scaled. The length is cut to a product of small primes for the transform's sake.
-std::vector<double> periodogram(std::span<const double> error, std::size_t& length) {
-  length = error.size();
-  while (length > 16) {
-    std::size_t rest = length;
-    for (const std::size_t prime : {2U, 3U, 5U}) {
-      while (rest % prime == 0) rest /= prime;
-    }
-    if (rest == 1) break;
-    --length;
-  }
-  const double mean = mean_of(error);
-  std::vector<double> values(length);
-  for (std::size_t i = 0; i < length; ++i) values[i] = std::isfinite(error[i]) ? error[i] - mean : 0.0;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<Complex> bins;
-  fft.fwd(bins, values);
-  std::vector<double> power(bins.size());
-  for (std::size_t k = 0; k < bins.size(); ++k) power[k] = std::norm(bins[k]);
-  return power;
-}
-
 // Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
 // frequencies.
-std::vector<double> noise_floor(const std::vector<double>& power) {
-  std::vector<double> floor(power.size(), 0.0);
+Samples noise_floor(std::span<const double> power) {
+  Samples floor(power.size(), 0.0);
   std::vector<std::size_t> at;
   std::vector<double> value;
   std::size_t k = 1;
@@ -87,7 +68,7 @@ std::vector<double> noise_floor(const std::vector<double>& power) {
 
 // Noise power right beside a peak. On a resonance it is far above the noise of the wider band, and every
 // ripple of the resonance would pass for a line against that.
-double noise_beside(const std::vector<double>& power, std::size_t k) {
+double noise_beside(std::span<const double> power, std::size_t k) {
   constexpr std::size_t kNear = 4;
   constexpr std::size_t kFar = 40;
   std::vector<double> window;
@@ -100,19 +81,42 @@ double noise_beside(const std::vector<double>& power, std::size_t k) {
   return *middle / std::numbers::ln2;
 }
 
-// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces.
-std::vector<Complex> demodulate(std::span<const double> error, double mean, double cycles_per_sample,
-                                std::size_t pieces) {
-  std::vector<Complex> sums(pieces, Complex(0.0, 0.0));
+// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. Several
+// frequencies at once, so that the error is read once and no carrier waits for its own last step.
+constexpr int kAtOnce = 4;
+using Several = Eigen::Array<double, kAtOnce, 1>;
+using Sums = std::array<std::vector<Complex>, kAtOnce>;
+
+// of: cycles a sample.
+Sums demodulate(std::span<const double> error, double mean, const Several& of, std::size_t pieces) {
+  Sums sums;
+  for (std::vector<Complex>& each : sums) each.assign(pieces, Complex(0.0, 0.0));
+  Several turn_re, turn_im;
+  for (int f = 0; f < kAtOnce; ++f) {
+    const Complex turn = std::polar(1.0, -2.0 * std::numbers::pi * of[f]);
+    turn_re[f] = turn.real();
+    turn_im[f] = turn.imag();
+  }
   for (std::size_t p = 0; p < pieces; ++p) {
     const std::size_t from = p * error.size() / pieces;
     const std::size_t to = (p + 1) * error.size() / pieces;
-    const double start = cycles_per_sample * static_cast<double>(from);
-    Complex carrier = std::polar(1.0, -2.0 * std::numbers::pi * (start - std::floor(start)));
-    const Complex turn = std::polar(1.0, -2.0 * std::numbers::pi * cycles_per_sample);
-    for (std::size_t i = from; i < to; ++i, carrier *= turn) {
-      if (std::isfinite(error[i])) sums[p] += (error[i] - mean) * carrier;
+    Several re, im, sum_re = Several::Zero(), sum_im = Several::Zero();
+    for (int f = 0; f < kAtOnce; ++f) {
+      const double start = of[f] * static_cast<double>(from);
+      const Complex carrier = std::polar(1.0, -2.0 * std::numbers::pi * (start - std::floor(start)));
+      re[f] = carrier.real();
+      im[f] = carrier.imag();
     }
+    for (std::size_t i = from; i < to; ++i) {
+      if (std::isfinite(error[i])) {
+        sum_re += (error[i] - mean) * re;
+        sum_im += (error[i] - mean) * im;
+      }
+      const Several next = re * turn_re - im * turn_im;
+      im = re * turn_im + im * turn_re;
+      re = next;
+    }
+    for (int f = 0; f < kAtOnce; ++f) sums[static_cast<std::size_t>(f)][p] = {sum_re[f], sum_im[f]};
   }
   return sums;
 }
@@ -126,12 +130,24 @@ Complex shifted(const std::vector<Complex>& sums, double cycles_per_piece, std::
   return total;
 }
 
-SpectralLine refine(std::span<const double> error, double mean, double start_s, double period_s, double bin,
-                    std::size_t length, double floor, double tries) {
-  constexpr std::size_t kPieces = 256;
+// What a peak is refined in.
+struct Search {
+  std::span<const double> error;
+  double mean, start_s, period_s;
+  std::size_t length;
+  double tries, significance;
+
+  [[nodiscard]] double cycles(std::size_t bin) const {
+    return static_cast<double>(bin) / static_cast<double>(length);
+  }
+  [[nodiscard]] std::size_t pieces() const { return std::min<std::size_t>(256, error.size() / 4); }
+};
+
+// sums: of the error at the bin's frequency. Of what chance would do as well only the p-value is said.
+SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex>& sums, double floor) {
+  const auto& [error, mean, start_s, period_s, length, tries, significance] = in;
   const auto n = static_cast<double>(error.size());
-  const double f0 = bin / static_cast<double>(length);
-  const std::vector<Complex> sums = demodulate(error, mean, f0, std::min(kPieces, error.size() / 4));
+  const double f0 = in.cycles(bin);
   const auto pieces = static_cast<double>(sums.size());
   const auto power_lacking = [&](double offset_bins) {
     return -std::norm(shifted(sums, offset_bins / pieces, 0, sums.size()));
@@ -148,6 +164,7 @@ SpectralLine refine(std::span<const double> error, double mean, double start_s, 
   // Between the bins there are more tries than bins: Rice's count of the maxima of a spectrum.
   const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
   line.p_value = std::min(1.0, between * tries * std::exp(-line.ratio));
+  if (line.p_value > significance) return line;
   double separate = 0.0;
   Complex together(0.0, 0.0);
   for (std::size_t q = 0; q < 4; ++q) {
@@ -156,7 +173,8 @@ SpectralLine refine(std::span<const double> error, double mean, double start_s, 
     together += quarter;
   }
   line.coherence = separate > 0.0 ? std::norm(together) / (separate * separate) : 0.0;
-  const std::vector<Complex> whole = demodulate(error, mean, line.frequency_hz * period_s, 1);
+  const std::vector<Complex> whole =
+      demodulate(error, mean, Several::Constant(line.frequency_hz * period_s), 1).front();
   const Complex amplitude =
       2.0 / n * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
   line.cosine = amplitude.real();
@@ -168,15 +186,28 @@ SpectralLine refine(std::span<const double> error, double mean, double start_s, 
   return line;
 }
 
+// Bins in which a peak has no other beside it.
+std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
+
+// peaks: strongest first.
+std::vector<std::size_t> not_beside(const std::vector<std::size_t>& peaks) {
+  std::vector<std::size_t> taken;
+  for (const std::size_t k : peaks)
+    if (std::none_of(taken.begin(), taken.end(),
+                     [&](std::size_t t) { return (t > k ? t - k : k - t) < beside(k); }))
+      taken.push_back(k);
+  return taken;
+}
+
 }  // namespace
 
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most) {
   std::vector<SpectralLine> lines;
   if (error.size() < 128) return lines;
-  std::size_t length = 0;
-  const std::vector<double> power = periodogram(error, length);
-  const std::vector<double> floor = noise_floor(power);
+  const Periodogram spectrum = periodogram(error);
+  const Samples& power = spectrum.power;
+  const Samples floor = noise_floor(power);
   const auto tries = static_cast<double>(power.size());
   const double least = std::log(tries / significance);
   std::vector<std::size_t> peaks;
@@ -186,23 +217,25 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   }
   std::sort(peaks.begin(), peaks.end(),
             [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
-  std::vector<std::size_t> taken;
-  const double mean = mean_of(error);
-  for (const std::size_t k : peaks) {
-    if (lines.size() >= most) break;
-    const std::size_t close = std::max<std::size_t>(6, k / 100);
-    const bool beside = std::any_of(taken.begin(), taken.end(),
-                                    [&](std::size_t t) { return (t > k ? t - k : k - t) < close; });
-    if (beside) continue;
-    taken.push_back(k);
-    SpectralLine line = refine(error, mean, start_s, period_s, static_cast<double>(k), length,
-                               std::max(floor[k], noise_beside(power, k)), tries);
+  const std::vector<std::size_t> apart = not_beside(peaks);
+  const Search in{error, mean_of(error), start_s, period_s, spectrum.length, tries, significance};
+  Sums sums;
+  for (std::size_t i = 0; i < apart.size() && lines.size() < most; ++i) {
+    const std::size_t k = apart[i];
+    if (i % kAtOnce == 0) {
+      Several of;
+      for (int f = 0; f < kAtOnce; ++f)
+        of[f] = in.cycles(apart[std::min(i + static_cast<std::size_t>(f), apart.size() - 1)]);
+      sums = demodulate(error, in.mean, of, in.pieces());
+    }
+    SpectralLine line = refine(in, k, sums[i % kAtOnce], std::max(floor[k], noise_beside(power, k)));
     if (line.p_value > significance) continue;
     std::size_t first = k;
     std::size_t last = k;
+    const std::size_t close = beside(k);
     while (first > 1 && k - first < close && power[first - 1] > 0.1 * power[k]) --first;
     while (last + 1 < power.size() && last - k < close && power[last + 1] > 0.1 * power[k]) ++last;
-    line.width_hz = static_cast<double>(last - first + 1) / (static_cast<double>(length) * period_s);
+    line.width_hz = static_cast<double>(last - first + 1) / (static_cast<double>(spectrum.length) * period_s);
     lines.push_back(line);
   }
   std::sort(lines.begin(), lines.end(),
@@ -213,8 +246,7 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
 Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points) {
   Spectrum spectrum;
   if (error.size() < 64) return spectrum;
-  std::size_t length = 0;
-  const std::vector<double> power = periodogram(error, length);
+  const auto& [power, length] = periodogram(error);
   const double scale = 2.0 * period_s / static_cast<double>(length);
   const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
   for (std::size_t k = 1; k < power.size();) {

@@ -6,6 +6,8 @@
 #include <complex>
 #include <numbers>
 
+#include "filters/series/samples.h"
+
 namespace ifog {
 namespace {
 
@@ -19,10 +21,10 @@ constexpr double kLeastCoherence =
     0.5;  // below, the peak is a hump of noise and its power says nothing of a phase
 
 // Angle turned at each sample, as a multiple of what the mean rate would turn in one sample.
-std::vector<double> relative_angle(std::span<const double> rate, double mean) {
+Samples relative_angle(std::span<const double> rate, double mean) {
   // The rate's own noise would smear the carrier, and the phase only follows slow changes: a mean over 64
   // samples.
-  std::vector<double> angle(rate.size());
+  Samples angle(rate.size());
   double smooth = mean;
   double sum = 0.0;
   for (std::size_t i = 0; i < rate.size(); ++i) {
@@ -35,7 +37,7 @@ std::vector<double> relative_angle(std::span<const double> rate, double mean) {
 
 // The error against a carrier of `cycles` a step, summed over short pieces: frequencies close by then cost
 // the pieces only, for within a piece they differ by a small part of a turn.
-double best_power(std::span<const double> error, double mean, const std::vector<double>& steps, double cycles,
+double best_power(std::span<const double> error, double mean, std::span<const double> steps, double cycles,
                   double bins, double& at) {
   constexpr std::size_t kPieces = 512;
   const std::size_t n = error.size();
@@ -84,8 +86,8 @@ std::optional<MovingLine> find_moving_line(std::span<const double> error, std::s
   if (n < 256.0 || mean_rate == 0.0) return std::nullopt;
   mean_rate /= n;
   mean_error /= n;
-  const std::vector<double> driven = relative_angle(rate, mean_rate);
-  std::vector<double> fixed(rate.size());
+  const Samples driven = relative_angle(rate, mean_rate);
+  Samples fixed(rate.size());
   for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = static_cast<double>(i + 1);
   std::optional<MovingLine> found;
   for (std::size_t k = 0; k < std::min<std::size_t>(peaks.size(), 6); ++k) {

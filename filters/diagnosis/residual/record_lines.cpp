@@ -114,8 +114,7 @@ std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
     const std::vector<SpectralLine> peaks =
         find_lines(errors[r].after, errors[r].start_s, sample_s, significance);
     if (peaks.empty()) continue;
-    const std::vector<double> rate(rates[r].rate_radps.begin(), rates[r].rate_radps.end());
-    const std::vector<double> even = on_even_grid(rates[r], sample_s, rate);
+    const Samples even = on_even_grid(rates[r], sample_s, rates[r].rate_radps);
     if (auto moving = find_moving_line(errors[r].after, even, sample_s, peaks)) return moving;
   }
   return std::nullopt;

@@ -123,7 +123,8 @@ Chain improved(const std::vector<double>& y, const Passed& passed) {
 
 std::optional<TwoStates> find_two_states(std::span<const double> left, double period_s) {
   const std::size_t count = std::max<std::size_t>(1, left.size() / kMeans);
-  std::vector<double> y = means_over(left, count);
+  const Samples means = means_over(left, count);
+  std::vector<double> y(means.begin(), means.end());
   std::erase_if(y, [](double value) { return !std::isfinite(value); });
   if (y.size() < 64) return std::nullopt;
   std::vector<double> sorted = y;

@@ -96,7 +96,7 @@ SlowRest slow_rest(std::span<const double> left, double period_s) {
   SlowRest found;
   double most = kClear;
   for (std::size_t count = 1; left.size() / count >= 16; count *= 4) {
-    const std::vector<double> means = means_over(left, count);
+    const Samples means = means_over(left, count);
     double square = 0.0;
     double n = 0.0;
     for (std::size_t i = 1; i < means.size(); ++i) {

@@ -109,7 +109,7 @@ bool stands(const BlockData& reconstructed, const SearchResult& found, std::size
 }
 
 bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors,
-           std::vector<double> EvenError::*after) {
+           Samples EvenError::*after) {
   const auto grows = [&](double pieces, double most) {
     double without = 0.0;
     double with = 0.0;

@@ -124,13 +124,9 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
                            (why.empty() ? "" : " (" + why + ")"));
 }
 
-Capture CaptureInput::read(const std::string& path, std::string* sha256) const {
+Capture CaptureInput::read(const std::string& path) const {
   InputFile file(path);
-  if (sha256 == nullptr) return read(file);
-  std::string text = file.bytes();
-  *sha256 = sha256_hex(text);
-  InputFile at_hand(path, std::move(text));
-  return read(at_hand);
+  return read(file);
 }
 
 Capture CaptureInput::read_flight(InputFile& file) const {
@@ -202,6 +198,26 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = column_rows(file, sink);
   return table;
+}
+
+LongCapture CaptureInput::read_long_capture(const std::string& path, std::string* sha256,
+                                            const LongTableSink::Wanted& wanted) const {
+  InputFile file(path);
+  const bool passes = readable(file) == FileKind::capture && (sha256 == nullptr || !is_hdf5(file));
+  if (!passes) {
+    if (sha256 == nullptr) return LongCapture(read(file));
+    std::string text = file.bytes();
+    *sha256 = sha256_hex(text);
+    InputFile at_hand(path, std::move(text));
+    return LongCapture(read(at_hand));
+  }
+  LongTable table;
+  LongTableSink sink(table, wanted);
+  Sha256 hash;
+  if (sha256) file.hear([&hash](std::string_view bytes) { hash.add(bytes); });
+  static_cast<RowNotes&>(table) = column_rows(file, sink);
+  if (sha256) *sha256 = hash.hex();
+  return {std::move(table), path};
 }
 
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {

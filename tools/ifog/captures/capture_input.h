@@ -12,6 +12,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/capture/row_sink.h"
 #include "drivers/host/driver_instance.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/long_table.h"
 
 namespace CLI {
@@ -20,6 +21,7 @@ class App;
 
 namespace ifog {
 class CaptureBuilder;
+class Sha256;
 }
 
 namespace ifog::tools {
@@ -71,9 +73,12 @@ struct CaptureInput {
 
   // Any kind as columns. What the driver could not use is told on standard error, one line a counter that
   // moved. Throws std::runtime_error with one line.
-  // `sha256`, where it is wanted: of the file as it was unpacked.
   [[nodiscard]] Capture read(InputFile& file) const;
-  [[nodiscard]] Capture read(const std::string& path, std::string* sha256 = nullptr) const;
+  [[nodiscard]] Capture read(const std::string& path) const;
+  // The same of any length. `sha256`, where it is wanted: of the file as it was unpacked. CSV passes through and HDF5 where no hash is wanted; others are read as a whole
+  // first. wanted: of the columns; empty: all.
+  [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
+                                              const LongTableSink::Wanted& wanted = {}) const;
 
   // Any kind in pieces, likewise; the one place that tells formats apart for it. CSV, HDF5, raw bytes and
   // flight recordings pass through; candump and LCM logs are read as a whole first.
@@ -84,7 +89,7 @@ struct CaptureInput {
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
  private:
-  RowNotes column_rows(InputFile& file, RowSink& sink) const;
+  RowNotes column_rows(InputFile& file, RowSink& sink, Sha256* hash = nullptr) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;
   void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
              const std::function<void()>& added) const;

@@ -24,6 +24,7 @@ void LongTable::leave_out_unknown(const std::string& path) {
 }
 
 void LongTableSink::begin(const std::vector<std::string>& names) {
+  table_.header = names;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (wanted_ && !wanted_(names[i])) continue;
     table_.columns.push_back({names[i], LongSeries(), false});

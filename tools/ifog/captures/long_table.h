@@ -21,7 +21,8 @@ struct LongColumn {
 
 struct LongTable : RowNotes {
   LongSeries time_s;
-  std::vector<LongColumn> columns;  // all but time_s, in the capture's order
+  std::vector<std::string> header;  // all that the file has but time_s
+  std::vector<LongColumn> columns;  // of those that are wanted, in the same order
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   [[nodiscard]] std::vector<std::string> names() const;

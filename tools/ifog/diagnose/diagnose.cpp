@@ -33,20 +33,24 @@ void run(const Arguments& arguments) {
   will_write("--json", arguments.json);
   will_write("--write-model", arguments.write_model);
   will_write("--report", arguments.report);
-  std::vector<Capture> captures;
+  std::vector<LongCapture> read;
   std::vector<std::string> hashes;  // for the model file, which says what it was found on
   for (const std::string& path : arguments.captures) {
     hashes.emplace_back();
     const bool wanted = !arguments.write_model.empty() || !arguments.report.empty();
-    captures.push_back(arguments.input.read(path, wanted ? &hashes.back() : nullptr));
-    if (arguments.since_power_up_s) captures.back().since_power_up_s = arguments.since_power_up_s;
+    read.push_back(arguments.input.read_long_capture(path, wanted ? &hashes.back() : nullptr));
+    if (arguments.since_power_up_s) read.back().set_since_power_up(*arguments.since_power_up_s);
   }
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
-    for (Capture& capture : captures) compensate(capture, model);
+    for (LongCapture& capture : read) capture.correct(model);
   }
-  for (std::size_t c = 0; c < captures.size(); ++c) arguments.part.cut(captures[c], arguments.captures[c]);
+  std::vector<CaptureView> captures;
+  for (std::size_t c = 0; c < read.size(); ++c) {
+    read[c].cut(arguments.part, arguments.captures[c]);
+    captures.push_back(read[c].view());
+  }
   AxesToDiagnose wanted = arguments.wanted;
   if (arguments.latitude_deg) wanted.latitude_rad = *arguments.latitude_deg * kDegree;
   const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, wanted);

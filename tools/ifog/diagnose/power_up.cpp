@@ -29,14 +29,14 @@ void transform(std::vector<double>& matrix, std::size_t n, std::size_t to, std::
 
 }  // namespace
 
-std::optional<double> began_after_power_up(const std::vector<Capture>& captures, double fit_from) {
+std::optional<double> began_after_power_up(const std::vector<CaptureView>& captures, double fit_from) {
   if (captures.empty() || !captures.front().since_power_up_s) return std::nullopt;
-  const auto fitted_from = [&](const Capture& each) {
+  const auto fitted_from = [&](const CaptureView& each) {
     const double length_s = each.time_s.empty() ? 0.0 : each.time_s.back() - each.time_s.front();
     return *each.since_power_up_s + fit_from * length_s;
   };
   const double first = fitted_from(captures.front());
-  const bool same = std::all_of(captures.begin(), captures.end(), [&](const Capture& each) {
+  const bool same = std::all_of(captures.begin(), captures.end(), [&](const CaptureView& each) {
     return each.since_power_up_s && std::abs(fitted_from(each) - first) <= kSame_s;
   });
   return same ? std::optional(first) : std::nullopt;

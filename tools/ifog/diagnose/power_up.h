@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnosis.h"
+#include "tools/ifog/captures/capture_view.h"
 
 namespace ifog::tools {
 
 // How long after power-up what was fitted of all of them began, s; fit_from: the share of each one's time
 // that was passed over before. None where one does not know, or they differ by over a second.
-[[nodiscard]] std::optional<double> began_after_power_up(const std::vector<Capture>& captures,
+[[nodiscard]] std::optional<double> began_after_power_up(const std::vector<CaptureView>& captures,
                                                          double fit_from = 0.0);
 
 // a exp(-t / tau) of a record that began t0 after power-up is a exp(t0 / tau) exp(-(t0 + t) / tau):

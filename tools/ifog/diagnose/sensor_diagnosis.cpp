@@ -5,18 +5,21 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <limits>
 #include <list>
-#include <memory>
+#include <mutex>
+#include <numeric>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/diagnosis/record/derived_channels.h"
-#include "filters/effects/compensate_series.h"
+#include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
+#include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
@@ -29,7 +32,7 @@ namespace {
 // In a model such a name is that of two columns.
 bool reads_as_difference(const std::string& name) { return !names_in(name).less.empty(); }
 
-Record record_of(const Capture& capture, const std::string& name, std::size_t axis) {
+Record record_of(const CaptureView& capture, const std::string& name, std::size_t axis) {
   Record record;
   record.name = name;
   record.time_s = capture.time_s;
@@ -38,7 +41,7 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
     record.reference_radps = capture.reference_rate_radps[axis];
   record.reference_name =
       capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
-  for (const CaptureColumn& column : capture.channels)
+  for (const CaptureView::Channel& column : capture.channels)
     if (!reads_as_difference(column.name)) record.channels.push_back({column.name, column.values});
   for (std::size_t other = 0; other < capture.axes.size(); ++other)
     if (other != axis)
@@ -48,12 +51,12 @@ Record record_of(const Capture& capture, const std::string& name, std::size_t ax
 
 // What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
 // the Earth's rate, whatever the mounting. Empty unless there are three gyros and three accelerometers.
-std::string vertical_rate(const Capture& capture) {
+std::string vertical_rate(const CaptureView& capture) {
   if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
   std::array<double, 3> rate{};
   std::array<double, 3> force{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto mean = [](const std::vector<double>& values) {
+    const auto mean = [](std::span<const double> values) {
       double sum = 0.0;
       double n = 0.0;
       for (const double v : values) {
@@ -64,8 +67,8 @@ std::string vertical_rate(const Capture& capture) {
       return n > 0.0 ? sum / n : 0.0;
     };
     rate[a] = mean(capture.rate_radps[a]);
-    const CaptureColumn* accel = nullptr;
-    for (const CaptureColumn& column : capture.channels) {
+    const CaptureView::Channel* accel = nullptr;
+    for (const CaptureView::Channel& column : capture.channels) {
       if (column.name == "accel_" + capture.axes[a] + "_mps2") accel = &column;
     }
     if (!accel) return "";
@@ -87,32 +90,7 @@ std::string vertical_rate(const Capture& capture) {
 
 }  // namespace
 
-std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model) {
-  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(),
-                          capture.since_power_up_s);
-  SeriesToCompensate series{capture.time_s, {capture.rate_radps.begin(), capture.rate_radps.end()}, {}};
-  for (const std::string& name : compensator.channels()) {
-    const CaptureColumn* found = nullptr;
-    for (const CaptureColumn& column : capture.channels) {
-      if (column.name == name) found = &column;
-    }
-    if (!found)
-      throw std::runtime_error("the model wants channel " + in_quotes(name) +
-                               ", which the capture does not have");
-    series.channels.emplace_back(found->values);
-  }
-  std::vector<std::vector<double>> out(capture.axes.size(), std::vector<double>(capture.size()));
-  compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& step) {
-    for (std::size_t a = 0; a < out.size(); ++a) out[a][i] = step.compensated_radps[a];
-  });
-  return out;
-}
-
-void compensate(Capture& capture, const Model& model) {
-  capture.rate_radps = compensated_rates(capture, model);
-}
-
-std::vector<Record> records_of(const std::vector<Capture>& captures, const std::vector<std::string>& names,
+std::vector<Record> records_of(const std::vector<CaptureView>& captures, const std::vector<std::string>& names,
                                std::size_t axis) {
   std::vector<Record> records;
   for (std::size_t c = 0; c < captures.size(); ++c) {
@@ -123,48 +101,88 @@ std::vector<Record> records_of(const std::vector<Capture>& captures, const std::
   return records;
 }
 
-std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
+namespace {
+
+Diagnosis diagnose_axis(const std::vector<CaptureView>& captures, const std::vector<std::string>& names,
+                        std::size_t axis, const DiagnoseOptions& options) {
+  const std::vector<Record> records = records_of(captures, names, axis);
+  try {
+    return diagnose(records, options);
+  } catch (const std::invalid_argument& error) {
+    // Of several captures the diagnosis names the one it means.
+    const std::string what = error.what();
+    const bool named = std::any_of(names.begin(), names.end(),
+                                   [&](const std::string& name) { return what.starts_with(name + ": "); });
+    throw std::runtime_error(named ? what : names.front() + ": " + what);
+  }
+}
+
+// What several axes have done, together.
+class Together {
+ public:
+  Together(const std::string& what, std::size_t axes, std::size_t each)
+      : done_(axes, 0), progress_(what, axes * each) {}
+  void at(std::size_t axis, std::size_t done) {
+    const std::lock_guard lock(guard_);
+    done_[axis] = done;
+    progress_.at(std::accumulate(done_.begin(), done_.end(), std::size_t{0}));
+  }
+
+ private:
+  std::mutex guard_;
+  std::vector<std::size_t> done_;
+  Progress progress_;
+};
+
+std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& captures,
+                                         const std::vector<std::string>& names,
+                                         const std::vector<std::size_t>& axes, const AxesToDiagnose& wanted) {
+  DiagnoseOptions options;
+  options.significance = wanted.significance;
+  options.fit_from = wanted.fit_from;
+  options.fit_to = wanted.fit_to;
+  options.subtract_earth_rate = wanted.earth;
+  options.latitude_rad = wanted.latitude_rad;
+  Together together("diagnose", axes.size(), options.most_effects + 1);
+  std::vector<AxisDiagnosis> found(axes.size());
+  std::vector<std::exception_ptr> failed(axes.size());
+  share_out(axes.size(), wanted.threads, [&](std::size_t i) {
+    DiagnoseOptions own = options;
+    own.axis = found[i].axis = captures.front().axes[axes[i]];
+    own.progress = [&, i](std::size_t done, std::size_t) { together.at(i, done); };
+    try {
+      found[i].diagnosis = diagnose_axis(captures, names, axes[i], own);
+    } catch (...) {
+      failed[i] = std::current_exception();
+    }
+  });
+  // Of the first axis that has one, whichever came first.
+  for (const std::exception_ptr& failure : failed)
+    if (failure) std::rethrow_exception(failure);
+  return found;
+}
+
+}  // namespace
+
+std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& captures,
                                          const std::vector<std::string>& names,
                                          const AxesToDiagnose& wanted) {
-  std::vector<AxisDiagnosis> found;
   const std::vector<std::string>& axes = captures.front().axes;
   const bool part = wanted.fit_from != wanted.fit_to;
   const std::optional<double> power_up_s = began_after_power_up(captures, part ? wanted.fit_from : 0.0);
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    if (!wanted.axes.empty() &&
-        std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) == wanted.axes.end()) {
-      continue;
-    }
-    const std::vector<Record> records = records_of(captures, names, axis);
-    DiagnoseOptions options;
-    options.significance = wanted.significance;
-    options.axis = axes[axis];
-    options.fit_from = wanted.fit_from;
-    options.fit_to = wanted.fit_to;
-    options.subtract_earth_rate = wanted.earth;
-    options.latitude_rad = wanted.latitude_rad;
-    auto progress = std::make_unique<Progress>(axes[axis].empty() ? "diagnose" : "diagnose " + axes[axis],
-                                               options.most_effects + 1);
-    options.progress = [&](std::size_t done, std::size_t) { progress->at(done); };
-    Diagnosis diagnosis;
-    try {
-      diagnosis = diagnose(records, options);
-    } catch (const std::invalid_argument& error) {
-      // Of several captures the diagnosis names the one it means.
-      const std::string what = error.what();
-      const bool named = std::any_of(names.begin(), names.end(),
-                                     [&](const std::string& name) { return what.starts_with(name + ": "); });
-      throw std::runtime_error(named ? what : names.front() + ": " + what);
-    }
-    progress.reset();
-    if (power_up_s) count_from_power_up(diagnosis, *power_up_s);
-    found.push_back({axes[axis], std::move(diagnosis)});
-  }
+  std::vector<std::size_t> chosen;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis)
+    if (wanted.axes.empty() ||
+        std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) != wanted.axes.end())
+      chosen.push_back(axis);
+  std::vector<AxisDiagnosis> found = diagnose_each(captures, names, chosen, wanted);
+  if (power_up_s)
+    for (AxisDiagnosis& each : found) count_from_power_up(each.diagnosis, *power_up_s);
   if (!found.empty())
-    for (const Capture& capture : captures) {
+    for (const CaptureView& capture : captures) {
       auto& remarks = found.front().diagnosis.remarks;
       remarks.insert(remarks.begin(), capture.faults.begin(), capture.faults.end());
-      for (const CaptureColumn& column : capture.channels)
+      for (const CaptureView::Channel& column : capture.channels)
         if (reads_as_difference(column.name))
           remarks.push_back(
               in_quotes(column.name) +
@@ -195,7 +213,7 @@ Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std
   return model;
 }
 
-std::string diagnosis_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
+std::string diagnosis_report(const std::vector<CaptureView>& captures, const std::vector<AxisDiagnosis>& found,
                              const std::vector<std::string>& names, const std::vector<std::string>& hashes,
                              const std::string& model_path) {
   report::Page page;

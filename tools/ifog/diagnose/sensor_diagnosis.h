@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/model_file/model.h"
+#include "tools/ifog/captures/capture_view.h"
 #include "tools/ifog/diagnose/diagnosis_json.h"
 
 namespace ifog::tools {
@@ -20,22 +20,16 @@ struct AxesToDiagnose {
   double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions, as the rest
   bool earth = false;
   std::optional<double> latitude_rad;
+  unsigned threads = 0;  // axes at once; 0: as many as there are processors. The result is the same
 };
-
-// The rates less the model's effects, by axis, by the code that subtracts them online. Throws
-// std::runtime_error with one line: a channel that the capture does not have. Without
-// Capture::since_power_up_s a warm-up stays.
-[[nodiscard]] std::vector<std::vector<double>> compensated_rates(const Capture& capture, const Model& model);
-// In place.
-void compensate(Capture& capture, const Model& model);
 
 // names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with
 // different axes, too short, none of the axes wanted.
-std::vector<AxisDiagnosis> diagnose_axes(const std::vector<Capture>& captures,
+std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& captures,
                                          const std::vector<std::string>& names, const AxesToDiagnose& wanted);
 
 // One axis of the captures as a diagnosis takes it, which must outlive this.
-std::vector<Record> records_of(const std::vector<Capture>& captures, const std::vector<std::string>& names,
+std::vector<Record> records_of(const std::vector<CaptureView>& captures, const std::vector<std::string>& names,
                                std::size_t axis);
 
 // `model` with what was found beside its own. hashes: SHA-256 of the captures.
@@ -43,7 +37,7 @@ Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std
                  const std::vector<std::string>& hashes);
 
 // The HTML page. hashes: as above. model_path: where the model is, "" for nowhere.
-std::string diagnosis_report(const std::vector<Capture>& captures, const std::vector<AxisDiagnosis>& found,
+std::string diagnosis_report(const std::vector<CaptureView>& captures, const std::vector<AxisDiagnosis>& found,
                              const std::vector<std::string>& names, const std::vector<std::string>& hashes,
                              const std::string& model_path);
 

@@ -13,6 +13,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/model_file/sha256.h"
+#include "tools/ifog/captures/compensated_rates.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
@@ -205,10 +206,12 @@ std::string Night::recordings_name(const std::vector<RecordedFile>& files) const
 std::string Night::diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                             const ModelInUse& in_use) {
   const Model before = in_use.model.value_or(Model{});
-  Capture corrected = recorded.capture;
-  compensate(corrected, before);
+  CaptureView corrected(recorded.capture);
+  const std::vector<Samples> rates = compensated_rates(corrected, before);
+  corrected.rate_radps.assign(rates.begin(), rates.end());
   AxesToDiagnose wanted;
   wanted.fit_to = kFitTo;
+  wanted.threads = 1;  // the daemon is at work beside it
   const std::string name = recordings_name(files);
   std::vector<AxisDiagnosis> found = diagnose_axes({corrected}, {name}, wanted);
   std::erase_if(found, [](const AxisDiagnosis& axis) { return axis.diagnosis.effects.empty(); });
@@ -254,7 +257,7 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   const std::string file = sensor_.name + ".proposal-" + proposal.model.identity;
   proposal.model_file = file + ".toml";
   proposal.report_file = file + ".html";
-  const std::string report = diagnosis_report({recorded.capture}, found, {name}, hashes, proposal.model_file);
+  const std::string report = diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file);
   const StateInHand hand(field_.state());
   write_proposal(field_.state(), proposal, model, report);
 }

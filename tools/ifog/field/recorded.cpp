@@ -14,9 +14,9 @@
 #include <string_view>
 
 #include "drivers/capture/input_file.h"
+#include "tools/ifog/captures/compensated_rates.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
-#include "tools/ifog/diagnose/sensor_diagnosis.h"
 
 namespace ifog::tools {
 namespace {
@@ -122,8 +122,8 @@ Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFil
 std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before, const Model& after,
                                    std::size_t begin) {
   const Capture& capture = recorded.capture;
-  const std::vector<std::vector<double>> old_rate = compensated_rates(capture, before);
-  const std::vector<std::vector<double>> new_rate = compensated_rates(capture, after);
+  const std::vector<Samples> old_rate = compensated_rates(capture, before);
+  const std::vector<Samples> new_rate = compensated_rates(capture, after);
   const std::vector<Stretch> at_rest = from_row(recorded.rest.at_rest, begin);
   std::vector<AxisGain> out;
   for (std::size_t axis = 0; axis < old_rate.size(); ++axis) {

@@ -19,7 +19,8 @@ namespace ifog::tools {
 namespace {
 
 struct Opened {
-  std::vector<Capture> captures;
+  std::vector<LongCapture> read;
+  std::vector<CaptureView> captures;  // of those
   std::vector<std::string> hashes;
 };
 
@@ -27,15 +28,18 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
   Opened opened;
   for (const std::string& path : gyro.captures) {
     opened.hashes.emplace_back();
-    opened.captures.push_back(settings.input.read(path, &opened.hashes.back()));
-    settings.part.cut(opened.captures.back(), path);
+    opened.read.push_back(settings.input.read_long_capture(path, &opened.hashes.back()));
+    opened.read.back().cut(settings.part, path);
+    opened.captures.push_back(opened.read.back().view());
   }
   return opened;
 }
 
 void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
                    const Opened& opened) {
-  const std::vector<AxisDiagnosis> found = diagnose_axes(opened.captures, gyro.captures, settings.wanted);
+  AxesToDiagnose wanted = settings.wanted;
+  wanted.threads = 1;  // the other processors have gyros of their own
+  const std::vector<AxisDiagnosis> found = diagnose_axes(opened.captures, gyro.captures, wanted);
   Model model = model_with({}, found, gyro.captures, opened.hashes);
   model.sensor = gyro.serial;
   const std::string model_path = results.path(gyro, "model.toml");

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/record/prepared_records.h"
+
+#include "filters/diagnosis/record/blocks.h"
+
+namespace ifog {
+namespace {
+
+const std::vector<Record>& checked(const std::vector<Record>& captures) {
+  check_columns(captures);
+  return captures;
+}
+
+}  // namespace
+
+// An angle's wraps are no faults, and differences are of channels without any.
+PreparedRecords::PreparedRecords(const std::vector<Record>& captures, const TimeShare& share,
+                                 double significance)
+    : unwrapped_(with_unwrapped_angles(checked(captures))),
+      repaired_(repair_records(unwrapped_.records)),
+      aligned_(align_references(repaired_.records)),
+      derived_(with_derived_channels(aligned_.records)),
+      resting_(without_turns(derived_.records)),
+      fitted_(share.whole() ? resting_.records : fitted_parts(resting_.records, share)),
+      without_(take_out_ramps(fitted_, significance)) {}
+
+const std::vector<Record>* PreparedRecords::as_logged() const {
+  return repaired_.values.empty() ? nullptr : &unwrapped_.records;
+}
+
+std::vector<std::string> PreparedRecords::remarks() const {
+  std::vector<std::string> all;
+  for (const auto* remarks : {&repaired_.remarks, &aligned_.remarks, &resting_.remarks})
+    all.insert(all.end(), remarks->begin(), remarks->end());
+  return all;
+}
+
+}  // namespace ifog

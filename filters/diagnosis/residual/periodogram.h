@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Power of a series at the multiples of one over its length, however long it is.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "filters/series/samples.h"
+
+namespace ifog {
+
+struct Periodogram {
+  // Up to so many samples in one transform in memory. Beyond it is made of many short ones (Bailey, "FFTs in
+  // external or hierarchical memory", J. Supercomputing 4, 1990), which take a few MiB and the rest in files.
+  static constexpr std::size_t kMostInMemory = std::size_t{1} << 22U;
+
+  Samples power;           // of bins 0 … length / 2, not scaled
+  std::size_t length = 0;  // of the series, cut to a product of small primes for the transform's sake
+};
+
+// Missing samples (NaN) count as the mean. At least 16 samples.
+Periodogram periodogram(std::span<const double> error, std::size_t in_memory = Periodogram::kMostInMemory);
+
+}  // namespace ifog

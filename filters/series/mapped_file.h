@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files without a name that are looked at as memory. What of them is in memory is the kernel's to take away
+// again; so that it also counts little where nobody else wants it, a thread gives pages back when more than
+// kMostResident of the files are in the program's memory at once. They stay in the kernel's cache while
+// there is room in it, and are read again from the file where not.
+#pragma once
+
+#include <cstddef>
+
+#include "drivers/ifog/unnamed_file.h"
+
+namespace ifog {
+
+inline constexpr std::size_t kMostResident = std::size_t{256} << 20U;  // bytes
+
+// A file of so many bytes, all of them zero, to read and write. Its room is taken at once, so that no later
+// write finds the disk full. Throws std::runtime_error with one line.
+[[nodiscard]] void* map_new_file(std::size_t bytes);
+// The first bytes of a file that is there, to read. The file may be closed afterwards. Throws likewise.
+[[nodiscard]] const void* map_file(const UnnamedFile& file, std::size_t bytes);
+// What either gave.
+void unmap_file(const void* at, std::size_t bytes) noexcept;
+
+}  // namespace ifog

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers by sample, as a vector: in memory while they are few, beyond in a file without a name. Whatever is
+// written for vectors and spans works on them, and gives the same figures.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <new>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "filters/series/mapped_file.h"
+
+namespace ifog {
+
+// Memory for small vectors, a file's for large ones. Throws std::runtime_error with one line where the file
+// finds no room.
+template <typename T>
+struct FiledAllocator {
+  using value_type = T;
+  static constexpr std::size_t kInMemory = std::size_t{16} << 20U;  // bytes of one vector
+
+  FiledAllocator() = default;
+  template <typename Other>
+  FiledAllocator(const FiledAllocator<Other>&) {}
+
+  [[nodiscard]] T* allocate(std::size_t n) {
+    if (n > std::numeric_limits<std::size_t>::max() / sizeof(T)) throw std::bad_alloc();
+    const std::size_t bytes = n * sizeof(T);
+    return static_cast<T*>(bytes <= kInMemory ? ::operator new(bytes) : map_new_file(bytes));
+  }
+  void deallocate(T* at, std::size_t n) noexcept {
+    if (n * sizeof(T) <= kInMemory)
+      ::operator delete(at);
+    else
+      unmap_file(at, n * sizeof(T));
+  }
+  friend bool operator==(const FiledAllocator&, const FiledAllocator&) { return true; }
+};
+
+template <typename T>
+using FiledVector = std::vector<T, FiledAllocator<T>>;
+
+class Samples : public FiledVector<double> {
+ public:
+  using FiledVector<double>::FiledVector;
+  Samples() = default;
+  Samples(const std::vector<double>& values) : Samples(values.begin(), values.end()) {}
+  explicit Samples(std::span<const double> values) : Samples(values.begin(), values.end()) {}
+
+  friend bool operator==(const Samples& one, const Samples& other) { return std::ranges::equal(one, other); }
+};
+
+}  // namespace ifog

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/compensated_rates.h"
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "drivers/ifog/quoted.h"
+#include "filters/effects/compensate_series.h"
+
+namespace ifog::tools {
+
+std::vector<Samples> compensated_rates(const CaptureView& capture, const Model& model) {
+  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(),
+                          capture.since_power_up_s);
+  SeriesToCompensate series{capture.time_s, capture.rate_radps, {}};
+  for (const std::string& name : compensator.channels()) {
+    const CaptureView::Channel* found = nullptr;
+    for (const CaptureView::Channel& channel : capture.channels)
+      if (channel.name == name) found = &channel;
+    if (!found)
+      throw std::runtime_error("the model wants channel " + in_quotes(name) +
+                               ", which the capture does not have");
+    series.channels.emplace_back(found->values);
+  }
+  std::vector<Samples> out(capture.axes.size(), Samples(capture.size()));
+  compensate_series(compensator, series, [&](std::size_t i, const CompensatorOutput& step) {
+    for (std::size_t a = 0; a < out.size(); ++a) out[a][i] = step.compensated_radps[a];
+  });
+  return out;
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/long_capture.h"
+
+#include <string_view>
+#include <utility>
+
+#include "tools/ifog/captures/compensated_rates.h"
+#include "tools/ifog/captures/whole_table.h"
+
+namespace ifog::tools {
+namespace {
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+LongTable table_with_faults(Capture capture) {
+  std::vector<std::string> faults = std::move(capture.faults);
+  LongTable table = long_table(std::move(capture));
+  table.faults = std::move(faults);
+  return table;
+}
+
+}  // namespace
+
+CaptureView::CaptureView(const Capture& capture)
+    : comments(capture.comments),
+      time_s(capture.time_s),
+      axes(capture.axes),
+      rate_radps(capture.rate_radps.begin(), capture.rate_radps.end()),
+      reference_rate_radps(capture.reference_rate_radps.begin(), capture.reference_rate_radps.end()),
+      faults(capture.faults),
+      since_power_up_s(capture.since_power_up_s) {
+  for (const CaptureColumn& column : capture.channels) channels.push_back({column.name, column.values});
+}
+
+LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std::move(table)) {
+  const CaptureShape shape = capture_shape(table_.header, path, table_);
+  view_.comments = lines_of(table_.comments);
+  view_.faults = table_.faults;
+  view_.time_s = table_.time_s.all();
+  view_.axes = shape.axes;
+  view_.rate_radps.resize(shape.axes.size());
+  view_.reference_rate_radps.resize(shape.axes.size());
+  using Kind = CaptureShape::Place::Kind;
+  for (std::size_t h = 0, c = 0; h < table_.header.size() && c < table_.columns.size(); ++h) {
+    LongColumn& column = table_.columns[c];
+    if (column.name != table_.header[h]) continue;  // that nobody wanted
+    ++c;
+    const CaptureShape::Place& place = shape.places[h];
+    if (place.kind == Kind::rate)
+      view_.rate_radps[place.at] = column.values.all();
+    else if (place.kind == Kind::reference)
+      view_.reference_rate_radps[place.at] = column.values.all();
+    else
+      view_.channels.push_back({column.name, column.values.all()});
+  }
+}
+
+LongCapture::LongCapture(Capture capture) {
+  const std::optional<double> since_power_up_s = capture.since_power_up_s;
+  *this = LongCapture(table_with_faults(std::move(capture)), "");
+  view_.since_power_up_s = since_power_up_s;
+}
+
+void LongCapture::cut(const TimePart& part, const std::string& name) {
+  const TimePart::Rows rows = part.rows(view_.time_s, name);
+  const auto keep = [&](std::span<const double>& values) {
+    if (!values.empty()) values = values.subspan(rows.begin, rows.end - rows.begin);
+  };
+  if (view_.since_power_up_s && rows.begin < view_.size())
+    *view_.since_power_up_s += view_.time_s[rows.begin] - view_.time_s.front();
+  keep(view_.time_s);
+  for (std::span<const double>& rate : view_.rate_radps) keep(rate);
+  for (std::span<const double>& reference : view_.reference_rate_radps) keep(reference);
+  for (CaptureView::Channel& channel : view_.channels) keep(channel.values);
+}
+
+void LongCapture::correct(const Model& model) {
+  corrected_ = compensated_rates(view_, model);
+  view_.rate_radps.assign(corrected_.begin(), corrected_.end());
+}
+
+}  // namespace ifog::tools

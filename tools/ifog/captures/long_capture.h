@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// A capture of any length as commands that search take it: read once and in pieces, its columns as memory
+// that is a file's where they are long.
+#pragma once
+
+#include <list>
+#include <optional>
+#include <string>
+
+#include "filters/model_file/model.h"
+#include "filters/series/samples.h"
+#include "tools/ifog/captures/capture_view.h"
+#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/time_part.h"
+
+namespace ifog::tools {
+
+class LongCapture {
+ public:
+  // path: for messages. Throws std::runtime_error with one line: no rate, a reference without its rate.
+  LongCapture(LongTable table, const std::string& path);
+  explicit LongCapture(Capture capture);
+
+  [[nodiscard]] const CaptureView& view() const { return view_; }
+  void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }
+  // Rows outside are gone. name: for messages. Throws as TimePart::rows().
+  void cut(const TimePart& part, const std::string& name);
+  // The rates less the model's effects. Throws as compensated_rates().
+  void correct(const Model& model);
+
+ private:
+  LongTable table_;
+  std::vector<Samples> corrected_;
+  CaptureView view_;  // of those
+};
+
+}  // namespace ifog::tools
