@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 namespace ifog {
@@ -46,7 +47,7 @@ class Resident {
     {
       const std::lock_guard lock(guard_);
       mapped_.emplace(at, bytes);
-      if (!thread_.joinable()) thread_ = std::thread([this] { watch(); });
+      if (!thread_.joinable()) begin();
     }
     changed_.notify_one();
   }
@@ -57,6 +58,14 @@ class Resident {
   }
 
  private:
+  void begin() {
+    try {
+      thread_ = std::thread([this] { watch(); });
+    } catch (const std::system_error&) {
+      // No thread to be had: what is mapped stays in memory until the kernel wants it.
+    }
+  }
+
   void watch() {
     const int statm = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
     std::unique_lock lock(guard_);

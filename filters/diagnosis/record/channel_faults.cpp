@@ -192,8 +192,7 @@ std::string excursions_in_words(std::span<const double> values, const std::vecto
 
 // The channel with its faults repaired, each told in `remarks`; nothing where it has none.
 std::optional<Samples> repaired_channel(const Record& record, const RecordChannel& channel,
-                                                    const std::string& where,
-                                                    std::vector<std::string>& remarks) {
+                                        const std::string& where, std::vector<std::string>& remarks) {
   const Readings of(record, channel.values);
   const Usual usual = usual_of(of.values);
   if (!usual.varied) return std::nullopt;
@@ -223,7 +222,7 @@ std::optional<Samples> repaired_channel(const Record& record, const RecordChanne
 // A sample or two of the rate, less the reference, that leap away from both their neighbours by twenty spans
 // of all the others: a knock, or a fault of the logger. Nothing that an effect could be fitted to.
 std::optional<Samples> rate_without_knocks(const Record& record, const std::string& where,
-                                                       std::vector<std::string>& remarks) {
+                                           std::vector<std::string>& remarks) {
   const Samples error = error_of(record);
   const Readings of(record, error);
   const Usual usual = usual_of(of.values);

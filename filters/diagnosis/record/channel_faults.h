@@ -12,9 +12,9 @@
 namespace ifog {
 
 struct RepairedRecords {
-  std::vector<Record> records;              // as given, but for the columns repaired
-  std::vector<Samples> values;  // which those columns' spans show; keep as long as `records`
-  std::vector<std::string> remarks;         // one a fault found, for people
+  std::vector<Record> records;       // as given, but for the columns repaired
+  std::vector<Samples> values;       // which those columns' spans show; keep as long as `records`
+  std::vector<std::string> remarks;  // one a fault found, for people
 };
 
 // Values that cannot be the channel's, interpolated between those beside them:

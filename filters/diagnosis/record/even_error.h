@@ -18,9 +18,8 @@ struct EvenError {
   Samples after;          // less the effects, too
   // Less what is corrected online, by coefficients that were fitted without the sample's own part.
   Samples held_out;
-  Samples
-      written;                 // what the daemon's own correction leaves of `before`, by the model as written
-  Samples logged;  // the same with channels as they were logged, faults and all
+  Samples written;  // what the daemon's own correction leaves of `before`, by the model as written
+  Samples logged;   // the same with channels as they were logged, faults and all
 };
 
 // after, held_out and written: still empty. Throws as on_even_grid() does.

@@ -11,9 +11,9 @@ namespace ifog {
 
 struct WithoutRamps {
   std::vector<RampFit> ramps;
-  std::vector<Record> records;             // without channels that wrap, and less what the ramps explain
-  std::vector<Samples> rates;  // what their rates point to, when a ramp was found
-  std::string remark;                      // why one that was not logged is not rebuilt, where that is known
+  std::vector<Record> records;  // without channels that wrap, and less what the ramps explain
+  std::vector<Samples> rates;   // what their rates point to, when a ramp was found
+  std::string remark;           // why one that was not logged is not rebuilt, where that is known
 };
 
 // A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So

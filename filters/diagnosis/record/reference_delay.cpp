@@ -285,8 +285,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
 // By row of the record, the reference as it would have been without delay.
 Samples moved_reference(const Record& record, double delay_s) {
   const double period_s = sample_clock(record.time_s).period_s;
-  const Samples even =
-      shifted(on_even_grid(record, period_s, record.reference_radps), delay_s / period_s);
+  const Samples even = shifted(on_even_grid(record, period_s, record.reference_radps), delay_s / period_s);
   Samples out(record.time_s.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto k =

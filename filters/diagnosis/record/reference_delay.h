@@ -13,10 +13,10 @@
 namespace ifog {
 
 struct AlignedRecords {
-  std::vector<Record> records;                  // as given, but for references that were shifted
-  std::vector<Samples> references;  // which those show; keep as long as `records`
-  std::vector<ReferenceDelay> delays;           // of those
-  std::vector<std::string> remarks;             // one a delay, for people
+  std::vector<Record> records;         // as given, but for references that were shifted
+  std::vector<Samples> references;     // which those show; keep as long as `records`
+  std::vector<ReferenceDelay> delays;  // of those
+  std::vector<std::string> remarks;    // one a delay, for people
 };
 
 // The delay within 60 s of greatest likelihood, beside a constant and a cubic of the reference, in

@@ -23,7 +23,8 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
       if (judged.size() < 32) continue;
       const Record piece = part_of(record, judged);
       const auto of = [&](std::span<const double> all) {
-        return error_figures(on_even_grid(piece, sample_s, all.subspan(judged.from, judged.size())), sample_s);
+        return error_figures(on_even_grid(piece, sample_s, all.subspan(judged.from, judged.size())),
+                             sample_s);
       };
       before.push_back(of(raw));
       after.push_back(of(left));

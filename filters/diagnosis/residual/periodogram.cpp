@@ -68,7 +68,8 @@ class UnitRoots {
 class PairedTransform {
  public:
   PairedTransform(std::span<const double> error, double mean) : size_(error.size() / 2), values_(size_) {
-    for (rows_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(size_))); size_ % rows_ != 0;) --rows_;
+    for (rows_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(size_))); size_ % rows_ != 0;)
+      --rows_;
     columns_ = size_ / rows_;
     const auto at = [&](std::size_t i) { return std::isfinite(error[i]) ? error[i] - mean : 0.0; };
     for (std::size_t i = 0; i < size_; ++i) values_[i] = {at(2 * i), at(2 * i + 1)};
@@ -113,7 +114,8 @@ class PairedTransform {
         Complex* const column = some.data() + c * rows_;
         fft.fwd(bins.data(), column, static_cast<Eigen::Index>(rows_));
         std::size_t turns = 0;  // (from + c) row, below size_: both are below it and so is the product
-        for (std::size_t row = 0; row < rows_; ++row, turns += from + c) column[row] = bins[row] * roots[turns];
+        for (std::size_t row = 0; row < rows_; ++row, turns += from + c)
+          column[row] = bins[row] * roots[turns];
       }
       for (std::size_t row = 0; row < rows_; ++row)
         for (std::size_t c = 0; c < count; ++c) values_[row * columns_ + from + c] = some[c * rows_ + row];

@@ -28,8 +28,9 @@ double power_of(const std::vector<double>& values, std::size_t length, std::size
   for (const double value : values) mean += value / static_cast<double>(values.size());
   std::complex<double> sum = 0.0;
   for (std::size_t i = 0; i < length; ++i)
-    sum += (values[i] - mean) *
-           std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(bin * i % length) / static_cast<double>(length));
+    sum +=
+        (values[i] - mean) * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(bin * i % length) /
+                                                 static_cast<double>(length));
   return std::norm(sum);
 }
 
@@ -71,8 +72,7 @@ TEST(Periodogram, WhatIsMissingCountsAsTheMean) {
   std::vector<double> filled = values;
   filled[100] = mean;
   const Periodogram holed = periodogram(values, 16), whole = periodogram(filled, 16);
-  for (std::size_t k = 1; k < whole.power.size(); ++k)
-    ASSERT_NEAR(holed.power[k], whole.power[k], 1e-6) << k;
+  for (std::size_t k = 1; k < whole.power.size(); ++k) ASSERT_NEAR(holed.power[k], whole.power[k], 1e-6) << k;
 }
 
 }  // namespace

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <type_traits>
 
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/unused_channels.h"
 
 namespace ifog {
@@ -86,7 +88,7 @@ TEST(EvenGrid, PutsSamplesWhereTheirTimeIs) {
   Record record;
   record.time_s = time;
   record.rate_radps = rate;
-  const std::vector<double> even = on_even_grid(record, 1.0, rate);
+  const Samples even = on_even_grid(record, 1.0, rate);
   ASSERT_EQ(even.size(), 6U);
   EXPECT_EQ(even[0], 1.0);
   EXPECT_EQ(even[1], 2.0);
@@ -153,7 +155,7 @@ TEST(CompensatedError, IsTheRateLessTheEffectLessTheReference) {
   effect.parameters = {{"coefficient", 3.0, 0.0, "rad/s/K"}};
   Model model;
   model.effects = {effect};
-  const std::vector<double> left = compensated_error(record, model);
+  const Samples left = compensated_error(record, model);
   for (std::size_t i = 0; i < 40; ++i)
     EXPECT_NEAR(left[i], arrays.rate[i] - 3.0 * (arrays.temperature[i] - 25.0) - 2.0, 1e-9);
   // Of a channel the record does not have nothing is known, and nothing is subtracted.
@@ -209,6 +211,49 @@ TEST(UnusedChannels, SaysWhichAndWhy) {
             "channels that say nothing here and were left out: "
             "magnetic_x_uT (without a value); supply_V (never changing)");
   EXPECT_EQ(unused_channels({arrays.record()}, cut_to_blocks({arrays.record()}), {}), "");
+}
+
+static_assert(!std::is_copy_constructible_v<PreparedRecords> &&
+                  !std::is_move_constructible_v<PreparedRecords>,
+              "a copy's records would show the first one's columns");
+
+TEST(PreparedRecords, AreRepairedAndCutAndSayWhatWasDone) {
+  Arrays arrays(4000);
+  std::mt19937_64 draw(11);
+  std::normal_distribution<double> normal;
+  for (double& rate : arrays.rate) rate = 1e-6 * normal(draw);
+  arrays.rate[500] = 1e-3;  // a knock
+  for (std::size_t i = 0; i < 4000; ++i) arrays.temperature[i] = 25.0 + 1e-3 * static_cast<double>(i);
+  arrays.temperature[1000] = 85.0;  // a thermometer's power-on value
+  const std::vector<Record> captures = {arrays.record()};
+  const PreparedRecords prepared(captures, {0.0, 0.5});
+  const Record& whole = prepared.whole().front();
+  EXPECT_TRUE(std::isnan(whole.rate_radps[500]));
+  EXPECT_EQ(whole.rate_radps[501], arrays.rate[501]);
+  EXPECT_NEAR(values_of(whole, "temperature_degC")[1000], 26.0, 1e-9);
+  ASSERT_NE(prepared.as_logged(), nullptr);
+  EXPECT_EQ(values_of(prepared.as_logged()->front(), "temperature_degC")[1000], 85.0);
+  EXPECT_EQ(prepared.fitted().front().time_s.size(), 2000U);
+  EXPECT_EQ(prepared.fitted().front().rate_radps.data(), whole.rate_radps.data());
+  ASSERT_EQ(prepared.without_ramps().records.size(), 1U);
+  ASSERT_EQ(prepared.remarks().size(), 2U);
+  EXPECT_NE(prepared.remarks()[0].find("the rate leaps away"), std::string::npos) << prepared.remarks()[0];
+  EXPECT_NE(prepared.remarks()[1].find("temperature_degC leaps away"), std::string::npos);
+}
+
+TEST(PreparedRecords, NothingIsRepairedWhereNothingIsWrong) {
+  Arrays arrays(400);
+  std::mt19937_64 draw(12);
+  std::normal_distribution<double> normal;
+  for (double& rate : arrays.rate) rate = 1e-6 * normal(draw);
+  const std::vector<Record> captures = {arrays.record()};
+  const PreparedRecords prepared(captures);
+  EXPECT_EQ(prepared.as_logged(), nullptr);
+  EXPECT_TRUE(prepared.remarks().empty());
+  EXPECT_EQ(prepared.fitted().front().rate_radps.data(), arrays.rate.data());
+  Record backwards = arrays.record();
+  arrays.time[7] = arrays.time[5];
+  EXPECT_THROW(PreparedRecords({backwards}), std::invalid_argument);
 }
 
 }  // namespace

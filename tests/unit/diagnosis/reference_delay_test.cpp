@@ -130,7 +130,7 @@ TEST(FractionalShift, MovesASineAsTheClosedFormDoes) {
   std::vector<double> sine;
   for (int k = 0; k < 400; ++k) sine.push_back(std::sin(0.9 * k));
   for (const double steps : {0.0, 0.5, -3.3, 7.25}) {
-    const std::vector<double> moved = shifted(sine, steps);
+    const Samples moved = shifted(sine, steps);
     for (int k = 30; k < 370; ++k)
       EXPECT_NEAR(moved[static_cast<std::size_t>(k)], std::sin(0.9 * (k + steps)), 2e-3) << steps;
   }

@@ -72,7 +72,8 @@ TEST(Samples, NoRoomIsSaidInOneLine) {
       _exit(1);
     } catch (const std::runtime_error& error) {
       const std::string line = error.what();
-      _exit(line.find("cannot write") != std::string::npos && line.find("TMPDIR") != std::string::npos ? 0 : 2);
+      _exit(line.find("cannot write") != std::string::npos && line.find("TMPDIR") != std::string::npos ? 0
+                                                                                                       : 2);
     }
   }
   int status = -1;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <span>
 
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
@@ -39,7 +40,7 @@ TEST(UndeclaredDiagnosis, FindsNothingWhereNothingIs) {
 }
 
 // Root mean square about the mean.
-double rms(const std::vector<double>& values) {
+double rms(std::span<const double> values) {
   double sum = 0.0, square = 0.0;
   for (const double v : values) sum += v, square += v * v;
   const double n = static_cast<double>(values.size());

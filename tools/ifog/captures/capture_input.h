@@ -22,7 +22,7 @@ class App;
 namespace ifog {
 class CaptureBuilder;
 class Sha256;
-}
+}  // namespace ifog
 
 namespace ifog::tools {
 
@@ -75,8 +75,8 @@ struct CaptureInput {
   // moved. Throws std::runtime_error with one line.
   [[nodiscard]] Capture read(InputFile& file) const;
   [[nodiscard]] Capture read(const std::string& path) const;
-  // The same of any length. `sha256`, where it is wanted: of the file as it was unpacked. CSV passes through and HDF5 where no hash is wanted; others are read as a whole
-  // first. wanted: of the columns; empty: all.
+  // The same of any length. `sha256`, where it is wanted: of the file as it was unpacked. CSV passes through
+  // and HDF5 where no hash is wanted; others are read as a whole first. wanted: of the columns; empty: all.
   [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
                                               const LongTableSink::Wanted& wanted = {}) const;
 

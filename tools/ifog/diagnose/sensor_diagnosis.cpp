@@ -90,8 +90,8 @@ std::string vertical_rate(const CaptureView& capture) {
 
 }  // namespace
 
-std::vector<Record> records_of(const std::vector<CaptureView>& captures, const std::vector<std::string>& names,
-                               std::size_t axis) {
+std::vector<Record> records_of(const std::vector<CaptureView>& captures,
+                               const std::vector<std::string>& names, std::size_t axis) {
   std::vector<Record> records;
   for (std::size_t c = 0; c < captures.size(); ++c) {
     if (captures[c].axes != captures.front().axes)
@@ -213,9 +213,9 @@ Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std
   return model;
 }
 
-std::string diagnosis_report(const std::vector<CaptureView>& captures, const std::vector<AxisDiagnosis>& found,
-                             const std::vector<std::string>& names, const std::vector<std::string>& hashes,
-                             const std::string& model_path) {
+std::string diagnosis_report(const std::vector<CaptureView>& captures,
+                             const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
+                             const std::vector<std::string>& hashes, const std::string& model_path) {
   report::Page page;
   page.captures = names;
   page.sensor = std::filesystem::path(names.front()).filename().string();

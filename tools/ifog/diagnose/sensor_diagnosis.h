@@ -29,16 +29,16 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
                                          const std::vector<std::string>& names, const AxesToDiagnose& wanted);
 
 // One axis of the captures as a diagnosis takes it, which must outlive this.
-std::vector<Record> records_of(const std::vector<CaptureView>& captures, const std::vector<std::string>& names,
-                               std::size_t axis);
+std::vector<Record> records_of(const std::vector<CaptureView>& captures,
+                               const std::vector<std::string>& names, std::size_t axis);
 
 // `model` with what was found beside its own. hashes: SHA-256 of the captures.
 Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
                  const std::vector<std::string>& hashes);
 
 // The HTML page. hashes: as above. model_path: where the model is, "" for nowhere.
-std::string diagnosis_report(const std::vector<CaptureView>& captures, const std::vector<AxisDiagnosis>& found,
-                             const std::vector<std::string>& names, const std::vector<std::string>& hashes,
-                             const std::string& model_path);
+std::string diagnosis_report(const std::vector<CaptureView>& captures,
+                             const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
+                             const std::vector<std::string>& hashes, const std::string& model_path);
 
 }  // namespace ifog::tools

@@ -257,7 +257,8 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   const std::string file = sensor_.name + ".proposal-" + proposal.model.identity;
   proposal.model_file = file + ".toml";
   proposal.report_file = file + ".html";
-  const std::string report = diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file);
+  const std::string report =
+      diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file);
   const StateInHand hand(field_.state());
   write_proposal(field_.state(), proposal, model, report);
 }
