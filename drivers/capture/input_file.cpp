@@ -172,7 +172,9 @@ std::size_t InputFile::read(char* to, std::size_t most) {
   const std::size_t ready = std::min(most, held_.size() - taken_);
   std::memcpy(to, held_.data() + taken_, ready);
   taken_ += ready;
-  return ready + unpack(to + ready, most - ready);
+  const std::size_t n = ready + unpack(to + ready, most - ready);
+  if (heard_) heard_({to, n});
+  return n;
 }
 
 std::string InputFile::bytes() {

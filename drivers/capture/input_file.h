@@ -56,6 +56,10 @@ class InputFile {
     if (told_) told_(done, total);
   }
 
+  // From here on `heard` hears all that read() gives, as it is given.
+  using Heard = std::function<void(std::string_view bytes)>;
+  void hear(Heard heard) { heard_ = std::move(heard); }
+
   // Whether path() opened again gives the same bytes: a regular file that is not packed. For libraries that
   // want a name.
   [[nodiscard]] bool reopens() const { return reopens_; }
@@ -75,6 +79,7 @@ class InputFile {
   std::size_t taken_ = 0;
   bool reopens_ = false;
   Told told_;
+  Heard heard_;
   std::size_t total_ = 0, behind_ = 0;  // bytes of all files, and of those that were read to their end
   std::size_t unpacked_ = 0, rows_ = 0, most_ = 0;  // most_ 0: as much as comes
 };

@@ -21,7 +21,6 @@ class App;
 
 namespace ifog {
 class CaptureBuilder;
-class Sha256;
 }  // namespace ifog
 
 namespace ifog::tools {
@@ -89,7 +88,7 @@ struct CaptureInput {
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
  private:
-  RowNotes column_rows(InputFile& file, RowSink& sink, Sha256* hash = nullptr) const;
+  RowNotes column_rows(InputFile& file, RowSink& sink) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;
   void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
              const std::function<void()>& added) const;
