@@ -27,6 +27,13 @@ constexpr double kHorizonsBelieved = 10.0;
 constexpr double kHorizonsKept = 400.0;
 // One sum counts for so many times what is known: a motion about to be found is no colour.
 constexpr double kWideningClip = 16.0;
+// Where they are used to tell how loud the filter's own rate is: up to so many of its lags, in coloured noise
+// once they stand on so many horizons, with this part of white noise's at least, and followed to no more than
+// four times what the longest shows.
+constexpr double kWideLags = 2.0;
+constexpr double kHorizonsKnown = 100.0;
+constexpr double kLeastNoise = 0.1;
+constexpr double kLeastFollowed = 0.25;
 // What was found may have been this much too small.
 constexpr double kWideningMargin = 1.25;
 // Squares are known to this many measurements' worth before there are any.
@@ -157,14 +164,42 @@ void ChangeTest::suspect(std::size_t tracker, double unknown, double enough, dou
   hint_ = tracker;
 }
 
-double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept {
+// Of noise that neighbours have in common the sums of innovations over a short time are narrower than its mean
+// is wide, and over a long time the filter takes part in them. Its gain be K, the walk's driving noise K^2 of
+// `share`, and the sums forget with b: of the noise S(w) alone they hold
+//   f(b) = int w^2 S / ((w^2 + K^2)(w^2 + b^2)) dw,
+// and K^2 f(0) is what the filter's rate has of it. For noise of one correlation time 1/a, white noise at its
+// end, f(b) is as 1 / ((K + b)(a + b)), so that 1 / ((K + b) f(b)) is a straight line in b: of two horizons
+// that are well known it is followed to b = 0.
+double ChangeTest::coloured(const TrackerBank& trackers, std::size_t axis, double lag,
+                            double share) const noexcept {
+  const double gain = 1.0 / (1.0 + lag);
+  double b = 0.0, inverse = 0.0, at_zero = 0.0;
+  for (std::size_t j = 1; j < trackers.size(); ++j) {
+    const double h = horizon(trackers.memory(j));
+    const Sum& sum = contests_[j].sums[axis];
+    if (j > 2 && (h > kWideLags * lag || sum.horizons < kHorizonsKnown)) break;
+    const double here = 1.0 / h, both = gain + here;
+    const double of_noise = std::max(sum.widening - share * gain / both, kLeastNoise * here / both);
+    const double before = b, inverse_before = inverse;
+    b = here;
+    inverse = 2.0 * here / (of_noise * both);
+    at_zero = before > here ? std::max(inverse - (inverse_before - inverse) * here / (before - here),
+                                       kLeastFollowed * inverse)
+                            : inverse;
+  }
+  return at_zero > 0.0 ? 2.0 / at_zero : 1.0;
+}
+
+double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag, const NoiseScale& noise,
+                            double share) const noexcept {
   double widest = 1.0;
-  for (std::size_t j = 1; j < trackers.size() && horizon(trackers.memory(j)) <= 2.0 * lag; ++j) {
+  for (std::size_t j = 1; j < trackers.size() && horizon(trackers.memory(j)) <= kWideLags * lag; ++j) {
     const Sum& sum = contests_[j].sums[axis];
     widest = std::max(widest,
                       (kHorizonsBelieved + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons));
   }
-  return widest;
+  return noise.white() ? widest : std::max(widest, coloured(trackers, axis, lag, share));
 }
 
 }  // namespace ifog

@@ -53,10 +53,11 @@ class ChangeTest {
   [[nodiscard]] std::optional<std::size_t> hint() const noexcept { return hint_; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
-  // By which the variance of an axis's innovations summed over up to two lags is above white noise's: what
-  // neighbours have in common widens it, and what a filter lags behind. Over longer the filter takes part in
-  // the sum and narrows it.
-  [[nodiscard]] double widening(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept;
+  // By which the noise in the filter's rate is louder than white noise as loud as its innovations would leave
+  // there, and what it lags behind with it. share: of the innovations' variance that the filter takes for
+  // noise and walk.
+  [[nodiscard]] double widening(const TrackerBank& trackers, std::size_t axis, double lag,
+                                const NoiseScale& noise, double share) const noexcept;
   // Sum of the innovations an axis has had over the tracker's horizon, by the time each stands for, rad: what
   // was owed before is not this change's.
   [[nodiscard]] double fallen_short(std::size_t tracker, std::size_t axis) const noexcept {
@@ -94,6 +95,8 @@ class ChangeTest {
   void suspect(std::size_t tracker, double unknown, double enough, double& loudest) noexcept;
   double widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
+  [[nodiscard]] double coloured(const TrackerBank& trackers, std::size_t axis, double lag,
+                                double share) const noexcept;
 
   bool rate_alone_;
   std::array<Contest, TrackerBank::kMost> contests_{};

@@ -289,7 +289,8 @@ void Engine::publish_rest() noexcept {
     published_.rate[a] = rest_->rate(a);
     published_.variance[a] = rest_->variance();
     if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
-    const double wider = change_.widening(trackers_, a, lag_samples());
+    const double wider =
+        change_.widening(trackers_, a, lag_samples(), noise_[a], believed / std::max(noise_[a].rest(), believed));
     published_.variance[a] *= 0.5 * (1.0 + wider * std::max(1.0, noise_[a].rest() / believed));
     published_.variance[a] += noise_[a].rounding();
     if (const auto hint = change_.hint()) {
