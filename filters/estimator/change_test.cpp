@@ -13,18 +13,26 @@ constexpr double kMemories = 3.0;
 constexpr double kLeastHorizon = 5.0;
 // Share of the evidence for a change that makes one suspected.
 constexpr double kSuspicion = 0.5;
-// A change may have begun: evidence since something last spoke for rest, and some of the kind that louder
-// noise gives none of. Both are there so seldom at rest that the published variance grows by some 3 %.
-constexpr double kHint = 2.0;
-constexpr double kHintUnknown = 0.4;
+// A sum of innovations two of its standard deviations from zero is a sign that a change may have begun. What
+// a motion adds to the mean normalised square of the filter's error until it is suspected depends on this
+// alone, not on how it begins: the evidence against rest is itself the sum of the squares of that error. Over
+// all horizons there is such a sum in a tenth of the time at rest. Lately there was motion: less is needed,
+// by as much as for a change. In a ramp, which sums over half of its age show best, the filter is off by 1.8
+// times their mean.
+constexpr double kUnseen = 4.0;
+constexpr double kOffByMean = 3.1;
+// Sums over fewer samples than this tracker's say no more than the single measurement, which has a test of
+// its own.
+constexpr std::size_t kShortestSum = 2;
 // Least ratio: what speaks for rest must not delay what comes then.
 constexpr double kLeast = -5.0;
 // By how much less evidence is asked for after a motion, and for how long, samples.
 constexpr double kRelaxed = 10.0;
 constexpr double kRelaxedFor = 1000.0;
-// Widenings are believed as found once they stand on ten horizons, and forgotten after four hundred.
+// Widenings are believed as found once they stand on ten horizons, and forgotten after
+// a hundred and eighty.
 constexpr double kHorizonsBelieved = 10.0;
-constexpr double kHorizonsKept = 400.0;
+constexpr double kHorizonsKept = 180.0;
 // One sum counts for so many times what is known: a motion about to be found is no colour.
 constexpr double kWideningClip = 16.0;
 // Where they are used to tell how loud the filter's own rate is: up to so many of its lags, in coloured noise
@@ -54,17 +62,16 @@ ChangeTest::Horizon::Horizon(double length)
     : samples(length),
       share(1.0 / length),
       keep(1.0 - share),
-      white(1.0 - keep * keep),
       evidence(kEvidence - logarithm(length / kLeastHorizon)) {}
 
 double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
 
 void ChangeTest::restart() noexcept {
-  hint_.reset();
+  unseen_ = {};
   suspected_ = false;
   for (Contest& contest : contests_) {
-    contest.ratio = contest.begun = contest.rest = contest.tracker = contest.rest_squares = 0.0;
-    for (Sum& sum : contest.sums) sum.angle = sum.normalised = 0.0;
+    contest.ratio = contest.rest = contest.tracker = contest.rest_squares = 0.0;
+    for (Sum& sum : contest.sums) sum.angle = sum.normalised = sum.weight = 0.0;
   }
   relaxed_ = kRelaxed;
 }
@@ -73,7 +80,8 @@ void ChangeTest::restart() noexcept {
 // noise's.
 double ChangeTest::widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept {
   sum.normalised = over.keep * sum.normalised + normalised;
-  const double found = sum.normalised * sum.normalised * over.white;
+  sum.weight = over.keep * over.keep * sum.weight + 1.0;
+  const double found = sum.normalised * sum.normalised / sum.weight;
   sum.horizons = std::min(sum.horizons + over.share, kHorizonsKept);
   sum.widening += (std::min(found, kWideningClip * std::max(sum.widening, 1.0)) - sum.widening) /
                   (over.samples * (sum.horizons + 1.0));
@@ -83,6 +91,14 @@ double ChangeTest::widen(Sum& sum, double normalised, const Horizon& over, const
   const double believed =
       (kHorizonsBelieved * most + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
   return kWideningMargin * std::max(1.0, believed);
+}
+
+// Over the scale: the mean square of what the filter may be off by.
+double ChangeTest::unseen(const Sum& sum, double wide) const noexcept {
+  const double square = sum.normalised * sum.normalised / sum.weight;
+  // On a model with more states a mean of the innovations is the model's as often as a motion's.
+  if (!rate_alone_ || square <= std::max(0.0, kUnseen - relaxed_) * std::max(wide, believed(sum))) return 0.0;
+  return kOffByMean * square / (2.0 * sum.weight);
 }
 
 // Log-likelihood ratio of two predictors of unknown variance: n/2 times the logarithm of the ratio of their
@@ -100,8 +116,7 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
   relaxed_ *= 1.0 - 1.0 / kRelaxedFor;
   double greatest = 0.0;
   suspected_ = false;
-  hint_.reset();
-  double loudest = kHint;
+  unseen_ = {};
   std::optional<std::size_t> best;
   for (; known_ < trackers.size(); ++known_) horizons_[known_] = Horizon(horizon(trackers.memory(known_)));
   // What all trackers are held against is worked out once.
@@ -125,6 +140,8 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
       Sum& sum = contest.sums[a];
       sum.angle = keep * sum.angle + angle[a];
       const double wide = widen(sum, normalised[a], over, noise[a]);
+      if (j >= kShortestSum && h <= kWideLags * lag)
+        unseen_[a] = std::max(unseen_[a], now.scale[a] * unseen(sum, wide));
       const double spoken =
           0.5 * (spoke_for_rest[a] - std::min(tracker, 2.0 * most) - trackers.log_factor(j));
       gained += wide == 1.0 ? spoken : spoken / wide;  // white noise, nearly always: without a division
@@ -137,15 +154,13 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
       gained -= std::max(contest.usual, 0.0);
     }
     contest.ratio = std::max(keep * contest.ratio + gained, kLeast);
-    contest.begun = std::max(keep * contest.begun + gained, 0.0);
     contest.rest = keep * contest.rest + rest_square;
     contest.tracker = keep * contest.tracker + tracker_square;
     contest.rest_squares = keep * contest.rest_squares + rest_square * rest_square;
     const double whole = over.evidence, asked = whole - relaxed_;
-    const double hinted = std::min(loudest, kSuspicion * whole);
-    if (contest.begun <= hinted && contest.ratio - asked <= greatest) continue;
+    if (contest.ratio <= kSuspicion * whole && contest.ratio - asked <= greatest) continue;
     const double unknown = unknown_variance(contest) / widest;
-    suspect(j, unknown, kSuspicion * whole, loudest);
+    suspected_ = suspected_ || std::min(contest.ratio, unknown) > kSuspicion * whole;
     if (contest.ratio - asked <= greatest) continue;
     // That noise has become louder is the likelier, the less often the rate changes beside the filter's lag.
     if (unknown <= logarithm(std::max(lag, 1.0))) continue;
@@ -155,18 +170,9 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
   return best;
 }
 
-void ChangeTest::suspect(std::size_t tracker, double unknown, double enough, double& loudest) noexcept {
-  const Contest& contest = contests_[tracker];
-  suspected_ = suspected_ || std::min(contest.ratio, unknown) > enough;
-  // What trackers gain now and then on a model with more states is no sign of motion.
-  if (!rate_alone_ || contest.begun <= loudest || unknown <= kHintUnknown) return;
-  loudest = contest.begun;
-  hint_ = tracker;
-}
-
-// Of noise that neighbours have in common the sums of innovations over a short time are narrower than its mean
-// is wide, and over a long time the filter takes part in them. Its gain be K, the walk's driving noise K^2 of
-// `share`, and the sums forget with b: of the noise S(w) alone they hold
+// Of noise that neighbours have in common the sums of innovations over a short time are narrower than its
+// mean is wide, and over a long time the filter takes part in them. Its gain be K, the walk's driving noise
+// K^2 of `share`, and the sums forget with b: of the noise S(w) alone they hold
 //   f(b) = int w^2 S / ((w^2 + K^2)(w^2 + b^2)) dw,
 // and K^2 f(0) is what the filter's rate has of it. For noise of one correlation time 1/a, white noise at its
 // end, f(b) is as 1 / ((K + b)(a + b)), so that 1 / ((K + b) f(b)) is a straight line in b: of two horizons
@@ -191,15 +197,24 @@ double ChangeTest::coloured(const TrackerBank& trackers, std::size_t axis, doubl
   return at_zero > 0.0 ? 2.0 / at_zero : 1.0;
 }
 
-double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag, const NoiseScale& noise,
-                            double share) const noexcept {
-  double widest = 1.0;
-  for (std::size_t j = 1; j < trackers.size() && horizon(trackers.memory(j)) <= kWideLags * lag; ++j) {
-    const Sum& sum = contests_[j].sums[axis];
-    widest = std::max(widest,
-                      (kHorizonsBelieved + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons));
-  }
-  return noise.white() ? widest : std::max(widest, coloured(trackers, axis, lag, share));
+// Of white noise the sums over the longest of those horizons, which hold a walk that is other than was
+// believed and a motion the filter lags behind.
+double ChangeTest::lagging(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept {
+  double found = 1.0;
+  for (std::size_t j = 2; j < trackers.size() && horizon(trackers.memory(j)) <= kWideLags * lag; ++j)
+    found = believed(contests_[j].sums[axis]);
+  return found;
+}
+
+double ChangeTest::believed(const Sum& sum) noexcept {
+  return (kHorizonsBelieved + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
+}
+
+double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag,
+                            const NoiseScale& noise, double share) const noexcept {
+  // What a model knows of colour is in its variance, and of its gain the above does not hold.
+  if (!rate_alone_) return std::max(1.0, lagging(trackers, axis, lag));
+  return noise.white() ? lagging(trackers, axis, lag) : coloured(trackers, axis, lag, share);
 }
 
 }  // namespace ifog

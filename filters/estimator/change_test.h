@@ -48,9 +48,9 @@ class ChangeTest {
                                   double lag) noexcept;
   // Half of the evidence for a change has come together.
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
-  // The tracker that speaks loudest for a change, before it says enough: a change may have begun, and the
-  // filter at rest may be as far off as that tracker is from it.
-  [[nodiscard]] std::optional<std::size_t> hint() const noexcept { return hint_; }
+  // Mean square of what the filter at rest may be off by, (rad/s)^2, where its innovations lately have a mean
+  // that noise alone seldom gives: a change may have begun, long before there is evidence enough for one.
+  [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[axis]; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
   // By which the noise in the filter's rate is louder than white noise as loud as its innovations would leave
@@ -69,12 +69,12 @@ class ChangeTest {
   struct Sum {
     double angle = 0.0;       // of innovations by their time over the horizon
     double normalised = 0.0;  // the same of innovations over their scale
+    double weight = 0.0;      // variance of that if they are white
     double widening = 1.0;    // of its variance over white noise's, as found
     double horizons = 0.0;    // from so many of them
   };
   struct Contest {
     double ratio = 0.0;  // log-likelihood ratio
-    double begun = 0.0;  // the same since it was last for rest
     double usual = 0.0;  // what a measurement adds to it, on average over many horizons
     // Of normalised squares over the horizon: the filter at rest's, the tracker's, and the squares of the
     // former, for the number of measurements they stand on.
@@ -88,13 +88,14 @@ class ChangeTest {
     explicit Horizon(double length);
     double samples = 0.0;
     double share = 0.0, keep = 0.0;  // of one measurement, and what is kept of those before
-    double white = 0.0;              // one over the variance of a sum over it of white noise
     double evidence = 0.0;  // asked for: a ratio over a long horizon is not looked at afresh each time
   };
 
-  void suspect(std::size_t tracker, double unknown, double enough, double& loudest) noexcept;
   double widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
+  [[nodiscard]] double unseen(const Sum& sum, double wide) const noexcept;
+  [[nodiscard]] static double believed(const Sum& sum) noexcept;
+  [[nodiscard]] double lagging(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept;
   [[nodiscard]] double coloured(const TrackerBank& trackers, std::size_t axis, double lag,
                                 double share) const noexcept;
 
@@ -104,7 +105,7 @@ class ChangeTest {
   std::size_t known_ = 0;  // of horizons_
   double relaxed_ = 0.0;
   bool suspected_ = false;
-  std::optional<std::size_t> hint_;
+  Axes unseen_{};
 };
 
 }  // namespace ifog

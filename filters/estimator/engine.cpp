@@ -280,7 +280,7 @@ bool Engine::rests(const Measurement& m) const noexcept {
 
 // At rest the variance is the filter's own where the noise is white. Half of it is noise; where neighbours
 // have something in common that is more by as much as their mean over a long time varies more. Where a change
-// of rate may have begun, the filter may be as far off as the tracker that says so is from it.
+// of rate may have begun, it is what the filter may be off by.
 void Engine::publish_rest() noexcept {
   published_.gain = rest_->gain();
   // Of an innovation, as the filter believes it to be.
@@ -289,14 +289,11 @@ void Engine::publish_rest() noexcept {
     published_.rate[a] = rest_->rate(a);
     published_.variance[a] = rest_->variance();
     if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
-    const double wider =
-        change_.widening(trackers_, a, lag_samples(), noise_[a], believed / std::max(noise_[a].rest(), believed));
+    const double wider = change_.widening(trackers_, a, lag_samples(), noise_[a],
+                                          believed / std::max(noise_[a].rest(), believed));
     published_.variance[a] *= 0.5 * (1.0 + wider * std::max(1.0, noise_[a].rest() / believed));
     published_.variance[a] += noise_[a].rounding();
-    if (const auto hint = change_.hint()) {
-      const double apart = trackers_.rate(*hint, a) - rest_->rate(a);
-      published_.variance[a] += apart * apart;
-    }
+    published_.variance[a] += change_.unseen(a);
   }
 }
 

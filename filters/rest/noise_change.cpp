@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/rest/noise_change.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kTimes = 64;
+// Parts of a time whose middle ones count: an outlier spoils one or two.
+constexpr std::size_t kFine = 4;
+constexpr std::size_t kCells = kTimes * kFine;
+constexpr std::size_t kMostOctaves = 40;
+// Coefficients in a time at least; with fewer times of twice the length an octave is looked at in those.
+constexpr double kFewest = 8.0;
+constexpr std::size_t kFewestTimes = 8;
+// From so many coefficients on a time is parted, else an outlier in it is one of few and counts.
+constexpr double kParted = 32.0;
+// A departure, over its standard deviation, that the noise of one octave has in any of the two thousand
+// stretches in fewer than one record of two thousand: as simulated, tests/bench/allan.
+constexpr double kSurely = 5.2;
+// Of the deviation. Less is of no consequence.
+constexpr double kMaterial = 1.25;
+// Those octaves of a stretch that was found count as changed, too, in which it departs by this.
+constexpr double kAlso = 3.0;
+constexpr std::size_t kMostChanges = 3;
+
+// Sums of the magnitudes of one octave's coefficients by the time they are at. Not of their squares, which
+// noise with long tails has no mean of that would settle; for normal noise that costs an eighth of what they
+// say.
+struct Octave {
+  std::array<double, kCells> magnitudes{}, counts{};
+};
+
+// Scaling coefficients go in one by one, every second one brings a wavelet coefficient and a scaling
+// coefficient of the next octave. Daubechies, "Ten Lectures on Wavelets" (1992), table 6.1, N = 2.
+class Pyramid {
+ public:
+  explicit Pyramid(std::size_t samples) : samples_(samples) {}
+
+  // A new stretch begins.
+  void begin() { levels_ = {}; }
+  void take(double rate, std::size_t at) {
+    double value = rate;
+    for (std::size_t k = 0; k < kMostOctaves; ++k) {
+      Level& level = levels_[k];
+      level.last = {level.last[1], level.last[2], level.last[3], value};
+      if (++level.count < 4 || level.count % 2 == 1) return;
+      const auto& x = level.last;
+      add(k, at, kHigh[0] * x[0] + kHigh[1] * x[1] + kHigh[2] * x[2] + kHigh[3] * x[3]);
+      value = kHigh[3] * x[0] - kHigh[2] * x[1] + kHigh[1] * x[2] - kHigh[0] * x[3];
+    }
+  }
+  [[nodiscard]] const std::vector<Octave>& octaves() const { return octaves_; }
+
+ private:
+  struct Level {
+    std::array<double, 4> last{};
+    std::size_t count = 0;
+  };
+  // (1 - sqrt 3, sqrt 3 - 3, 3 + sqrt 3, -1 - sqrt 3) / (4 sqrt 2).
+  static constexpr std::array<double, 4> kHigh{-0.12940952255126037, -0.22414386804201339,
+                                               0.83651630373780790, -0.48296291314453414};
+
+  void add(std::size_t octave, std::size_t at, double coefficient) {
+    if (octave >= octaves_.size()) octaves_.resize(octave + 1);
+    // It reaches back over three of its octave's lengths: half of that.
+    const std::size_t back = std::min(at, std::size_t{3} << octave);
+    const std::size_t cell = std::min(kCells - 1, (at - back) * kCells / samples_);
+    octaves_[octave].magnitudes[cell] += std::abs(coefficient);
+    octaves_[octave].counts[cell] += 1.0;
+  }
+
+  std::size_t samples_;
+  std::array<Level, kMostOctaves> levels_{};
+  std::vector<Octave> octaves_;
+};
+
+// Square roots of the mean magnitudes of one octave by time, nearly normal.
+struct Loudness {
+  std::vector<double> root;        // of the times that have coefficients enough
+  std::vector<std::size_t> cell;   // where each begins, kCells a record
+  double deviation = 0.0;          // of one of them while the noise is the same
+  std::size_t cells_each = kFine;  // of a time
+};
+
+double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    sum += octave.magnitudes[i];
+    count += octave.counts[i];
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+// Of the four quarters the mean of the middle two.
+double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
+  std::array<double, kFine> quarters{};
+  const std::size_t length = (end - begin) / kFine;
+  for (std::size_t q = 0; q < kFine; ++q)
+    quarters[q] = mean_magnitude(octave, begin + q * length, begin + (q + 1) * length);
+  std::sort(quarters.begin(), quarters.end());
+  return 0.5 * (quarters[1] + quarters[2]);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of one time, by what means of so many neighbouring times differ from the next ones, of which a change is a
+// few: noise with long tails has more than normal noise, and a resonance that swells and fades over several
+// times more in their means than in one.
+double deviation_by(const std::vector<double>& root, std::size_t together) {
+  if (root.size() < 8 * together) return 0.0;
+  std::vector<double> sums{0.0}, steps;
+  for (const double each : root) sums.push_back(sums.back() + each);
+  for (std::size_t i = 0; i + 2 * together < sums.size(); ++i)
+    steps.push_back(std::abs(sums[i + 2 * together] - 2.0 * sums[i + together] + sums[i]));
+  constexpr double kNormal = 0.6745 * 1.4142;
+  return median(steps) / kNormal / std::sqrt(static_cast<double>(together));
+}
+
+Loudness loudness_of(const Octave& octave) {
+  double count = 0.0;
+  for (const double c : octave.counts) count += c;
+  Loudness out;
+  std::size_t times = kTimes;
+  while (times >= kFewestTimes && count < kFewest * static_cast<double>(times)) times /= 2;
+  if (times < kFewestTimes) return out;
+  out.cells_each = kCells / times;
+  const double usual = count / static_cast<double>(times);
+  for (std::size_t t = 0; t < times; ++t) {
+    const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
+    double here = 0.0;
+    for (std::size_t i = begin; i < end; ++i) here += octave.counts[i];
+    if (here < 0.5 * usual) continue;
+    out.root.push_back(std::sqrt(usual < kParted ? mean_magnitude(octave, begin, end)
+                                                 : middle_magnitude(octave, begin, end)));
+    out.cell.push_back(begin);
+  }
+  if (out.root.size() < kFewestTimes) return out = {};
+  constexpr double kOfMiddle = 1.3;  // variance of the mean of the middle two of four over that of all four
+  // Of the mean magnitude of n normal variables the relative variance is (pi / 2 - 1) / n, of its root a
+  // quarter.
+  const double least = std::sqrt(0.1427 / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
+  out.deviation = least;
+  for (const std::size_t together : {1, 2, 4})
+    out.deviation = std::max(out.deviation, deviation_by(out.root, together));
+  return out;
+}
+
+// Over its standard deviation: mean of the times begin … end - 1 less that of all others.
+double departure(const Loudness& of, std::size_t begin, std::size_t end, const std::vector<double>& sums) {
+  const auto all = static_cast<double>(of.root.size()), here = static_cast<double>(end - begin);
+  const double inside = sums[end] - sums[begin];
+  return (inside / here - (sums.back() - inside) / (all - here)) /
+         (of.deviation * std::sqrt(1.0 / here + 1.0 / (all - here)));
+}
+
+std::vector<double> sums_of(const Loudness& of) {
+  std::vector<double> sums{0.0};
+  for (const double root : of.root) sums.push_back(sums.back() + root);
+  return sums;
+}
+
+// The times of an octave whose cells lie within [begin, end).
+std::pair<std::size_t, std::size_t> times_within(const Loudness& of, std::size_t begin, std::size_t end) {
+  const auto first = std::lower_bound(of.cell.begin(), of.cell.end(), begin);
+  const auto last = std::lower_bound(first, of.cell.end(), end);
+  return {static_cast<std::size_t>(first - of.cell.begin()),
+          static_cast<std::size_t>(last - of.cell.begin())};
+}
+
+// Deviation inside over outside.
+double times_as_loud(const Loudness& of, std::size_t begin, std::size_t end,
+                     const std::vector<double>& sums) {
+  const auto all = static_cast<double>(of.root.size()), here = static_cast<double>(end - begin);
+  const double inside = (sums[end] - sums[begin]) / here;
+  const double outside = (sums.back() - sums[end] + sums[begin]) / (all - here);
+  return std::pow(inside / std::max(outside, 1e-300), 2.0);
+}
+
+bool material(double times) { return times > kMaterial || times < 1.0 / kMaterial; }
+
+struct Found {
+  std::size_t begin = 0, end = 0;  // cells
+  std::size_t octave = 0;
+  double departure = 0.0;
+};
+
+Found surest(const std::vector<Loudness>& all) {
+  Found best;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Loudness& of = all[k];
+    const std::vector<double> sums = sums_of(of);
+    for (std::size_t begin = 0; begin < of.root.size(); ++begin)
+      for (std::size_t end = begin + 1; end <= of.root.size(); ++end) {
+        // Half of them at most: of two parts it is the shorter one that is told from the rest. Not across a
+        // hole.
+        const bool hole = end - begin > 1 && of.cell[end - 1] != of.cell[end - 2] + of.cells_each;
+        if (hole || 2 * (end - begin) > of.root.size()) break;
+        const double here = std::abs(departure(of, begin, end, sums));
+        if (here <= std::abs(best.departure) || !material(times_as_loud(of, begin, end, sums))) continue;
+        best = {of.cell[begin], of.cell[end - 1] + of.cells_each, k, here};
+      }
+  }
+  return best;
+}
+
+NoiseChange described(const Found& found, const std::vector<Loudness>& all, std::size_t samples,
+                      double period_s) {
+  NoiseChange out;
+  out.where = {found.begin * samples / kCells, found.end * samples / kCells};
+  const auto changed = [&](std::size_t k) {
+    const auto [begin, end] = times_within(all[k], found.begin, found.end);
+    if (begin == end || end - begin == all[k].root.size()) return 0.0;
+    const std::vector<double> sums = sums_of(all[k]);
+    const double times = times_as_loud(all[k], begin, end, sums);
+    return std::abs(departure(all[k], begin, end, sums)) > kAlso && material(times) ? times : 0.0;
+  };
+  out.times = changed(found.octave);
+  std::size_t quickest = found.octave, slowest = found.octave;
+  const bool louder = out.times > 1.0;
+  const auto like = [&](std::size_t k) { return changed(k) > 0.0 && (changed(k) > 1.0) == louder; };
+  while (quickest > 0 && like(quickest - 1)) --quickest;
+  while (slowest + 1 < all.size() && like(slowest + 1)) ++slowest;
+  for (std::size_t k = quickest; k <= slowest; ++k)
+    out.times = louder ? std::max(out.times, changed(k)) : std::min(out.times, changed(k));
+  const double nyquist = 0.5 / period_s;
+  out.range_hz = {slowest + 1 < all.size() ? std::ldexp(nyquist, -static_cast<int>(slowest) - 1) : 0.0,
+                  std::ldexp(nyquist, -static_cast<int>(quickest))};
+  return out;
+}
+
+void leave_out(const Found& found, std::vector<Loudness>& all) {
+  for (Loudness& of : all) {
+    const auto [begin, end] =
+        times_within(of, found.begin > of.cells_each ? found.begin - of.cells_each + 1 : 0, found.end);
+    of.root.erase(of.root.begin() + static_cast<std::ptrdiff_t>(begin),
+                  of.root.begin() + static_cast<std::ptrdiff_t>(end));
+    of.cell.erase(of.cell.begin() + static_cast<std::ptrdiff_t>(begin),
+                  of.cell.begin() + static_cast<std::ptrdiff_t>(end));
+    if (of.root.size() < kFewestTimes) of = {};
+  }
+}
+
+}  // namespace
+
+std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<const Stretch> parts,
+                                       double period_s) {
+  Pyramid pyramid(std::max<std::size_t>(1, rate_radps.size()));
+  for (const Stretch& part : parts) {
+    pyramid.begin();
+    for_each_piece(rate_radps, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
+      for (std::size_t i = 0; i < values.size(); ++i) pyramid.take(values[i], first + i);
+    });
+  }
+  std::vector<Loudness> all;
+  for (const Octave& octave : pyramid.octaves()) all.push_back(loudness_of(octave));
+  while (!all.empty() && all.back().root.empty()) all.pop_back();
+  std::vector<NoiseChange> changes;
+  while (changes.size() < kMostChanges) {
+    const Found found = surest(all);
+    if (found.departure < kSurely) break;
+    changes.push_back(described(found, all, rate_radps.size(), period_s));
+    leave_out(found, all);
+  }
+  std::sort(changes.begin(), changes.end(),
+            [](const NoiseChange& a, const NoiseChange& b) { return a.where.begin < b.where.begin; });
+  return changes;
+}
+
+std::string in_words(std::span<const NoiseChange> changes, double period_s, double first_s) {
+  if (changes.empty()) return {};
+  std::string words = "the noise is not the same along the record:";
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const NoiseChange& change = changes[i];
+    std::array<char, 160> text{};
+    const auto at = [&](std::size_t sample) { return first_s + static_cast<double>(sample) * period_s; };
+    std::snprintf(text.data(), text.size(), "%s %.2g times as loud in %.6g … %.6g s", i > 0 ? "," : "",
+                  change.times, at(change.where.begin), at(change.where.end));
+    words += text.data();
+    if (change.range_hz.low > 0.0)
+      std::snprintf(text.data(), text.size(), " (%.2g to %.3g Hz)", change.range_hz.low,
+                    change.range_hz.high);
+    else
+      std::snprintf(text.data(), text.size(), " (below %.3g Hz)", change.range_hz.high);
+    words += text.data();
+  }
+  return words + "; the figures are of all of it together, --from and --to take a part";
+}
+
+}  // namespace ifog
