@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "filters/model_file/model.h"
+#include "filters/rest/noise_change.h"
 
 namespace ifog {
 
@@ -107,11 +108,18 @@ struct DiagnosisSeries {
   std::vector<double> after_adev_low_radps, after_adev_high_radps;
 };
 
+// The error's noise is another in a part of a capture.
+struct NoiseChangeIn {
+  std::string capture;
+  NoiseChange change;
+};
+
 struct Diagnosis {
   std::size_t samples = 0;
   double sample_rate_hz = 0.0;
   NoiseTerms noise;                             // after the effects, as noise_coefficients finds it at rest
   NoiseTerms noise_error;                       // standard deviations of those
+  std::vector<NoiseChangeIn> noise_changes;     // which make noise an average of unlike parts
   std::vector<FoundEffect> effects;             // traced to channels, then ramps, then lines of the samples
   std::vector<double> covariance;               // of all parameters of all effects in order, row-major
   std::vector<ChannelRange> ranges;             // of the channels the effects use

@@ -95,10 +95,11 @@ double ChangeTest::widen(Sum& sum, double normalised, const Horizon& over, const
 
 // Over the scale: the mean square of what the filter may be off by.
 double ChangeTest::unseen(const Sum& sum, double wide) const noexcept {
-  const double square = sum.normalised * sum.normalised / sum.weight;
+  const double square = sum.normalised * sum.normalised, asked = std::max(0.0, kUnseen - relaxed_);
   // On a model with more states a mean of the innovations is the model's as often as a motion's.
-  if (!rate_alone_ || square <= std::max(0.0, kUnseen - relaxed_) * std::max(wide, believed(sum))) return 0.0;
-  return kOffByMean * square / (2.0 * sum.weight);
+  if (!rate_alone_ || square <= asked * wide * sum.weight || square <= asked * believed(sum) * sum.weight)
+    return 0.0;
+  return kOffByMean * square / (2.0 * sum.weight * sum.weight);
 }
 
 // Log-likelihood ratio of two predictors of unknown variance: n/2 times the logarithm of the ratio of their
@@ -200,10 +201,9 @@ double ChangeTest::coloured(const TrackerBank& trackers, std::size_t axis, doubl
 // Of white noise the sums over the longest of those horizons, which hold a walk that is other than was
 // believed and a motion the filter lags behind.
 double ChangeTest::lagging(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept {
-  double found = 1.0;
-  for (std::size_t j = 2; j < trackers.size() && horizon(trackers.memory(j)) <= kWideLags * lag; ++j)
-    found = believed(contests_[j].sums[axis]);
-  return found;
+  std::size_t longest = 1;
+  while (longest + 1 < trackers.size() && horizon(trackers.memory(longest + 1)) <= kWideLags * lag) ++longest;
+  return longest > 1 ? believed(contests_[longest].sums[axis]) : 1.0;
 }
 
 double ChangeTest::believed(const Sum& sum) noexcept {

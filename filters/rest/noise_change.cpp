@@ -27,6 +27,13 @@ constexpr double kMaterial = 1.25;
 // Those octaves of a stretch that was found count as changed, too, in which it departs by this.
 constexpr double kAlso = 3.0;
 constexpr std::size_t kMostChanges = 3;
+// A coefficient counts for so many times the usual one at most, of normal noise's one in fifteen thousand;
+// the usual one is the mean of so many.
+constexpr double kMostTimes = 5.0;
+constexpr double kUsual = 128.0;
+// A step of so many usual ones is a spike if it is back within so many samples.
+constexpr double kSpike = 10.0;
+constexpr int kMostReplaced = 3;
 
 // Sums of the magnitudes of one octave's coefficients by the time they are at. Not of their squares, which
 // noise with long tails has no mean of that would settle; for normal noise that costs an eighth of what they
@@ -42,9 +49,12 @@ class Pyramid {
   explicit Pyramid(std::size_t samples) : samples_(samples) {}
 
   // A new stretch begins.
-  void begin() { levels_ = {}; }
+  void begin() {
+    levels_ = {};
+    replaced_ = 0;
+  }
   void take(double rate, std::size_t at) {
-    double value = rate;
+    double value = despiked(rate);
     for (std::size_t k = 0; k < kMostOctaves; ++k) {
       Level& level = levels_[k];
       level.last = {level.last[1], level.last[2], level.last[3], value};
@@ -57,9 +67,27 @@ class Pyramid {
   [[nodiscard]] const std::vector<Octave>& octaves() const { return octaves_; }
 
  private:
+  // A few samples far beyond what neighbours differ by are the one before them: in slow octaves, of which a
+  // time has few coefficients, a spike would be loud noise.
+  double despiked(double rate) {
+    const double step = std::abs(rate - accepted_);
+    const bool first = levels_[0].count == 0;
+    if (!first && steps_ >= kParted && step > kSpike * usual_step_ && replaced_ < kMostReplaced) {
+      ++replaced_;
+      return accepted_;
+    }
+    replaced_ = 0;
+    accepted_ = rate;
+    if (first) return rate;
+    steps_ = std::min(steps_ + 1.0, kUsual);
+    usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
+    return rate;
+  }
+
   struct Level {
     std::array<double, 4> last{};
     std::size_t count = 0;
+    double usual = 0.0, met = 0.0;  // mean magnitude of its coefficients, over so many
   };
   // (1 - sqrt 3, sqrt 3 - 3, 3 + sqrt 3, -1 - sqrt 3) / (4 sqrt 2).
   static constexpr std::array<double, 4> kHigh{-0.12940952255126037, -0.22414386804201339,
@@ -70,11 +98,19 @@ class Pyramid {
     // It reaches back over three of its octave's lengths: half of that.
     const std::size_t back = std::min(at, std::size_t{3} << octave);
     const std::size_t cell = std::min(kCells - 1, (at - back) * kCells / samples_);
-    octaves_[octave].magnitudes[cell] += std::abs(coefficient);
+    // An outlier counts for no more than what is rare; what stays loud soon is the usual.
+    Level& level = levels_[octave];
+    level.met = std::min(level.met + 1.0, kUsual);
+    const double magnitude = level.met < kFewest ? std::abs(coefficient)
+                                                 : std::min(std::abs(coefficient), kMostTimes * level.usual);
+    level.usual += (magnitude - level.usual) / level.met;
+    octaves_[octave].magnitudes[cell] += magnitude;
     octaves_[octave].counts[cell] += 1.0;
   }
 
   std::size_t samples_;
+  double accepted_ = 0.0, usual_step_ = 0.0, steps_ = 0.0;
+  int replaced_ = 0;
   std::array<Level, kMostOctaves> levels_{};
   std::vector<Octave> octaves_;
 };
@@ -87,12 +123,16 @@ struct Loudness {
   std::size_t cells_each = kFine;  // of a time
 };
 
+double count_of(const Octave& octave, std::size_t begin, std::size_t end) {
+  double count = 0.0;
+  for (std::size_t i = begin; i < end; ++i) count += octave.counts[i];
+  return count;
+}
+
 double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
-  double sum = 0.0, count = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    sum += octave.magnitudes[i];
-    count += octave.counts[i];
-  }
+  double sum = 0.0;
+  for (std::size_t i = begin; i < end; ++i) sum += octave.magnitudes[i];
+  const double count = count_of(octave, begin, end);
   return count > 0.0 ? sum / count : 0.0;
 }
 
@@ -100,6 +140,9 @@ double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) 
 double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
   std::array<double, kFine> quarters{};
   const std::size_t length = (end - begin) / kFine;
+  for (std::size_t q = 0; q < kFine; ++q)
+    if (!(count_of(octave, begin + q * length, begin + (q + 1) * length) > 0.0))
+      return mean_magnitude(octave, begin, end);
   for (std::size_t q = 0; q < kFine; ++q)
     quarters[q] = mean_magnitude(octave, begin + q * length, begin + (q + 1) * length);
   std::sort(quarters.begin(), quarters.end());
@@ -126,19 +169,21 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
 }
 
 Loudness loudness_of(const Octave& octave) {
-  double count = 0.0;
-  for (const double c : octave.counts) count += c;
+  const double count = count_of(octave, 0, kCells);
   Loudness out;
   std::size_t times = kTimes;
   while (times >= kFewestTimes && count < kFewest * static_cast<double>(times)) times /= 2;
   if (times < kFewestTimes) return out;
   out.cells_each = kCells / times;
-  const double usual = count / static_cast<double>(times);
+  std::vector<double> counts;
+  for (std::size_t t = 0; t < times; ++t)
+    if (const double here = count_of(octave, t * out.cells_each, (t + 1) * out.cells_each); here > 0.0)
+      counts.push_back(here);
+  // Of a time without a hole.
+  const double usual = median(counts);
   for (std::size_t t = 0; t < times; ++t) {
     const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
-    double here = 0.0;
-    for (std::size_t i = begin; i < end; ++i) here += octave.counts[i];
-    if (here < 0.5 * usual) continue;
+    if (count_of(octave, begin, end) < 0.5 * usual) continue;
     out.root.push_back(std::sqrt(usual < kParted ? mean_magnitude(octave, begin, end)
                                                  : middle_magnitude(octave, begin, end)));
     out.cell.push_back(begin);
@@ -148,6 +193,7 @@ Loudness loudness_of(const Octave& octave) {
   // Of the mean magnitude of n normal variables the relative variance is (pi / 2 - 1) / n, of its root a
   // quarter.
   const double least = std::sqrt(0.1427 / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
+  if (!(least > 0.0)) return {};
   out.deviation = least;
   for (const std::size_t together : {1, 2, 4})
     out.deviation = std::max(out.deviation, deviation_by(out.root, together));
@@ -212,11 +258,10 @@ Found surest(const std::vector<Loudness>& all) {
   return best;
 }
 
-NoiseChange described(const Found& found, const std::vector<Loudness>& all, std::size_t samples,
-                      double period_s) {
+NoiseChange described(const Found& found, const std::vector<Loudness>& all, double period_s) {
   NoiseChange out;
-  out.where = {found.begin * samples / kCells, found.end * samples / kCells};
   const auto changed = [&](std::size_t k) {
+    // The neighbours have a part of it.
     const auto [begin, end] = times_within(all[k], found.begin, found.end);
     if (begin == end || end - begin == all[k].root.size()) return 0.0;
     const std::vector<double> sums = sums_of(all[k]);
@@ -239,8 +284,8 @@ NoiseChange described(const Found& found, const std::vector<Loudness>& all, std:
 
 void leave_out(const Found& found, std::vector<Loudness>& all) {
   for (Loudness& of : all) {
-    const auto [begin, end] =
-        times_within(of, found.begin > of.cells_each ? found.begin - of.cells_each + 1 : 0, found.end);
+    const auto [begin, end] = times_within(of, found.begin - std::min(found.begin, 2 * of.cells_each - 1),
+                                           found.end + of.cells_each);
     of.root.erase(of.root.begin() + static_cast<std::ptrdiff_t>(begin),
                   of.root.begin() + static_cast<std::ptrdiff_t>(end));
     of.cell.erase(of.cell.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -252,7 +297,7 @@ void leave_out(const Found& found, std::vector<Loudness>& all) {
 }  // namespace
 
 std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<const Stretch> parts,
-                                       double period_s) {
+                                       double period_s, const std::function<double(std::size_t)>& time_s) {
   Pyramid pyramid(std::max<std::size_t>(1, rate_radps.size()));
   for (const Stretch& part : parts) {
     pyramid.begin();
@@ -267,23 +312,24 @@ std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<c
   while (changes.size() < kMostChanges) {
     const Found found = surest(all);
     if (found.departure < kSurely) break;
-    changes.push_back(described(found, all, rate_radps.size(), period_s));
+    changes.push_back(described(found, all, period_s));
+    changes.back().from_s = time_s(found.begin * rate_radps.size() / kCells);
+    changes.back().to_s = time_s(std::min(rate_radps.size() - 1, found.end * rate_radps.size() / kCells));
     leave_out(found, all);
   }
   std::sort(changes.begin(), changes.end(),
-            [](const NoiseChange& a, const NoiseChange& b) { return a.where.begin < b.where.begin; });
+            [](const NoiseChange& a, const NoiseChange& b) { return a.from_s < b.from_s; });
   return changes;
 }
 
-std::string in_words(std::span<const NoiseChange> changes, double period_s, double first_s) {
+std::string in_words(std::span<const NoiseChange> changes) {
   if (changes.empty()) return {};
   std::string words = "the noise is not the same along the record:";
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const NoiseChange& change = changes[i];
     std::array<char, 160> text{};
-    const auto at = [&](std::size_t sample) { return first_s + static_cast<double>(sample) * period_s; };
     std::snprintf(text.data(), text.size(), "%s %.2g times as loud in %.6g … %.6g s", i > 0 ? "," : "",
-                  change.times, at(change.where.begin), at(change.where.end));
+                  change.times, change.from_s, change.to_s);
     words += text.data();
     if (change.range_hz.low > 0.0)
       std::snprintf(text.data(), text.size(), " (%.2g to %.3g Hz)", change.range_hz.low,

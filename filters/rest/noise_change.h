@@ -11,7 +11,7 @@
 // beside it.
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,20 +22,20 @@
 namespace ifog {
 
 struct NoiseChange {
-  Stretch where;       // samples of the record
+  double from_s = 0.0, to_s = 0.0;  // the stretch
   double times = 1.0;  // deviation of the noise there over that elsewhere, in the octave where it is most
   FrequencyRange range_hz;  // the octaves that changed, joined
 };
 
-// parts: what is at rest and without holes. In order of time, the three surest at most; none where the noise
-// is the same, has changed by less than a quarter, or is too short to tell (512 samples). False in less than
-// 1 % of records whose noise is the same (tests/bench/allan).
+// parts: what is at rest and without holes; time_s: of a sample. In order of time, the three surest at most;
+// none where the noise is the same, has changed by less than a quarter, or is too short to tell (some hundred
+// samples). False in less than 1 % of records whose noise is the same (tests/bench/allan).
 [[nodiscard]] std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps,
-                                                     std::span<const Stretch> parts, double period_s);
+                                                     std::span<const Stretch> parts, double period_s,
+                                                     const std::function<double(std::size_t)>& time_s);
 
 // "the noise is not the same along the record: 5.1 times as loud in 1606 … 1713 s (below 0.78 Hz); the
-// figures are of both together, --from and --to take a part"; empty where it is the same. first_s: time of
-// the first sample.
-[[nodiscard]] std::string in_words(std::span<const NoiseChange> changes, double period_s, double first_s);
+// figures are of all of it together, --from and --to take a part"; empty where it is the same.
+[[nodiscard]] std::string in_words(std::span<const NoiseChange> changes);
 
 }  // namespace ifog

@@ -15,6 +15,7 @@
 #include "drivers/transport/utc_now.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/model_file/model.h"
+#include "filters/rest/noise_change.h"
 #include "filters/rest/rest.h"
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
@@ -124,13 +125,6 @@ json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
           {"held_out", model.held_out ? outcome_json(*model.held_out, axes) : json(nullptr)}};
 }
 
-json noise_json(const std::map<std::string, NoiseCoefficients>& noise) {
-  json axes = json::array();
-  for (const auto& [axis, found] : noise)
-    axes.push_back({{"axis", axis}, {"coefficients", report::coefficients_json(found)}});
-  return axes;
-}
-
 void print(const Tuning& tuning) {
   say("%-28s %4s %16s %10s\n", "state model", "free", "ln likelihood", "BIC - best");
   for (const TunedModel& model : tuning.models)
@@ -186,7 +180,20 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
 
 // By axis, of all of the capture's rest: what `ifog allan` says of it. A filter's own Q and R are no noise
 // terms: with colour in the state they are whatever predicts best.
-using NoiseByAxis = std::map<std::string, NoiseCoefficients>;
+struct AxisNoise {
+  NoiseCoefficients terms;
+  std::vector<NoiseChange> changes;
+};
+using NoiseByAxis = std::map<std::string, AxisNoise>;
+
+json noise_json(const NoiseByAxis& noise) {
+  json axes = json::array();
+  for (const auto& [axis, found] : noise)
+    axes.push_back({{"axis", axis},
+                    {"coefficients", report::coefficients_json(found.terms)},
+                    {"noise_changes", report::noise_changes_json(found.changes)}});
+  return axes;
+}
 
 // An axis too short for them has none, and is said to.
 NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
@@ -196,7 +203,12 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
     const std::span<const double> rate = capture.rate_radps[a];
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
     try {
-      noise[capture.axes[a]] = noise_coefficients(AngleSum(rate, parts), clock.period_s);
+      AxisNoise found{
+          noise_coefficients(AngleSum(rate, parts), clock.period_s),
+          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.time_s[i]; })};
+      if (const std::string change = in_words(found.changes); !change.empty())
+        notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + change);
+      noise[capture.axes[a]] = std::move(found);
     } catch (const std::invalid_argument& error) {
       notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
                       error.what());
@@ -213,11 +225,11 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
       if (c.present) value = c.value;
     };
     NoiseTerms& terms = model.noise[axis];
-    put(found.Q, terms.Q);
-    put(found.N, terms.N);
-    put(found.B, terms.B);
-    put(found.K, terms.K);
-    put(found.R, terms.R);
+    put(found.terms.Q, terms.Q);
+    put(found.terms.N, terms.N);
+    put(found.terms.B, terms.B);
+    put(found.terms.K, terms.K);
+    put(found.terms.R, terms.R);
   }
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
   model.source.date = utc_now();
@@ -264,7 +276,7 @@ void run(const Options& options) {
   print_held_out(tuning, capture.axes);
   for (const auto& [axis, found] : noise)
     say("\nnoise%s%s at rest, as `ifog allan` finds it\n%s", axis.empty() ? "" : " of ", axis.c_str(),
-        report::coefficient_lines(found).c_str());
+        report::coefficient_lines(found.terms).c_str());
   if (!options.json_file.empty()) {
     json models = json::array();
     for (const TunedModel& model : tuning.models) models.push_back(model_json(model, capture.axes));

@@ -91,4 +91,15 @@ nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
   return out;
 }
 
+nlohmann::ordered_json noise_changes_json(std::span<const NoiseChange> changes) {
+  auto out = nlohmann::ordered_json::array();
+  for (const NoiseChange& change : changes)
+    out.push_back({{"from_s", change.from_s},
+                   {"to_s", change.to_s},
+                   {"times", change.times},
+                   {"low_hz", change.range_hz.low},
+                   {"high_hz", change.range_hz.high}});
+  return out;
+}
+
 }  // namespace ifog::report

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "filters/allan/noise_coefficients.h"
+#include "filters/rest/noise_change.h"
 
 namespace ifog::report {
 
@@ -30,5 +32,8 @@ std::string coefficient_lines(const NoiseCoefficients& found);
 
 // {Q|N|B|K|R: {value, std_error, upper, unit, present}}, SI.
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found);
+
+// [{from_s, to_s, times, low_hz, high_hz}], empty where the noise is the same all along.
+nlohmann::ordered_json noise_changes_json(std::span<const NoiseChange> changes);
 
 }  // namespace ifog::report

@@ -18,26 +18,45 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
   error = found.std_error;
 }
 
-// What the effects leave of the samples at rest, all records one after the other.
+// What the effects leave of a record's samples at rest, NaN elsewhere.
+Samples error_at_rest(const Record& record, const EvenError& error, double sample_s) {
+  Samples resting(record.time_s.size(), record.at_rest.empty() ? 1.0 : std::nan(""));
+  for (const Stretch& part : record.at_rest)
+    std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
+              resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
+  const Samples rests = on_even_grid(record, sample_s, resting);
+  Samples rate = error.after;
+  for (std::size_t i = 0; i < rate.size(); ++i)
+    if (std::isnan(rests[i])) rate[i] = std::nan("");
+  return rate;
+}
+
+// All records one after the other.
 AngleSum angle_at_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
                        double sample_s) {
   Samples all;
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Record& record = records[r];
-    Samples resting(record.time_s.size(), record.at_rest.empty() ? 1.0 : std::nan(""));
-    for (const Stretch& part : record.at_rest)
-      std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
-                resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
-    const Samples rests = on_even_grid(record, sample_s, resting);
-    Samples rate = errors[r].after;
-    for (std::size_t i = 0; i < rate.size(); ++i)
-      if (std::isnan(rests[i])) rate[i] = std::nan("");
+    const Samples rate = error_at_rest(records[r], errors[r], sample_s);
     for (const Stretch& part : stretches({}, std::span<const double>(rate), {}))
       parts.push_back({all.size() + part.begin, all.size() + part.end});
     all.insert(all.end(), rate.begin(), rate.end());
   }
   return AngleSum(std::span<const double>(all), parts);
+}
+
+void write_changes(const std::vector<Record>& records, const std::vector<EvenError>& errors, double sample_s,
+                   Diagnosis& diagnosis) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Samples rate = error_at_rest(records[r], errors[r], sample_s);
+    const double start_s = errors[r].start_s;
+    const std::vector<NoiseChange> found =
+        noise_changes(std::span<const double>(rate), stretches({}, std::span<const double>(rate), {}),
+                      sample_s, [&](std::size_t i) { return start_s + static_cast<double>(i) * sample_s; });
+    for (const NoiseChange& change : found) diagnosis.noise_changes.push_back({records[r].name, change});
+    if (const std::string words = in_words(found); !words.empty())
+      diagnosis.remarks.push_back((records.size() > 1 ? records[r].name + ": " : "") + words);
+  }
 }
 
 }  // namespace
@@ -49,6 +68,7 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
     value = noise_terms(regression.shape, regression.white_variance, grid.block_s);
     return;
   }
+  write_changes(records, errors, grid.sample_s, diagnosis);
   try {
     const NoiseCoefficients found =
         noise_coefficients(angle_at_rest(records, errors, grid.sample_s), grid.sample_s);

@@ -10,8 +10,9 @@
 
 namespace ifog {
 
-// `noise` and `noise_error` of the diagnosis; a remark where the record is too short for them. Dwells are no
-// evenly sampled record: there the regression's own white noise is all there is.
+// `noise`, `noise_error` and `noise_changes` of the diagnosis; a remark where the record is too short for
+// them and where they are of unlike parts. Dwells are no evenly sampled record: there the regression's own
+// white noise is all there is.
 void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
                  const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis);
 

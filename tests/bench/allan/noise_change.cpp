@@ -104,7 +104,7 @@ constexpr std::size_t kLengths[] = {2048, 16384, 131072};
 
 bool found(const Rates& rate) {
   const std::vector<ifog::Stretch> all{{0, rate.size()}};
-  return !ifog::noise_changes(rate, all, 1.0).empty();
+  return !ifog::noise_changes(rate, all, 1.0, [](std::size_t i) { return static_cast<double>(i); }).empty();
 }
 
 void print_false_alarms(int records, std::uint64_t seed) {

@@ -219,6 +219,9 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
       record.notes.push_back(name + ": --tau " + number(options.tau_s[i]) +
                              " s is no multiple of the sample time, taken at " + number(record.tau_s[i]) +
                              " s");
+  record.noise_changes = noise_changes(rate, parts, period, [&](std::size_t i) { return time_s.at(i); });
+  if (const std::string change = in_words(record.noise_changes); !change.empty())
+    record.notes.push_back(name + ": " + column + ": " + change);
   record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
   if (record.fit) note_what_was_left_out(column, record);
   return record;

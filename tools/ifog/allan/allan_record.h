@@ -47,6 +47,7 @@ struct AllanRecord {
   std::vector<AllanInterval> intervals;
   std::vector<LongPoint> longer;  // Thêo1, when asked for
   std::optional<NoiseCoefficients> fit;
+  std::vector<NoiseChange> noise_changes;
   double trusted_tau_s = 0.0;      // up to here the deviation is known to a quarter
   std::vector<std::string> notes;  // what the reader should know, one line each
 

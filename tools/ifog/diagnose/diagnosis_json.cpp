@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filters/effects/form.h"
+#include "tools/report/coefficients.h"
 
 namespace ifog::tools {
 namespace {
@@ -142,6 +143,15 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     noise["std_error"] = noise_json(d.noise_error);
     return noise;
   });
+  json["noise_changes"] = Json::array();
+  for (const AxisDiagnosis& each : axes) {
+    for (const NoiseChangeIn& found : each.diagnosis.noise_changes) {
+      Json change = report::noise_changes_json({&found.change, 1})[0];
+      change["capture"] = found.capture;
+      if (!each.axis.empty()) change["axis"] = each.axis;
+      json["noise_changes"].push_back(change);
+    }
+  }
   json["effects"] = Json::array();
   for (const AxisDiagnosis& each : axes) {
     for (const FoundEffect& found : each.diagnosis.effects) {

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stretch that was made louder or quieter is found where it is, as loud as it was made and at its
+// frequencies; noise of every kind that stays the same is not said to change.
+#include "filters/rest/noise_change.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "tools/simulate/noise.h"
+
+namespace {
+
+using ifog::NoiseChange;
+using ifog::simulate::NoiseLevels;
+
+constexpr double kRate_hz = 100.0;
+
+std::vector<NoiseChange> changes_of(const std::vector<double>& rate) {
+  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  return ifog::noise_changes(rate, all, 1.0 / kRate_hz,
+                             [](std::size_t i) { return static_cast<double>(i) / kRate_hz; });
+}
+
+std::vector<double> made_louder(std::vector<double> rate, double from_s, double to_s, double times) {
+  for (auto i = static_cast<std::size_t>(from_s * kRate_hz); i < static_cast<std::size_t>(to_s * kRate_hz);
+       ++i)
+    rate[i] *= times;
+  return rate;
+}
+
+TEST(NoiseChange, NoiseThatStaysTheSameHasNone) {
+  for (const NoiseLevels& levels :
+       {NoiseLevels{.N = 1e-5}, NoiseLevels{.B = 1e-5}, NoiseLevels{.K = 1e-5},
+        NoiseLevels{.N = 1e-5, .B = 1e-6, .K = 1e-7}, NoiseLevels{.N = 1e-5, .R = 1e-6}})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed)
+      EXPECT_TRUE(changes_of(ifog::simulate::noise(levels, kRate_hz, 60'000, seed)).empty())
+          << "N " << levels.N << " B " << levels.B << " K " << levels.K << " seed " << seed;
+}
+
+TEST(NoiseChange, OutliersAreNone) {
+  std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 60'000, 7);
+  for (std::size_t i = 100; i < rate.size(); i += 4321) rate[i] += 0.1;
+  EXPECT_TRUE(changes_of(rate).empty());
+}
+
+TEST(NoiseChange, ALoudStretchIsWhereItIsAndAsLoudAsItIs) {
+  const std::vector<double> rate =
+      made_louder(ifog::simulate::noise({.N = 1e-5}, kRate_hz, 180'000, 3), 1606.0, 1713.0, 5.0);
+  const std::vector<NoiseChange> found = changes_of(rate);
+  ASSERT_EQ(found.size(), 1U);
+  // 1800 s in 64 times.
+  constexpr double kTime_s = 1800.0 / 64.0;
+  EXPECT_NEAR(found[0].from_s, 1606.0, kTime_s);
+  EXPECT_NEAR(found[0].to_s, 1713.0, kTime_s);
+  EXPECT_NEAR(found[0].times, 5.0, 1.0);
+  EXPECT_DOUBLE_EQ(found[0].range_hz.high, 0.5 * kRate_hz);
+  EXPECT_NE(ifog::in_words(found).find("times as loud in 16"), std::string::npos) << ifog::in_words(found);
+}
+
+TEST(NoiseChange, AQuietStretchIsSaidToBeQuiet) {
+  const std::vector<NoiseChange> found =
+      changes_of(made_louder(ifog::simulate::noise({.N = 1e-5}, kRate_hz, 60'000, 5), 100.0, 250.0, 0.5));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].times, 0.5, 0.1);
+  EXPECT_NEAR(found[0].from_s, 100.0, 10.0);
+  EXPECT_NEAR(found[0].to_s, 250.0, 10.0);
+}
+
+// Two stretches, each found beside the other.
+TEST(NoiseChange, TwoAreFound) {
+  std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 180'000, 11);
+  rate = made_louder(made_louder(rate, 300.0, 400.0, 3.0), 1200.0, 1300.0, 2.0);
+  const std::vector<NoiseChange> found = changes_of(rate);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].times, 3.0, 0.6);
+  EXPECT_NEAR(found[1].times, 2.0, 0.4);
+  EXPECT_NEAR(found[1].from_s, 1200.0, 29.0);
+}
+
+// Sway of 0.05 to 0.5 Hz in white noise: the frequencies above stay as they are.
+TEST(NoiseChange, OnlyTheFrequenciesThatChangedAreNamed) {
+  std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 180'000, 13);
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal;
+  double sway = 0.0;
+  for (std::size_t i = 60'000; i < 80'000; ++i) {
+    sway += -0.01 * sway + 2e-5 * normal(random);
+    rate[i] += sway;
+  }
+  const std::vector<NoiseChange> found = changes_of(rate);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].from_s, 600.0, 29.0);
+  EXPECT_NEAR(found[0].to_s, 800.0, 29.0);
+  EXPECT_LT(found[0].range_hz.high, 15.0);
+  EXPECT_GT(found[0].times, 2.0);
+}
+
+// Of what lies between two parts nothing is known, and nothing is said to be quiet there.
+TEST(NoiseChange, AHoleIsNone) {
+  const std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 60'000, 19);
+  const std::vector<ifog::Stretch> parts{{0, 20'000}, {45'000, 60'000}};
+  EXPECT_TRUE(
+      ifog::noise_changes(rate, parts, 0.01, [](std::size_t i) { return static_cast<double>(i); }).empty());
+}
+
+TEST(NoiseChange, OfTooLittleNothingIsSaid) {
+  EXPECT_TRUE(changes_of({}).empty());
+  EXPECT_TRUE(changes_of(std::vector<double>(50, 1e-5)).empty());
+  EXPECT_TRUE(changes_of(std::vector<double>(5000, 0.0)).empty());
+}
+
+}  // namespace
