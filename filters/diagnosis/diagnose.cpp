@@ -222,7 +222,10 @@ class Run {
   }
 
   void drop_what_stands_twice() {
-    while (const std::optional<std::size_t> twice = standing_twice(found_.chosen)) {
+    for (;;) {
+      auto twice = standing_twice(found_.chosen);
+      if (!twice) twice = cancelling(data_, found_);
+      if (!twice) return;
       found_ = without_effect(data_, reconstructed_, std::move(found_), *twice);
       subtract_found(data_, found_, errors_);
     }

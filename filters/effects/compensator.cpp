@@ -75,6 +75,11 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     left_out_.push_back(label_of(effect) + " (the time since power-up is not known)");
     return;
   }
+  const std::string channel = *form == Form::kRateRamp ? std::string(kTimeRange) : effect.channel;
+  if (*form == Form::kRateRamp && !std::isfinite(range_of(channel, ranges).high)) {
+    left_out_.push_back(label_of(effect) + " (for how long it was fitted is not known)");
+    return;
+  }
   if (*form == Form::kRebuiltRamp) {
     add_ramp(effect, axes);
     return;
@@ -95,7 +100,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
       term.coefficient_error = effect.parameters[i].std_error;
   }
   try {
-    add_factor(term, shape_settings(effect), effect.channel, axes, ranges);
+    add_factor(term, shape_settings(effect), channel, axes, ranges);
     if (*form == Form::kProduct)
       add_factor(term, with_shape_settings(effect), effect.with_channel, axes, ranges);
   } catch (const std::invalid_argument& error) {
@@ -153,7 +158,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
     factor.rate = kOwn;
     factor.range = range_of_reference(ranges);
   }
-  if (!rate && factor.shape.settings().form != Form::kWarmUp) {
+  if (!rate && !is_of_time(factor.shape.settings().form)) {
     factor.channel = channel_index(names.of);
     if (!names.less.empty()) factor.less = channel_index(names.less);
   }
@@ -218,7 +223,11 @@ void Compensator::evaluate(Term& term, double dt_s, std::uint32_t& flags) noexce
   for (Factor& factor : term.factors) {
     if (factor.rate != kNone) continue;
     if (factor.channel == kNone) {
-      term.channels.value *= factor.shape.step(0.0, dt_s);
+      const double value = factor.shape.step(0.0, dt_s);
+      const bool ramp = factor.shape.settings().form == Form::kRateRamp;
+      const Reach reach = ramp ? reach_of(value, factor.range) : Reach{};
+      if (reach.outside()) flags |= kOutOfRange;
+      term.channels.times(ramp ? reach.value : value, factor.shape, reach);
       continue;
     }
     if (!held_[factor.channel].seen || (factor.less != kNone && !held_[factor.less].seen)) {

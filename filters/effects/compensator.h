@@ -59,8 +59,8 @@ class Compensator {
 
   // The environment channels step() wants, in this order. Reference rates are not among them.
   [[nodiscard]] const std::vector<std::string>& channels() const noexcept { return channels_; }
-  // Effects of the model that are not corrected online, see carries_over(), and warm_up where the time since
-  // power-up is not known; in words.
+  // Effects of the model that are not corrected online, see carries_over(), warm_up where the time since
+  // power-up is not known, and rate_ramp where the model does not say how long it was fitted; in words.
   [[nodiscard]] const std::vector<std::string>& left_out() const noexcept { return left_out_; }
 
   // Before the first step: the time since power-up at that, in place of the one given to the constructor,

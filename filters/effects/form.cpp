@@ -7,7 +7,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::array<std::pair<Form, std::string_view>, 25> kNames = {{
+constexpr std::array<std::pair<Form, std::string_view>, 26> kNames = {{
     {Form::kLinear, "linear"},
     {Form::kQuadratic, "quadratic"},
     {Form::kCubic, "cubic"},
@@ -22,6 +22,7 @@ constexpr std::array<std::pair<Form, std::string_view>, 25> kNames = {{
     {Form::kCosine, "cosine"},
     {Form::kSine, "sine"},
     {Form::kBandPower, "band_power"},
+    {Form::kTransition, "transition"},
     {Form::kDeadZone, "dead_zone"},
     {Form::kLine, "line"},
     {Form::kStep, "step"},
@@ -60,9 +61,10 @@ bool has_memory(Form form) {
 
 bool describes_noise(Form form) { return form >= Form::kGaussMarkov; }
 
+bool is_of_time(Form form) { return form == Form::kWarmUp || form == Form::kRateRamp; }
+
 bool carries_over(Form form) {
-  return (has_channel(form) && form != Form::kDeadZone) || form == Form::kWarmUp ||
-         form == Form::kRebuiltRamp;
+  return (has_channel(form) && form != Form::kDeadZone) || is_of_time(form) || form == Form::kRebuiltRamp;
 }
 
 int power_of(Form form) {

@@ -7,6 +7,7 @@
 //   constants   lookup f(c), piecewise linear; with `angle` the table is an angle and the effect its
 //   difference over dt product c * with_form(with_channel) band_power mean square of c - LP(c)   absolute |c|
 //   cosine, sine of 2 pi c/period, the channel an angle: once a turn, or a whole part of it
+//   transition tanh(c / half width), c counted from its middle: from one level to another
 //   dead_zone c where |c| is below the half width, else 0
 // and of the time t since the record's start (or the daemon's):
 //   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
@@ -40,6 +41,7 @@ enum class Form {
   kCosine,
   kSine,
   kBandPower,
+  kTransition,
   kDeadZone,
   kLine,
   kStep,
@@ -60,10 +62,12 @@ std::string_view name_of(Form form);
 [[nodiscard]] bool has_memory(
     Form form);  // depends on the channel's past, so it cannot be a function of the rate
 [[nodiscard]] bool describes_noise(Form form);  // nothing to subtract
+[[nodiscard]] bool is_of_time(Form form);       // a function of time alone that is subtracted
 
-// False for what happened once in a record, or has a phase or an origin that the next record does not share:
-// it is reported and removed from that record, and left out online. So is a dead zone: what the sensor did
-// not see nobody can give back. A warm-up's origin is power-up, so it is corrected where that is known.
+// False for what happened once in a record, or has a phase that the next record does not share: it is
+// reported and removed from that record, and left out online. So is a dead zone: what the sensor did not see
+// nobody can give back. A warm-up's origin is power-up, so it is corrected where that is known. Of a ramp in
+// time the slope carries over, and where it began is a part of the bias.
 [[nodiscard]] bool carries_over(Form form);
 
 // The power of a polynomial form, 0 for others.
@@ -72,7 +76,7 @@ std::string_view name_of(Form form);
 // 0 when the effect has no parameter of that name.
 [[nodiscard]] double parameter(const Effect& effect, std::string_view name);
 
-// Of a dead zone: its parameter beside the coefficient, in the channel's unit.
+// Of a dead zone or a transition: its parameter beside the coefficient, in the channel's unit.
 inline constexpr std::string_view kHalfWidth = "half_width";
 
 // What a form's time constant is called: "lag_s" of lagged, "time_constant_s" of warm_up, "bandwidth_s" of
@@ -87,5 +91,8 @@ inline constexpr std::string_view kHalfWidth = "half_width";
 
 // The reference rate, known on a rate table; online its place is taken by the rate itself.
 [[nodiscard]] bool is_reference_rate(std::string_view channel);
+
+// Under this name a model's ranges say for how long after a record's start a ramp in time was fitted.
+inline constexpr std::string_view kTimeRange = "time_s";
 
 }  // namespace ifog

@@ -89,6 +89,9 @@ std::string of_temperature(Form form) {
              "thermometer";
     case Form::kLookup:
       return "bias is a curve in temperature";
+    case Form::kTransition:
+      return "the bias goes from one level to another over the temperature, as where the polarisation of the "
+             "coil turns over";
     default:
       return order_of(form) + "temperature dependence of the bias";
   }
@@ -279,7 +282,8 @@ std::string coefficient_unit(const Effect& effect) {
            form_unit(with, unit_of(effect.with_channel));
   }
   if (*form == Form::kRateRamp) return "rad/s^2";
-  if (!has_channel(*form) || *form == Form::kLookup || *form == Form::kCosine || *form == Form::kSine)
+  if (!has_channel(*form) || *form == Form::kLookup || *form == Form::kCosine || *form == Form::kSine ||
+      *form == Form::kTransition)
     return "rad/s";
   if (*form == Form::kLinear && kind_of(effect.channel) == ChannelKind::kOtherAxis) return "rad";
   const std::string unit = unit_of(effect.channel);

@@ -22,6 +22,9 @@ constexpr double kPowerAverage_s = 1.0;
 
 bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSine; }
 
+// Bounded of itself: there is no edge beyond which it runs away.
+bool is_bounded(Form form) { return is_periodic(form) || form == Form::kTransition; }
+
 double power(double c, Form form) noexcept {
   const double c2 = c * c;
   switch (form) {
@@ -93,7 +96,9 @@ Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
     throw std::invalid_argument("a time constant is negative");
   }
   if (settings_.half_width < 0.0) throw std::invalid_argument("a half width is negative");
-  if (!has_channel(settings_.form) && settings_.form != Form::kWarmUp) {
+  if (settings_.form == Form::kTransition && !(settings_.half_width > 0.0))
+    throw std::invalid_argument("a transition needs its half_width");
+  if (!has_channel(settings_.form) && !is_of_time(settings_.form)) {
     throw std::invalid_argument("form " + in_quotes(std::string(name_of(settings_.form))) +
                                 " has no channel to be a shape of");
   }
@@ -118,11 +123,12 @@ double Shape::at(double value) const noexcept {
   if (settings_.form == Form::kCosine) return std::cos(2.0 * std::numbers::pi * turns);
   if (settings_.form == Form::kSine) return std::sin(2.0 * std::numbers::pi * turns);
   if (settings_.form == Form::kDeadZone) return std::abs(c) < settings_.half_width ? c : 0.0;
+  if (settings_.form == Form::kTransition) return std::tanh(c / settings_.half_width);
   return power(c, settings_.form);
 }
 
 double Shape::step(double value, double dt_s) noexcept {
-  if (!has_memory(settings_.form) && settings_.form != Form::kWarmUp && !settings_.angle) return at(value);
+  if (!has_memory(settings_.form) && !is_of_time(settings_.form) && !settings_.angle) return at(value);
   if (dt_s != dt_) {
     dt_ = dt_s;
     alpha_ = share(dt_s, settings_.time_constant_s);
@@ -136,6 +142,8 @@ double Shape::step(double value, double dt_s) noexcept {
     case Form::kWarmUp:
       elapsed_ = fresh ? settings_.elapsed_s : elapsed_ + dt_s;
       return std::exp(-elapsed_ / settings_.time_constant_s);
+    case Form::kRateRamp:
+      return elapsed_ = fresh ? 0.0 : elapsed_ + dt_s;
     case Form::kLookup: {
       const double angle = table(value);
       const double change = fresh || dt_s <= 0.0 ? 0.0 : (angle - first_) / dt_s;
@@ -177,6 +185,10 @@ double Shape::slope(double value) const noexcept {
   if (power_here > 0)
     return power_here * std::pow(value - settings_.reference, static_cast<double>(power_here - 1));
   if (settings_.form == Form::kAbsolute) return std::copysign(1.0, value - settings_.reference);
+  if (settings_.form == Form::kTransition) {
+    const double level = at(value);
+    return (1.0 - level * level) / settings_.half_width;
+  }
   if (settings_.form != Form::kLookup || settings_.period > 0.0) return 0.0;
   const auto& x = settings_.table_x;
   const auto& y = settings_.table_y;
@@ -186,13 +198,13 @@ double Shape::slope(double value) const noexcept {
 }
 
 double Shape::at(const Reach& channel) const noexcept {
-  if (is_periodic(settings_.form)) return at(channel.value + channel.beyond);
+  if (is_bounded(settings_.form)) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
   return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
-  if (is_periodic(settings_.form)) return step(channel.value + channel.beyond, dt_s);
+  if (is_bounded(settings_.form)) return step(channel.value + channel.beyond, dt_s);
   if (power_of(settings_.form) > 1 && channel.outside()) return at(channel);
   return step(goes_on() ? channel.value : channel.edge, dt_s);
 }
@@ -201,6 +213,8 @@ double Shape::left_behind(const Reach& channel) const noexcept {
   // Periodic: every value is inside.
   if (settings_.angle || is_periodic(settings_.form) || !channel.outside()) return 0.0;
   if (settings_.form == Form::kDeadZone) return 0.0;
+  if (settings_.form == Form::kTransition)
+    return std::abs(at(channel.value + channel.beyond) - at(channel.edge));
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
   if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {
@@ -222,7 +236,8 @@ double Shape::left_behind(const Reach& channel) const noexcept {
 double Shape::unseen_curvature(const Reach& channel) const noexcept {
   const double past = std::abs(channel.past_the_edge());
   if (past == 0.0 || !goes_on() || settings_.form == Form::kDeadZone) return 0.0;
-  const double steepness = settings_.form == Form::kLagged ? 1.0 : std::abs(slope(channel.edge));
+  const bool straight = settings_.form == Form::kLagged || settings_.form == Form::kRateRamp;
+  const double steepness = straight ? 1.0 : std::abs(slope(channel.edge));
   return std::sqrt(15.0) * steepness * (past + past * past / channel.span);
 }
 

@@ -18,7 +18,7 @@ struct ShapeSettings {
   double second_time_constant_s = 0.0;   // lagged: a second stage
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
-  double half_width = 0.0;               // dead_zone
+  double half_width = 0.0;               // dead_zone, transition
   bool angle = false;
   double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };
@@ -33,12 +33,13 @@ double mean_in_dead_zone(double mean, double variance, double half_width) noexce
 
 class Shape {
  public:
-  // Throws std::invalid_argument for a lookup without a table, a cosine or sine without a period, a negative
-  // time constant or half width, or a form without a channel other than warm_up.
+  // Throws std::invalid_argument for a lookup without a table, a cosine or sine without a period, a
+  // transition without a width, a negative time constant or half width, or a form without a channel other
+  // than warm_up and rate_ramp.
   explicit Shape(ShapeSettings settings);
 
   // One sample: the channel's value, and the time it covers. The first sample sets the low-pass to itself, as
-  // if the channel had always been there. No allocation, no exception.
+  // if the channel had always been there; a rate_ramp is the time since it. No allocation, no exception.
   double step(double value, double dt_s) noexcept;
   void restart() noexcept { started_ = false; }
   // Of a warm_up, before its first sample: ShapeSettings::elapsed_s.
@@ -52,7 +53,8 @@ class Shape {
   // Likewise, going on beyond the range as far as a fit may.
   [[nodiscard]] double at(const Reach& channel) const noexcept;
   // By how much the shape may be wrong outside the range, per unit of its coefficient: what it does not
-  // follow, and of a higher power the difference between the power and its tangent.
+  // follow, of a higher power the difference between the power and its tangent, and of a transition what it
+  // has still gone.
   [[nodiscard]] double left_behind(const Reach& channel) const noexcept;
   // Likewise by a curvature that the fit could not see, per unit of the coefficient's standard error. Over a
   // range of width S evenly visited a linear term is known to s/(S sqrt(n/12)) and a quadratic one,

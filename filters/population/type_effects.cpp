@@ -21,7 +21,9 @@ constexpr double kOftenTogether = 0.25;  // of the gyros that show the rarer of 
 bool can_be_of_a_type(const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
   if (!form || effect.shown_only || describes_noise(*form) || !carries_over(*form)) return false;
-  return *form != Form::kLookup && *form != Form::kRebuiltRamp && *form != Form::kEarthRate;
+  // What ages does so at a slope of its own, and where a transition is belongs to one coil.
+  return *form != Form::kLookup && *form != Form::kRebuiltRamp && *form != Form::kEarthRate &&
+         *form != Form::kRateRamp && *form != Form::kTransition;
 }
 
 using Family = std::tuple<std::string, std::string, std::string>;  // axis, channels in order

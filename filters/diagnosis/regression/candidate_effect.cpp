@@ -24,6 +24,7 @@ double complexity_of_form(const Candidate& candidate) {
     case Form::kSeptic:
       return 6.0;
     case Form::kWarmUp:
+    case Form::kTransition:  // its middle and its width are free
       return 8.0;
     case Form::kProduct:  // a scale factor that depends on a channel, or its nonlinearity that does
       return candidate.with_form == Form::kLinear ? 4.0 : 8.0;
@@ -43,6 +44,7 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
     effect.channel = data.channels[candidate.channel].name;
     effect.reference = reference_of(effect.channel);
     effect.period = candidate.period;
+    if (candidate.is_transition()) effect.reference = candidate.centre;
   }
   if (candidate.form == Form::kProduct) {
     effect.with_form = name_of(candidate.with_form);
@@ -55,7 +57,10 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   } else {
     effect.parameters = {{"coefficient", 0.0, 0.0, coefficient_unit(effect)}};
   }
-  if (candidate.searched()) {
+  if (candidate.is_transition()) {
+    effect.parameters.push_back(
+        {std::string(kHalfWidth), candidate.half_width, 0.0, std::string(unit_of(effect.channel))});
+  } else if (candidate.searched()) {
     effect.parameters.push_back(
         {std::string(time_constant_name(effect)), candidate.time_constant_s, 0.0, "s"});
   }
@@ -97,6 +102,7 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
   candidate.frequency_hz = parameter(effect, "frequency_hz");
   candidate.period = effect.period;
   candidate.half_width = parameter(effect, kHalfWidth);
+  if (candidate.is_transition()) candidate.centre = effect.reference;
   return candidate;
 }
 

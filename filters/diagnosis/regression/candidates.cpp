@@ -20,7 +20,8 @@ constexpr double kBlocksOfRate = 2.0;
 constexpr double kShortestWarmUp_s = 10.0;
 // Of a sample: a band power that weighs the frequencies near half the sample rate most.
 constexpr double kHighest = 0.5;
-constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
+constexpr double kInside = 0.1;  // of the range from its edge: of a transition both levels have to be seen
+constexpr int kHarmonics = 2;    // of a turn: once, as a field does, and twice, as what bends does
 constexpr double kOfDifference =
     3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
 constexpr double kOfOtherAxis = 2.0;
@@ -87,6 +88,24 @@ void add_other_axis(const BlockData& data, std::size_t channel, std::vector<Cand
   found.back().of_channel = kOfOtherAxis;
 }
 
+// Where the polarisation of the coil turns over the bias goes from one level to another. Widths in parts of
+// the range, and middles as dense as neighbours that correlate above 0.9.
+void add_transitions(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  const FineChannel& source = data.channels[channel];
+  if (kind_of(source.name) != ChannelKind::kTemperature) return;
+  const double span = source.high - source.low;
+  for (const double width : {0.07, 0.15, 0.32}) {
+    const double room = 1.0 - 2.0 * kInside;
+    const double steps = std::ceil(room / (1.3 * width));
+    for (double i = 0.0; i <= steps; i += 1.0) {
+      Candidate candidate = candidate_of(Form::kTransition, channel);
+      candidate.centre = source.low + span * (kInside + room * i / steps);
+      candidate.half_width = width * span;
+      found.push_back(candidate);
+    }
+  }
+}
+
 // A switch is its own square; what it heats follows late.
 void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   found.push_back(candidate_of(Form::kLinear, channel));
@@ -102,6 +121,7 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   // slow noise will follow somewhere.
   if (!source.still) {
     for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
+    add_transitions(data, channel, found);
     // Gravity's share of a horizontal acceleration changes with the tilt, so its derivative is the rotation
     // itself (times g). Without a reference nothing tells the two apart, and a correction must be transparent
     // to rotation.
@@ -185,6 +205,20 @@ std::vector<std::pair<std::size_t, std::size_t>> switched(const BlockData& data)
   return found;
 }
 
+// What answers to another quantity does so through parts whose temperature changes. Where that runs about the
+// temperature of no answer, neither quantity has an effect of its own, and products_of() is never asked.
+void add_through_temperature(const BlockData& data, std::vector<Candidate>& found) {
+  const auto warm = [&](std::size_t channel) {
+    return kind_of(data.channels[channel].name) == ChannelKind::kTemperature;
+  };
+  for (std::size_t one = 0; one < data.channels.size(); ++one) {
+    if (!may_be_factor(data, one) || !warm(one)) continue;
+    for (std::size_t other = 0; other < data.channels.size(); ++other)
+      if (may_be_factor(data, other) && !warm(other) && !data.channels[other].two_valued)
+        found.push_back(product_of(one, other));
+  }
+}
+
 }  // namespace
 
 bool Candidate::same_shape(const Candidate& other) const {
@@ -232,6 +266,7 @@ std::vector<Candidate> library(const BlockData& data) {
       add_channel(data, channel, found);
   }
   for (const auto& [gate, other] : switched(data)) found.push_back(product_of(gate, other));
+  add_through_temperature(data, found);
   if (data.reference >= 0) add_reference(data, found);
   if (data.grid.dwells) return found;
   Candidate of_time;
@@ -257,6 +292,18 @@ void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPai
                      candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
 }
 
+// A scale factor that is right where nobody knows: at that value of the channel neither of the two shows.
+void add_scales(const BlockData& data, std::vector<NaturalPair>& pairs) {
+  if (data.reference < 0) return;
+  const auto reference = static_cast<std::size_t>(data.reference);
+  for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
+    if (!may_be_factor(data, channel)) continue;
+    Candidate product = candidate_of(Form::kProduct, channel);
+    product.with_channel = reference;
+    pairs.push_back({candidate_of(Form::kLinear, reference), product});
+  }
+}
+
 }  // namespace
 
 std::vector<NaturalPair> natural_pairs(const BlockData& data) {
@@ -275,6 +322,7 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
   }
   for (const auto& [gate, other] : switched(data))
     pairs.push_back({candidate_of(Form::kLinear, gate), product_of(gate, other)});
+  add_scales(data, pairs);
   return pairs;
 }
 
@@ -300,6 +348,7 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
     ShapeSettings settings = settings_of(data, candidate.form, candidate.channel, candidate.time_constant_s,
                                          candidate.second_time_constant_s, candidate.period);
     settings.half_width = candidate.half_width;
+    if (candidate.is_transition()) settings.reference = candidate.centre;
     return column(data, settings, candidate.channel);
   }
   Columns columns = Columns::Zero(n, candidate.width());

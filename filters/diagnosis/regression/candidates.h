@@ -26,17 +26,20 @@ struct Candidate {
   std::size_t record = 0;     // step, line: where it is
   double frequency_hz = 0.0;  // line
   double period = 0.0;        // cosine, sine
-  double half_width = 0.0;    // dead_zone, which no search tries; see residual/dead_zone.h
+  double centre = 0.0;        // transition: the channel's value in its middle
+  double half_width = 0.0;    // transition; dead_zone, which no search tries, see residual/dead_zone.h
   double of_channel = 0.0;    // what its channel adds to the complexity: one that no logger wrote
   FirstReading first_reading = FirstReading::kError;
 
   [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
-  [[nodiscard]] bool searched() const { return time_constant_s > 0.0; }
+  [[nodiscard]] bool searched() const { return time_constant_s > 0.0 || is_transition(); }
+  [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }
   // Whether the model will take it away, in this record and the next.
   [[nodiscard]] bool corrected() const {
     return carries_over(form) && first_reading != FirstReading::kEarthRateShown;
   }
-  [[nodiscard]] bool same_shape(const Candidate& other) const;  // but for time constants
+  [[nodiscard]] bool same_shape(
+      const Candidate& other) const;  // but for time constants and where a transition is
 };
 
 // Time constants a form is tried with: from a few samples to an hour, and never longer than the record can
@@ -44,7 +47,8 @@ struct Candidate {
 std::vector<double> time_constants(const BlockGrid& grid, Form form);
 
 // Of the forms only those are tried on a channel that can be its: of a switch no powers, of an angle only
-// what repeats with it, of another axis' rate, where that was turned, the misalignment. lookup is not among
+// what repeats with it, of another axis' rate, where that was turned, the misalignment; and a transition
+// of temperatures alone. lookup is not among
 // them: a table of a channel has a coefficient a knot, and polynomials to the cubic say what a few knots
 // would (the feedback ramp's table is fitted in ramp.h). Neither are steps, which scan.h places, nor lines,
 // which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same regressor as
@@ -52,8 +56,8 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form);
 std::vector<Candidate> library(const BlockData& data);
 
 // Two effects that are one law together, each of which may be hidden while the other is missing: a law about
-// a point that nobody knows, k (c - c0)^2 or k g (c - c0) while a switch g is on, a swing of unknown phase,
-// and the power of vibration in one band.
+// a point that nobody knows, k (c - c0)^2, k g (c - c0) while a switch g is on, or k w (c - c0) of a scale
+// factor, a swing of unknown phase, and the power of vibration in one band.
 struct NaturalPair {
   Candidate first, second;
 };

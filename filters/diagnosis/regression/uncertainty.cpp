@@ -128,6 +128,16 @@ Columns searched_columns(const BlockData& data, const std::vector<Candidate>& ef
                     (coefficients[at + 1] * mine(b, 0) - coefficients[at] * mine(b, 1));
       }
       found.push_back(std::move(column));
+    } else if (effect.is_transition()) {
+      for (const bool middle : {false, true}) {
+        Candidate less = effect;
+        Candidate more = effect;
+        (middle ? less.centre : less.half_width) -= kLogStep * effect.half_width;
+        (middle ? more.centre : more.half_width) += kLogStep * effect.half_width;
+        found.push_back(coefficients[at] / (2.0 * kLogStep) *
+                        (regressors(data, more).col(0) - regressors(data, less).col(0)));
+      }
+      if (of) of->push_back(i);
     } else if (effect.searched()) {
       Candidate less = effect;
       Candidate more = effect;

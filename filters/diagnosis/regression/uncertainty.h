@@ -18,7 +18,8 @@ namespace ifog {
 struct JointFit {
   NoisePosterior noise;
   // Nuisances (one constant a record), the columns of each effect, then one entry for each searched
-  // parameter, in the order of the effects: the logarithm of a time constant, the frequency (Hz) of a line.
+  // parameter, in the order of the effects: the logarithm of a time constant, the frequency (Hz) of a line;
+  // two of a transition, the logarithm of its half width, and its middle in half widths.
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
   std::vector<std::size_t> searched;  // effect of each of those last entries

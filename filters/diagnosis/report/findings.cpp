@@ -27,6 +27,7 @@ std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& va
 }
 
 bool is_searched(const ModelParameter& parameter, const Effect& effect) {
+  if (effect.form == name_of(Form::kTransition)) return parameter.name == kHalfWidth;
   return parameter.name == (effect.form == "line" ? "frequency_hz" : time_constant_name(effect));
 }
 
@@ -60,11 +61,21 @@ JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchRes
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
     Candidate& candidate = found.chosen[joint.searched[j]].candidate;
     const double moved = joint.values[linear + static_cast<Eigen::Index>(j)];
+    const double near = std::clamp(moved, -kFarthest, kFarthest);
+    const bool second = j > 0 && joint.searched[j - 1] == joint.searched[j];
     if (candidate.form == Form::kLine)
       candidate.frequency_hz += moved;
+    else if (!candidate.is_transition())
+      candidate.time_constant_s *= std::exp(near);
+    else if (second)
+      candidate.centre += near * found.fitted[joint.searched[j]].half_width;
     else
-      candidate.time_constant_s *= std::exp(std::clamp(moved, -kFarthest, kFarthest));
+      candidate.half_width *= std::exp(near);
   }
+  // The joint fit is straight in what was searched; the coefficients that belong to where it led are not.
+  if (!joint.searched.empty())
+    joint.values.head(linear) =
+        joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise).values.head(linear);
   found.coefficients = joint.values.head(linear);
   found.covariance = joint.covariance.topLeftCorner(linear, linear);
   const SearchResult own = found;
@@ -74,7 +85,7 @@ JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchRes
   joint.covariance.diagonal().head(linear) += shift.cwiseAbs2();
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
     const std::size_t i = joint.searched[j];
-    if (found.chosen[i].candidate.form == Form::kLine) continue;
+    if (!(found.chosen[i].candidate.time_constant_s > 0.0)) continue;
     const double moved =
         std::log(found.chosen[i].candidate.time_constant_s / own.chosen[i].candidate.time_constant_s);
     const Eigen::Index row = linear + static_cast<Eigen::Index>(j);
@@ -109,7 +120,7 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     }
     if (chosen.candidate.searched() || chosen.candidate.form == Form::kLine) {
       const double sigma = std::sqrt(joint.covariance(searched, searched));
-      ++searched;
+      searched += chosen.candidate.is_transition() ? 2 : 1;
       for (ModelParameter& parameter : effect.effect.parameters) {
         if (is_searched(parameter, effect.effect))
           parameter.std_error = sigma * (chosen.candidate.form == Form::kLine ? 1.0 : parameter.value);
@@ -224,6 +235,7 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
       }
       rows.push_back(row);
     }
+    if (i < jointly && effect.form == name_of(Form::kTransition)) ++searched;  // its middle
   }
   const std::size_t n = rows.size();
   std::vector<double> covariance(n * n, 0.0);
@@ -240,6 +252,12 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
 
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
   std::vector<ChannelRange> ranges;
+  const bool ramp = std::any_of(effects.begin(), effects.end(), [](const FoundEffect& found) {
+    return found.effect.form == name_of(Form::kRateRamp);
+  });
+  if (ramp)
+    ranges.push_back(
+        {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
   for (const FineChannel& channel : data.channels) {
     const auto uses = [&](const FoundEffect& found) {
       if (found.effect.shown_only || channel.period > 0.0) return false;  // an angle has no range

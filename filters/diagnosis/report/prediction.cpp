@@ -77,9 +77,10 @@ struct Effects {
 };
 
 // held: the channels at the edge of their ranges; followed: as far as a linear form goes. Of a higher power,
-// which goes on by its tangent, the larger error of being held is taken.
+// which goes on by its tangent, the larger error of being held is taken. ramp_s: for how long a ramp in time
+// was fitted, which goes on for as much again; none: it is not corrected.
 Effects effects_on(const BlockData& next, const BlockData& held, const BlockData& followed,
-                   const std::vector<Effect>& effects) {
+                   std::optional<double> ramp_s, const std::vector<Effect>& effects) {
   const auto n = static_cast<Eigen::Index>(next.grid.size());
   std::size_t parameters = 0;
   for (const Effect& effect : effects) parameters += effect.parameters.size();
@@ -101,15 +102,19 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     if (!candidate || candidate->form == Form::kStep || effect.parameters.empty()) continue;
     const double coefficient = effect.parameters[0].value;
     const Eigen::VectorXd column = regressors(next, *candidate).col(0);
-    if (candidate->form == Form::kRateRamp || candidate->form == Form::kDeadZone) {
+    if (candidate->form == Form::kDeadZone || (candidate->form == Form::kRateRamp && !ramp_s)) {
       on.going_on += coefficient * column;
       continue;
     }
     on.gradient.col(at) = column;
     on.total += coefficient * column;
+    if (candidate->form == Form::kRateRamp) {
+      on.left += coefficient * (column.array() - 2.0 * *ramp_s).cwiseMax(0.0).matrix();
+      continue;
+    }
     const bool tangent = power_of(candidate->form) > 1 || candidate->form == Form::kLookup;
     on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
-    if (!candidate->searched()) continue;
+    if (!(candidate->time_constant_s > 0.0)) continue;
     const Columns by_logarithm =
         searched_columns(next, {*candidate}, Eigen::VectorXd::Constant(1, coefficient), 0);
     for (std::size_t j = 1; j < effect.parameters.size(); ++j) {
@@ -179,12 +184,15 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   const BlockData data = cut_to_blocks({next});
   const BlockData held = held_in_range(data, diagnosis.ranges, false);
   const BlockData followed = held_in_range(data, diagnosis.ranges, true);
-  Effects on = effects_on(data, held, followed, mine);
+  std::optional<double> ramp_s;
+  for (const ChannelRange& range : diagnosis.ranges)
+    if (range.channel == kTimeRange) ramp_s = range.high - range.low;
+  Effects on = effects_on(data, held, followed, ramp_s, mine);
   if (diagnosis.hysteresis) add_loop(data, *diagnosis.hysteresis, on.left);
   std::vector<Effects> others;
   double all = 1.0;
   for (const OtherExplanation& other : diagnosis.others) {
-    others.push_back(effects_on(data, held, followed, other.effects));
+    others.push_back(effects_on(data, held, followed, ramp_s, other.effects));
     if (other.hysteresis) add_loop(data, *other.hysteresis, others.back().going_on);
     all += other.weight;
   }

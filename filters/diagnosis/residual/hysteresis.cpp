@@ -119,7 +119,8 @@ std::vector<LoopFit> fit_loops(const BlockData& data, const std::vector<Candidat
         fit.instead_of.push_back(each);
     }
     for (const Candidate& each : fit.instead_of)
-      fit.saved += 1.0 + (each.searched() ? 1.0 : 0.0) + (each.second_time_constant_s > 0.0 ? 1.0 : 0.0);
+      fit.saved += 1.0 + (each.searched() ? 1.0 : 0.0) +
+                   (each.second_time_constant_s > 0.0 || each.is_transition() ? 1.0 : 0.0);
     fit.saved -= kLoopParameters;
     Candidate linear;
     linear.form = Form::kLinear;

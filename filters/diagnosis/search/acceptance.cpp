@@ -21,6 +21,7 @@ constexpr double kWorseSlowly = 1.2;
 constexpr double kOpposed = 2.5;     // standard deviations
 constexpr double kUnsteady = 16.27;  // chi-square of three degrees of freedom, 0.1 %
 constexpr double kUnsteadyShare = 0.2;
+constexpr double kCancel = 0.2;  // of either band power, what is left of both together
 
 // Slow noise that happens to run against the effects hides them in the raw error, and their removal lays it
 // bare. That is no reason to leave them out where noise as large as the model's does it now and then.
@@ -73,8 +74,27 @@ std::optional<std::size_t> standing_twice(const std::vector<Chosen>& chosen) {
     for (std::size_t i = 0; i < j; ++i) {
       const Candidate &a = chosen[i].candidate, &b = chosen[j].candidate;
       if (a.searched() && a.same_shape(b) && near(a.time_constant_s, b.time_constant_s) &&
-          near(a.second_time_constant_s, b.second_time_constant_s))
+          near(a.second_time_constant_s, b.second_time_constant_s) && near(a.half_width, b.half_width))
         return chosen[i].likelihood_ratio < chosen[j].likelihood_ratio ? i : j;
+    }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> cancelling(const BlockData& data, const SearchResult& found) {
+  const BlockGrid& grid = data.grid;
+  std::vector<Eigen::VectorXd> parts;
+  Eigen::Index at = grid.constants();
+  for (const Chosen& each : found.chosen) {
+    parts.push_back(regressors(data, each.candidate).col(0) * found.coefficients[at]);
+    centre_records(grid, parts.back());
+    at += each.candidate.width();
+  }
+  for (std::size_t j = 1; j < parts.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      const Candidate &a = found.chosen[i].candidate, &b = found.chosen[j].candidate;
+      if (a.form != Form::kBandPower || !a.same_shape(b)) continue;
+      if ((parts[i] + parts[j]).norm() < kCancel * std::min(parts[i].norm(), parts[j].norm()))
+        return found.chosen[i].likelihood_ratio < found.chosen[j].likelihood_ratio ? i : j;
     }
   return std::nullopt;
 }

@@ -34,6 +34,11 @@ std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 // without bound.
 std::optional<std::size_t> standing_twice(const std::vector<Chosen>& chosen);
 
+// Of two band powers of one channel that nearly cancel the less certain one; none when there are no such two.
+// Their difference is the change of one with its bandwidth or its average, a likeness of it in one capture
+// and not in the next, which has another spectrum.
+std::optional<std::size_t> cancelling(const BlockData& data, const SearchResult& found);
+
 // Takes out of `found` every effect of a channel that does not stand and every step that does not persist,
 // then, while the error on held-out data does not hold, the least certain of those that are corrected online:
 // effects that make it larger are no model, whatever their p-values. `errors` follow. The effects dropped, in

@@ -15,7 +15,7 @@ double description(const BlockGrid& grid, const SearchResult& result) {
   double parameters = 0.0;
   for (const Chosen& each : result.chosen)
     parameters += static_cast<double>(each.candidate.width()) + (each.candidate.searched() ? 1.0 : 0.0) +
-                  (each.candidate.second_time_constant_s > 0.0 ? 1.0 : 0.0);
+                  (each.candidate.second_time_constant_s > 0.0 || each.candidate.is_transition() ? 1.0 : 0.0);
   return parameters * std::log(static_cast<double>(grid.used())) - score_of(result);
 }
 

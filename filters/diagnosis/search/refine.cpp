@@ -9,6 +9,50 @@
 #include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
+namespace {
+
+// Half a per cent of a time constant: what the likelihood tells apart of even a strong effect.
+constexpr int kBits = 11;
+constexpr double kEdge = 0.05;       // of the range: nearer to its edge no middle of a transition
+constexpr double kWidest = 0.5;      // of the range
+constexpr double kNarrowest = 0.02;  // likewise
+
+void refine_transition(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
+                       std::size_t at) {
+  Columns columns = design(data, model);
+  const Eigen::Index place = column_of(data.grid, model, at);
+  const auto best = [&](double Candidate::*which, double low, double high) {
+    const auto value = [&](double x) {
+      Candidate trial = model[at];
+      trial.*which = x;
+      columns.col(place) = regressors(data, trial).col(0);
+      return -fit_whitened(data.grid, shape, columns).log_likelihood;
+    };
+    std::uintmax_t most_evaluations = 30;
+    if (low < high)
+      model[at].*which =
+          boost::math::tools::brent_find_minima(value, low, high, kBits, most_evaluations).first;
+  };
+  const FineChannel& channel = data.channels[model[at].channel];
+  const double span = channel.high - channel.low;
+  for (int round = 0; round < 3; ++round) {
+    const Candidate now = model[at];
+    best(&Candidate::centre, std::max(channel.low + kEdge * span, now.centre - now.half_width),
+         std::min(channel.high - kEdge * span, now.centre + now.half_width));
+    best(&Candidate::half_width, std::max(kNarrowest * span, now.half_width / 2.0),
+         std::min(kWidest * span, now.half_width * 2.0));
+  }
+}
+
+}  // namespace
+
+void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
+                  std::size_t at) {
+  if (model[at].is_transition())
+    refine_transition(data, shape, model, at);
+  else
+    refine(data, shape, model, at);
+}
 
 // Brent's minimum of minus the log-likelihood over the logarithm of the time constant.
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
@@ -30,8 +74,6 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
   const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
   high = std::min(std::max(high, least), std::log(most));
   low = std::min(low, high);
-  // Half a per cent of a time constant: what the likelihood tells apart of even a strong effect.
-  constexpr int kBits = 11;
   std::uintmax_t most_evaluations = 30;
   model[at].*which =
       std::exp(boost::math::tools::brent_find_minima(value, low, high, kBits, most_evaluations).first);

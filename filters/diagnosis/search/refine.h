@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Searched time constants at their optimum.
+// Searched time constants, and where a transition is, at their optimum.
 #pragma once
 
 #include "filters/diagnosis/regression/design.h"
@@ -10,5 +10,10 @@ namespace ifog {
 // noise held; never outside what time_constants() spans by much. `which` is the first or the second one.
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which = &Candidate::time_constant_s);
+
+// Whatever of model[at] is searched: its time constant, or a transition's middle and width. The middle stays
+// off the edges of the channel's range and the width below a half of it.
+void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
+                  std::size_t at);
 
 }  // namespace ifog

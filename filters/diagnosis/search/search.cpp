@@ -92,9 +92,9 @@ class EffectSearch {
 
   Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
     Trial trial;
-    if (model[at].searched()) refine(data_, start, model, at);
+    if (model[at].searched()) refine_shape(data_, start, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
-    if (model[at].searched()) refine(data_, trial.noise.shape, model, at);
+    if (model[at].searched()) refine_shape(data_, trial.noise.shape, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
     trial.score = 2.0 * trial.noise.log_likelihood - penalty(model);
     trial.model = std::move(model);

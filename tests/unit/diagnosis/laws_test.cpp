@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laws of a gyro that polynomials of one channel are not, made here by their equations and found: a bias that
+// ages, one that turns over, a scale factor that is right at a supply nobody knows, an answer through the
+// temperature. What is written is run over a second capture, whose truth is the same equation.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record/compensated_error.h"
+#include "filters/effects/form.h"
+#include "filters/random/philox.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kWhite = 1e-6;
+constexpr std::uint32_t kSamples = 9000;
+constexpr double kStep_s = 0.2;
+
+double gaussian(std::uint32_t counter, std::uint32_t stream) {
+  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {13, 9});
+  const double u = (bits[0] + 0.5) / 4294967296.0;
+  const double v = (bits[1] + 0.5) / 4294967296.0;
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+}
+
+struct Capture {
+  std::vector<double> time, rate, turn, temperature, supply;
+  [[nodiscard]] Record record() const {
+    Record r;
+    r.name = "sensor";
+    r.time_s = time;
+    r.rate_radps = rate;
+    r.reference_radps = turn;
+    r.channels = {{"temperature_degC", temperature}, {"supply_V", supply}};
+    return r;
+  }
+};
+
+// Half an hour at 5 Hz; law(time, turn, temperature, supply) is the error of the rate. warmer: by so much.
+template <class Law>
+Capture make(std::uint32_t stream, double noise, double warmer, bool turns, Law law) {
+  Capture c;
+  for (std::uint32_t i = 0; i < kSamples; ++i) {
+    const double t = kStep_s * i;
+    c.time.push_back(t);
+    if (turns) c.turn.push_back(0.3 * std::sin(2.0 * M_PI * t / 50.0 + stream));
+    c.temperature.push_back(25.0 + warmer + 6.0 * std::sin(2.0 * M_PI * t / 700.0 + stream) +
+                            0.004 * gaussian(i, stream + 50));
+    c.supply.push_back(12.3 + 0.2 * std::sin(2.0 * M_PI * t / 331.0 + 2.0 * stream) +
+                       0.0005 * gaussian(i, stream + 60));
+    const double turn = turns ? c.turn.back() : 0.0;
+    c.rate.push_back(turn + law(t, turn, c.temperature.back(), c.supply.back()) +
+                     noise * gaussian(i, stream));
+  }
+  return c;
+}
+
+std::string all_in_words(const Diagnosis& diagnosis) {
+  std::string words;
+  for (const FoundEffect& found : diagnosis.effects)
+    words += found.effect.form + " of " + found.effect.channel + "; ";
+  return words;
+}
+
+// RMS about the mean of what the written model leaves of a capture without noise, over what it was given.
+double left_of(const Diagnosis& diagnosis, const Capture& next) {
+  Model model;
+  add_to_model(diagnosis, "", model);
+  const auto about_mean = [](const std::vector<double>& x) {
+    double mean = 0.0, square = 0.0;
+    for (const double v : x) mean += v / static_cast<double>(x.size());
+    for (const double v : x) square += (v - mean) * (v - mean);
+    return std::sqrt(square);
+  };
+  return about_mean(compensated_error(next.record(), model)) /
+         about_mean(compensated_error(next.record(), Model{}));
+}
+
+TEST(Laws, ABiasThatAgesIsCorrectedBySlope) {
+  const auto law = [](double t, double, double, double) { return 1e-9 * t; };
+  const Diagnosis found = diagnose({make(1, kWhite, 0.0, false, law).record()}, {});
+  ASSERT_EQ(all_in_words(found), "rate_ramp of ; ");
+  ASSERT_EQ(found.ranges.size(), 1U);
+  EXPECT_EQ(found.ranges[0].channel, "time_s");
+  EXPECT_NEAR(found.ranges[0].high, kStep_s * kSamples, 5.0);
+  EXPECT_LT(left_of(found, make(2, 0.0, 0.0, false, law)), 0.15);
+}
+
+TEST(Laws, ATransitionIsFoundAndEndsAtItsLevels) {
+  const auto law = [](double, double, double temperature, double) {
+    return 8e-7 * std::tanh((temperature - 26.0) / 1.5);
+  };
+  const Diagnosis found = diagnose({make(3, kWhite, 0.0, false, law).record()}, {});
+  ASSERT_EQ(all_in_words(found), "transition of temperature_degC; ");
+  const Effect& effect = found.effects[0].effect;
+  EXPECT_NEAR(effect.reference, 26.0, 0.2);
+  EXPECT_NEAR(parameter(effect, "half_width"), 1.5, 4.0 * effect.parameters[1].std_error);
+  EXPECT_NEAR(std::abs(parameter(effect, "coefficient")), 8e-7, 4.0 * effect.parameters[0].std_error);
+  EXPECT_GT(effect.parameters[1].std_error, 0.0);
+  EXPECT_LT(effect.parameters[1].std_error, 0.3);
+  EXPECT_LT(left_of(found, make(4, 0.0, 8.0, false, law)), 0.2) << "the second capture is warmer";
+}
+
+TEST(Laws, AStraightLineIsNoTransition) {
+  const auto law = [](double, double, double temperature, double) { return 2e-7 * (temperature - 25.0); };
+  const Diagnosis found = diagnose({make(5, kWhite, 0.0, false, law).record()}, {});
+  EXPECT_EQ(all_in_words(found), "linear of temperature_degC; ");
+}
+
+// At 12.3 V, the middle of what it saw, the scale factor is right: alone neither of the two shows.
+TEST(Laws, AScaleFactorIsRightAtASupplyNobodyKnows) {
+  const auto law = [](double, double turn, double, double supply) { return 3e-6 * turn * (supply - 12.3); };
+  const Diagnosis found = diagnose({make(6, 3e-7, 0.0, true, law).record()}, {});
+  EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
+  EXPECT_LT(left_of(found, make(7, 0.0, 0.0, true, law)), 0.2);
+}
+
+TEST(Laws, AnAnswerThroughTheTemperatureNeedsNoEffectOfItsOwnFirst) {
+  const auto law = [](double, double, double temperature, double supply) {
+    return 4e-7 * (temperature - 25.0) * (supply - 12.3 + 0.3);
+  };
+  const Diagnosis found = diagnose({make(8, kWhite, 0.0, false, law).record()}, {});
+  ASSERT_EQ(found.effects.size(), 1U) << all_in_words(found);
+  EXPECT_EQ(found.effects[0].effect.form, "product");
+  EXPECT_LT(left_of(found, make(9, 0.0, 0.0, false, law)), 0.2);
+}
+
+}  // namespace
+}  // namespace ifog
