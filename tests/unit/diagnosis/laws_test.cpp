@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,7 +71,7 @@ std::string all_in_words(const Diagnosis& diagnosis) {
 double left_of(const Diagnosis& diagnosis, const Capture& next) {
   Model model;
   add_to_model(diagnosis, "", model);
-  const auto about_mean = [](const std::vector<double>& x) {
+  const auto about_mean = [](std::span<const double> x) {
     double mean = 0.0, square = 0.0;
     for (const double v : x) mean += v / static_cast<double>(x.size());
     for (const double v : x) square += (v - mean) * (v - mean);
