@@ -37,6 +37,7 @@ void merge(Increment& into, const Increment& later) noexcept {
   sum.flags = into.flags | later.flags | kMerged;
   sum.status = into.status | later.status;
   sum.valid_axes = into.valid_axes | later.valid_axes;
+  sum.stuck_axes = into.stuck_axes | later.stuck_axes;
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
     sum.delta_theta_rad[i] = into.delta_theta_rad[i] + later.delta_theta_rad[i];
     sum.covered_s[i] = into.covered_s[i] + later.covered_s[i];
@@ -169,7 +170,7 @@ Verdict Incrementer::turn(std::size_t axis, double value, double own_s, Turn& ou
 
 void Incrementer::measure(const Reading& reading, const Step& step, Increment& out) noexcept {
   const double own_s = step.dt_s / static_cast<double>(step.samples);  // a gap's time is not this sample's
-  out.valid_axes = 0;
+  out.valid_axes = out.stuck_axes = 0;
   bool invalid = false, saturated = false, implausible = false;
   for (int i = 0; i < facts_.axes; ++i) {
     const auto axis = static_cast<std::size_t>(i);
@@ -191,6 +192,7 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
       out.rate_radps[axis] =
           facts_.kind == SensorKind::rate ? reading.value[axis] : turned.angle_rad / turned.covered_s;
       out.valid_axes |= 1u << i;
+      if (check_.stuck(axis, reading.value[axis])) out.stuck_axes |= 1u << i;
     } else {
       out.rate_radps[axis] = kNaN;
     }

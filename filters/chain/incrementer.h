@@ -17,6 +17,7 @@
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
+#include "filters/estimator/sensor_check.h"
 
 namespace ifog {
 
@@ -86,6 +87,7 @@ class Incrementer {
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle
+  SensorCheck check_;
   std::array<PlausibleValue, kMaxChannels> frame_channel_;
   std::array<double, kMaxChannels> channel_{};
   std::array<float, kMaxChannels> channel_age_s_{};

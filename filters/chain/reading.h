@@ -86,6 +86,7 @@ struct Increment {
   Axes delta_v_mps{};          // specific force times time, of x, y, z where the frames have it
   Axes moved_s{};              // time delta_v covers
   std::uint32_t valid_axes = 0;
+  std::uint32_t stuck_axes = 0;  // of those: repeat one value, as the sensor sent it
   std::uint32_t status = 0;
   std::uint32_t flags = 0;
   std::uint32_t samples = 1;  // device samples in it

@@ -196,6 +196,7 @@ void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept 
 void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
   out.flags |= kNoiseUnknown;
   out.estimate = EstimatorOutput{};
+  if (in.stuck_axes != 0) out.estimate.flags |= kStuck;
   out.estimate.denoised_radps = out.compensated_radps;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
     out.estimate.variance_rad2ps2[i] =
@@ -224,6 +225,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   input.rate_radps = out.compensated_radps;
   input.covered_s = in.covered_s;
   input.valid_axes = in.valid_axes;
+  input.stuck_axes = in.stuck_axes;
   // A mean over so many whole samples, merged or summed: timing jitter makes no noise quieter.
   input.averaged_s = in.samples > 1 ? in.samples * parts.period_s_ : 0.0;
   parts.estimator_->step(input, out.estimate);

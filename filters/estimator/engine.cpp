@@ -107,7 +107,7 @@ std::uint32_t Engine::screen(const EstimatorInput& in, EstimatorOutput& out) noe
   std::uint32_t valid = 0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(in.valid_axes, a) || !std::isfinite(in.rate_radps[a])) continue;
-    if (check_.stuck(a, in.rate_radps[a])) {
+    if (in.stuck_axes ? has(*in.stuck_axes, a) : check_.stuck(a, in.rate_radps[a])) {
       out.flags |= kStuck;
       continue;
     }

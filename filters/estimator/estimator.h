@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "filters/settings/axes.h"
 #include "filters/settings/filter_settings.h"
@@ -22,6 +23,8 @@ struct EstimatorInput {
   // By axis, of dt the time in which the rate was measured: what a gap hides is no angle, and none is owed
   // for it. 0: all of dt.
   Axes covered_s{};
+  // Axes whose sensor repeats one value, which are only predicted. Not told: those whose rate here does.
+  std::optional<std::uint32_t> stuck_axes{};
   double averaged_s = 0.0;  // time the rate is a mean over (white noise falls with it); 0: the nominal period
 };
 

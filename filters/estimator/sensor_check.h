@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fault that a rate alone can show: the sensor repeats its last value.
+// A fault that its values alone can show: the sensor repeats the last one. Asked of what the sensor sent: a
+// correction by something that is alive would hide it.
 #pragma once
 
 #include <array>
@@ -14,11 +15,11 @@ class SensorCheck {
  public:
   // A coarsely quantised sensor repeats itself at rest; so a run counts only when it is ten times longer than
   // any that ended in a new value, and a hundred samples at least.
-  [[nodiscard]] bool stuck(std::size_t axis, double rate_radps) noexcept {
+  [[nodiscard]] bool stuck(std::size_t axis, double value) noexcept {
     Run& run = runs_[axis];
-    if (rate_radps != run.value) {
+    if (value != run.value) {
       if (run.length > run.longest) run.longest = run.length;
-      run.value = rate_radps;
+      run.value = value;
       run.length = 0;
     }
     ++run.length;

@@ -279,6 +279,55 @@ TEST(SignalChain, ALinearEffectIsTakenOutOfRateAndAngle) {
   EXPECT_NEAR(out.angle_rad[0], 0.02, 1e-14);
 }
 
+// A correction by a channel that is alive makes every compensated value another. What repeats itself is told
+// of what the sensor sent: from the 101st on, without a model and with one, before the noise is known and
+// after; the flag ends with the first other value.
+TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
+  ChainSettings plain = settings();
+  plain.channels = {"accel_x_mps2"};
+  plain.channel_max_age_s = {0.0};
+  plain.facts.frame_channels = plain.facts.channels = 1;
+  auto model = std::make_shared<Model>();
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "accel_x_mps2";
+  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/(m/s^2)"}};
+  model->effects.push_back(effect);
+  ChainSettings with = plain, learning = plain;
+  with.model = learning.model = model;
+  learning.filter = FilterChoice{};
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> normal;
+  for (const SensorKind kind : {SensorKind::rate, SensorKind::delta_angle, SensorKind::angle})
+    for (ChainSettings* const each : {&plain, &with, &learning}) {
+      each->facts.kind = kind;
+      SignalChain chain(std::make_unique<ChainParts>(*each));
+      Incrementer incrementer(each->facts);
+      Increment increment;
+      ChainOutput out;
+      int flagged = 0;
+      for (int i = 0; i < 1200; ++i) {
+        Reading reading;
+        reading.sequence = static_cast<std::uint32_t>(i % 128);
+        reading.has_sequence = true;
+        // A device clock that trembles makes another rate of the same turn.
+        reading.device_time_ns = std::int64_t{1'000'000} * i + (i % 7) * 1000;
+        reading.valid_axes = 1;
+        reading.fresh_channels = 1;
+        reading.channel[0] = 0.1 * normal(engine);
+        const bool stands = i >= 400 && i < 1000;
+        const double scale = kind == SensorKind::rate ? 1.0 : kPeriod_s;
+        reading.value[0] = scale * (stands ? 0.1 : 0.1 + 1e-4 * normal(engine));
+        incrementer.next(reading, increment);
+        chain.process(increment, out);
+        const bool stuck = (out.estimate.flags & kStuck) != 0;
+        ASSERT_EQ(stuck, i >= 500 && i < 1000) << i;
+        flagged += stuck ? 1 : 0;
+      }
+      EXPECT_EQ(flagged, 500);
+    }
+}
+
 // A tenth of a day at 5 kHz, to a tenth of what a day may lose. The terms are whole multiples of 2^-70, so
 // that 128-bit integers sum them exactly.
 TEST(ExactSum, ATenthOfADayAt5kHzIsExactTo1e10) {
