@@ -25,6 +25,7 @@ CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::v
   for (std::uint32_t i = 0; i < description.environments; ++i)
     capture_.channels.push_back({description.environment[i], {}});
   for (const std::string& name : outside) capture_.channels.push_back({name, {}});
+  for (const CaptureColumn& channel : capture_.channels) channel_range_.push_back(measurable(channel.name));
 }
 
 void CaptureBuilder::choose_clock(const ifog_sample& sample) {
@@ -118,6 +119,12 @@ void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double
   }
 }
 
+double CaptureBuilder::believable(std::size_t channel, double value) {
+  if (std::isnan(value) || channel_range_[channel].holds(value)) return value;
+  ++impossible_;
+  return kMissing;
+}
+
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
   const bool first = taken_ + capture_.size() == 0;
   if (first) choose_clock(sample);
@@ -149,11 +156,11 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   last_s_ = now;
   add_rates(sample, elapsed, period);
   for (std::uint32_t i = 0; i < description_.environments; ++i)
-    capture_.channels[i].values.push_back((sample.environment_fresh & 1U << i) != 0 ? sample.environment[i]
-                                                                                    : kMissing);
+    capture_.channels[i].values.push_back(
+        believable(i, (sample.environment_fresh & 1U << i) != 0 ? sample.environment[i] : kMissing));
   for (std::size_t i = description_.environments; i < capture_.channels.size(); ++i) {
     const std::size_t o = i - description_.environments;
-    capture_.channels[i].values.push_back(o < outside.size() ? outside[o] : kMissing);
+    capture_.channels[i].values.push_back(believable(i, o < outside.size() ? outside[o] : kMissing));
   }
   last_ = sample;
 }

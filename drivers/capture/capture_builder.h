@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "drivers/capture/measurable.h"
 #include "drivers/capture/row_sink.h"
 #include "drivers/ifog/device_count.h"
 #include "drivers/ifog/driver.h"
@@ -22,7 +23,7 @@ namespace ifog {
 //   - the number of the sample over the nominal rate.
 // A delta angle becomes a rate over its own sample period, also behind a gap; an angle over the time since
 // the sample before, so the first sample has none. Axes the device marks invalid and environment values that
-// did not come with the sample are NaN.
+// did not come with the sample, or are beyond what their unit can be (measurable.h), are NaN.
 class CaptureBuilder {
  public:
   // outside: names of channels that did not come in the frames.
@@ -48,6 +49,7 @@ class CaptureBuilder {
   // Leaves out axes and channels that never had a value. Throws std::runtime_error if nothing is left.
   Capture finish();
 
+  [[nodiscard]] std::size_t impossible() const { return impossible_; }  // values left out so
   [[nodiscard]] std::size_t missing() const { return missing_; }  // samples the counter says were not there
   // Samples left out because they came twice, or after one that follows.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
@@ -59,6 +61,7 @@ class CaptureBuilder {
   [[nodiscard]] DeviceCount::Frame frame_of(const ifog_sample& sample) const;
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
   void begin_anew(const ifog_sample& sample);
+  double believable(std::size_t channel, double value);
   void refuse(double now) const;
   void add_rates(const ifog_sample& sample, double elapsed, double period);
 
@@ -69,7 +72,8 @@ class CaptureBuilder {
   DeviceCount counter_;      // as the daemon counts
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
-  std::size_t missing_ = 0, repeated_ = 0;
+  std::size_t missing_ = 0, repeated_ = 0, impossible_ = 0;
+  std::vector<Measurable> channel_range_;
   std::size_t taken_ = 0;  // rows, by next_rows()
   double last_s_ = 0.0;    // time of the last row
   bool broken_ = false, restarts_ = false;

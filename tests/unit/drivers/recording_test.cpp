@@ -209,6 +209,30 @@ TEST_F(Recording, TimeThatStandsStillIsRefused) {
   EXPECT_THROW(timeless.add(sample), std::runtime_error);
 }
 
+// As of a capture's own cells: no temperature is below absolute zero.
+TEST_F(Recording, AChannelsValueThatCannotBeIsMissingAndCounted) {
+  ifog_description d{};
+  d.axes = 1;
+  d.nominal_rate_hz = 100.0;
+  d.environments = 1;
+  std::string("temperature_degC").copy(d.environment[0], sizeof d.environment[0] - 1);
+  ifog::CaptureBuilder builder(d, {"coil_degC"});
+  ifog_sample sample{};
+  sample.valid_axes = 1;
+  sample.environment_fresh = 1;
+  for (const double value : {20.0, -1000.0, -270.0}) {
+    sample.environment[0] = value;
+    builder.add(sample, std::vector{value - 5.0});
+  }
+  EXPECT_EQ(builder.impossible(), 3U);
+  const Capture made = builder.finish();
+  EXPECT_EQ(made.channels.at(0).values[0], 20.0);
+  EXPECT_TRUE(std::isnan(made.channels.at(0).values[1]));
+  EXPECT_EQ(made.channels.at(0).values[2], -270.0);
+  EXPECT_EQ(made.channels.at(1).values[0], 15.0);
+  EXPECT_TRUE(std::isnan(made.channels.at(1).values[1]) && std::isnan(made.channels.at(1).values[2]));
+}
+
 TEST_F(Recording, FileKindsByNameAndContent) {
   using ifog::file_kind;
   using ifog::FileKind;

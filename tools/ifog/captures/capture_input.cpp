@@ -155,6 +155,9 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
   if (builder.repeated() != 0)
     warn("%s: %zu samples came twice or after one that follows, and are left out\n", path.c_str(),
          builder.repeated());
+  if (builder.impossible() != 0)
+    warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", path.c_str(),
+         builder.impossible());
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {
