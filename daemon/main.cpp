@@ -6,25 +6,22 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
+#include <span>
 #include <string>
 
 #include "daemon/config/config.h"
 #include "daemon/housekeeping/housekeeping.h"
 #include "daemon/housekeeping/log.h"
+#include "daemon/housekeeping/signals.h"
+#include "daemon/publish/publisher.h"
 #include "drivers/ifog/driver.h"
 
 namespace {
-
-// All threads inherit it: signals come to housekeeping alone, as bytes of a file descriptor.
-void block_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
-}
 
 // A standard stream that was closed would be the number of the next thing opened, and the log would go into a
 // gyro's serial line. And whoever reads the log may go away without taking the daemon along.
@@ -34,9 +31,21 @@ void keep_standard_streams() {
   signal(SIGPIPE, SIG_IGN);
 }
 
+// Of --check, which opens nothing.
+class NowherePublisher final : public ifog::Publisher {
+ public:
+  bool publish(const char*, std::span<const std::uint8_t>) noexcept override { return false; }
+};
+
+std::unique_ptr<ifog::Publisher> publish_nowhere(const std::string&) {
+  return std::make_unique<NowherePublisher>();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  // First of all: a reload or an end that is asked for while the configuration is read takes place after it.
+  ifog::block_signals();
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
   app.set_version_flag("--version",
@@ -50,12 +59,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  block_signals();
   try {
     ifog::Config config = ifog::read_config(file);
     ifog::set_up_log(config.log_level);
     const std::size_t sensors = config.sensors.size();
-    ifog::Housekeeping housekeeping(std::move(config));
+    ifog::Housekeeping housekeeping(std::move(config), check ? publish_nowhere : ifog::make_lcm_publisher);
     if (check) {
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
       return 0;

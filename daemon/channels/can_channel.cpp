@@ -29,6 +29,16 @@ CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
   signal_ = static_cast<std::size_t>(found.front().signal - found.front().message->signals.data());
 }
 
+CanChannel can_channel(const ChannelConfig& channel) {
+  try {
+    return {channel.dbc, channel.signal};
+  } catch (const std::exception& error) {
+    const bool of_signal = std::string(error.what()).find(": signal \"") != std::string::npos ||
+                           std::string(error.what()).find(": no signal \"") != std::string::npos;
+    throw KeyError("channel." + channel.name + (of_signal ? ".signal" : ".dbc"), error.what());
+  }
+}
+
 bool CanChannel::decode(const ifog_can_frame& frame, double& value) const noexcept {
   if (frame.id != message_.id || ((frame.flags & IFOG_CAN_EXTENDED) != 0) != message_.extended) return false;
   const dbc::Signal& signal = message_.signals[signal_];

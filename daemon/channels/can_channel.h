@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "daemon/config/config.h"
 #include "drivers/dbc/database.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/transport/file.h"
@@ -24,5 +25,8 @@ class CanChannel {
   dbc::Message message_;
   std::size_t signal_ = 0;
 };
+
+// As configured; throws KeyError, of the key in the sensor that the complaint is due to.
+CanChannel can_channel(const ChannelConfig& channel);
 
 }  // namespace ifog

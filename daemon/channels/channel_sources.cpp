@@ -1,30 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/channels/channel_sources.h"
 
-#include <fcntl.h>
 #include <lcm/lcm.h>
-#include <net/if.h>
 #include <poll.h>
 #include <sys/eventfd.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "daemon/channels/can_channel.h"
 #include "daemon/channels/lcm_field.h"
+#include "daemon/channels/number_file.h"
+#include "daemon/sensor/facts.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
 #include "drivers/transport/clock.h"
@@ -39,7 +35,8 @@ constexpr auto kTurn = std::chrono::milliseconds(250);
 class Entrance {
  public:
   explicit Entrance(ChannelSources::Wanted wanted)
-      : wanted_(std::move(wanted)), plausible_(wanted_.config.limits, kMostChannel) {}
+      : wanted_(std::move(wanted)),
+        plausible_(channel_limits(wanted_.config.name, wanted_.config.limits), kMostChannel) {}
   [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
   [[nodiscard]] const std::shared_ptr<ChannelTable>& table() const { return wanted_.table; }
 
@@ -48,33 +45,23 @@ class Entrance {
     if (plausible_.take(value))
       wanted_.table->set(wanted_.index, value, time_ns);
     else
-      refuse();
+      refuse({.kind = ChannelFault::Kind::impossible});
   }
   // What came is no value.
-  void refuse() { wanted_.table->refuse(); }
+  void refuse(const ChannelFault& fault) { wanted_.table->refuse(wanted_.index, fault); }
+  // Counted where something came that is no number; a file that is not there, or empty, has brought nothing.
+  void miss(const ChannelFault& fault) {
+    if (fault.kind == ChannelFault::Kind::no_number)
+      refuse(fault);
+    else
+      wanted_.table->miss(wanted_.index, fault);
+  }
 
  private:
   ChannelSources::Wanted wanted_;
   PlausibleValue plausible_;
 };
 
-// Never waits: a FIFO in the place of the file would hold up every other channel, and the end of the daemon.
-std::optional<double> read_number(const std::string& path) {
-  const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (fd < 0) return std::nullopt;
-  std::array<char, 128> text{};
-  struct stat info {};
-  const bool regular = fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
-  const ssize_t length = regular ? ::read(fd, text.data(), text.size()) : -1;
-  close(fd);
-  if (length <= 0) return std::nullopt;
-  const char *at = text.data(), *const end = at + length;
-  while (at != end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '+')) ++at;
-  double number = 0.0;
-  return std::from_chars(at, end, number).ec == std::errc() ? std::optional(number) : std::nullopt;
-}
-
-// A file that holds one number: hwmon, thermal zones, IIO.
 class FileChannel {
  public:
   explicit FileChannel(ChannelSources::Wanted wanted) : in_(std::move(wanted)) {}
@@ -82,8 +69,11 @@ class FileChannel {
   [[nodiscard]] std::int64_t due_ns() const { return due_ns_; }
   void read(std::int64_t now_ns) {
     due_ns_ = now_ns + static_cast<std::int64_t>(in_.config().period_s * 1e9);
-    // What cannot be read grows old, and is flagged as stale: no other message is needed.
-    if (const auto number = read_number(in_.config().path)) in_.put(*number, arrival_clock_ns());
+    const auto read = read_number_file(in_.config().path);
+    if (const double* const number = std::get_if<double>(&read))
+      in_.put(*number, arrival_clock_ns());
+    else
+      in_.miss(std::get<ChannelFault>(read));
   }
 
  private:
@@ -113,7 +103,10 @@ class LcmChannel {
     std::int64_t utime = 0;
     const std::span bytes(static_cast<const std::uint8_t*>(message.data), message.data_size);
     if (!field_.read(bytes, value, utime)) {
-      if (!is_message(bytes)) in_.refuse();
+      if (is_message(bytes))
+        in_.miss({.kind = ChannelFault::Kind::no_field});
+      else
+        in_.refuse({.kind = ChannelFault::Kind::no_message});
       return;
     }
     // What was measured in the future was measured now: else it would never grow old.
@@ -161,6 +154,7 @@ struct ChannelSources::Impl {
   std::vector<FileChannel> files;
   std::vector<LcmChannel> messages;
   std::map<std::string, CanGroup> buses;
+  std::string lcm_url;
   lcm_t* lcm = nullptr;
   int stop_event = -1;
   std::vector<std::thread> threads;
@@ -173,6 +167,18 @@ struct ChannelSources::Impl {
   static void received(const lcm_recv_buf_t* message, const char* channel, void* user) {
     for (LcmChannel& one : static_cast<Impl*>(user)->messages)
       if (one.lcm_channel() == channel) one.take(*message);
+  }
+
+  // Throws std::runtime_error: LCM cannot use the URL now.
+  void subscribe() {
+    lcm = lcm_create(lcm_url.c_str());
+    if (lcm == nullptr)
+      throw std::runtime_error("lcm_url = \"" + printable(lcm_url) + "\": LCM cannot use it");
+    std::vector<std::string> names;
+    for (const LcmChannel& one : messages) names.push_back(one.lcm_channel());
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    for (const std::string& name : names) lcm_subscribe(lcm, as_written(name).c_str(), &Impl::received, this);
   }
 
   void listen() {
@@ -195,6 +201,7 @@ struct ChannelSources::Impl {
 ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url,
                                const CanOpener& make_can)
     : impl_(std::make_unique<Impl>()) {
+  impl_->lcm_url = lcm_url;
   for (Wanted& one : wanted) {
     switch (one.config.source) {
       case ChannelConfig::Source::frame:
@@ -206,7 +213,7 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
         impl_->messages.emplace_back(std::move(one));
         break;
       case ChannelConfig::Source::can: {
-        CanChannel channel(one.config.dbc, one.config.signal);
+        CanChannel channel = can_channel(one.config);
         auto& on_the_bus = impl_->buses[one.config.interface].channels;
         on_the_bus.emplace_back(Entrance(std::move(one)), std::move(channel));
         break;
@@ -219,41 +226,12 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
     for (const auto& [one, channel] : bus.channels) settings.ids.push_back(channel.id());
     bus.transport = make_can(settings);
   }
-  if (!impl_->messages.empty()) {
-    impl_->lcm = lcm_create(lcm_url.c_str());
-    if (impl_->lcm == nullptr)
-      throw std::runtime_error("lcm_url = \"" + printable(lcm_url) + "\": LCM cannot use it");
-    std::vector<std::string> names;
-    for (const LcmChannel& one : impl_->messages) names.push_back(one.lcm_channel());
-    std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    for (const std::string& name : names)
-      lcm_subscribe(impl_->lcm, as_written(name).c_str(), &Impl::received, impl_.get());
-  }
 }
 
 ChannelSources::~ChannelSources() { stop(); }
 
-std::vector<std::string> ChannelSources::absent() const {
-  std::vector<std::string> out;
-  for (const FileChannel& file : impl_->files) {
-    const ChannelConfig& channel = file.config();
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(channel.path, error);
-    if (!std::filesystem::is_regular_file(status))
-      out.push_back("sensor.channel \"" + printable(channel.name) + "\": " + printable(channel.path) +
-                    (std::filesystem::exists(status) ? ": is no regular file" : ": is not there") +
-                    ", expected a file that holds one number; the channel is stale");
-  }
-  for (const auto& [interface, bus] : impl_->buses)
-    if (if_nametoindex(interface.c_str()) == 0)
-      for (const auto& [in, channel] : bus.channels)
-        out.push_back("sensor.channel \"" + printable(in.config().name) + "\": there is no interface \"" +
-                      printable(interface) + "\" now; the channel is stale until it comes");
-  return out;
-}
-
 void ChannelSources::start() {
+  if (!impl_->messages.empty()) impl_->subscribe();
   if (!impl_->files.empty() || !impl_->messages.empty()) {
     impl_->stop_event = eventfd(0, EFD_CLOEXEC);
     if (impl_->stop_event < 0) throw std::runtime_error("no eventfd left");

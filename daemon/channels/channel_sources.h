@@ -24,14 +24,15 @@ class ChannelSources {
 
   using CanOpener = std::function<std::unique_ptr<Transport>(const CanSettings&)>;
 
-  // Throws std::runtime_error with one line: a DBC file or a signal that is not there, a field nobody knows.
+  // Opens nothing. Throws std::runtime_error with one line: a DBC file or a signal that is not there, a field
+  // nobody knows.
   // `make_can` is there for tests, on machines without CAN.
   ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url,
                  const CanOpener& make_can = make_can_transport);
   ~ChannelSources();  // stops
 
-  // What is not there now, one line each: it may come yet, and until then its channels are stale.
-  [[nodiscard]] std::vector<std::string> absent() const;
+  // Opens what there is; what is not may come yet, and until then its channels are stale. Throws
+  // std::runtime_error with one line when LCM cannot be had.
   void start();
   void stop();
 

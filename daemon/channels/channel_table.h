@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "daemon/channels/channel_fault.h"
 #include "drivers/flight/channel_value.h"
 
 namespace ifog {
@@ -22,9 +23,20 @@ class ChannelTable {
     Entry& entry = entries_[static_cast<std::size_t>(channel)];
     entry.value.store(value, std::memory_order_relaxed);
     entry.time_ns.store(time_ns, std::memory_order_release);
+    entry.fault.store({}, std::memory_order_relaxed);
   }
-  // A value came that cannot be: the one before stays, and grows old.
-  void refuse() noexcept { refused_.fetch_add(1, std::memory_order_relaxed); }
+  // What came is no value, or one that cannot be: the one before stays, and grows old.
+  void refuse(int channel, ChannelFault fault) noexcept {
+    miss(channel, fault);
+    refused_.fetch_add(1, std::memory_order_relaxed);
+  }
+  // Nothing came, for that reason; it stands until another does.
+  void miss(int channel, ChannelFault fault) noexcept {
+    entries_[static_cast<std::size_t>(channel)].fault.store(fault, std::memory_order_relaxed);
+  }
+  [[nodiscard]] ChannelFault fault(int channel) const noexcept {
+    return entries_[static_cast<std::size_t>(channel)].fault.load(std::memory_order_relaxed);
+  }
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
   // So many messages of a source of these channels were lost before they could be read.
   void lose(std::uint64_t messages) noexcept { drops_.fetch_add(messages, std::memory_order_relaxed); }
@@ -44,9 +56,11 @@ class ChannelTable {
   struct Entry {
     std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};
     std::atomic<std::int64_t> time_ns{0};
+    std::atomic<ChannelFault> fault{};  // of the last that came; silent after a good value
   };
   std::unique_ptr<Entry[]> entries_;
   std::atomic<std::uint64_t> refused_{0}, drops_{0};
+  static_assert(std::atomic<ChannelFault>::is_always_lock_free);
 };
 
 }  // namespace ifog

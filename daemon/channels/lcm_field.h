@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "daemon/config/lcm_field_name.h"
+
 namespace ifog {
 
 // The bytes are one whole message of the three types that carry fields.
@@ -28,8 +30,7 @@ class LcmField {
   bool read_rate(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
   bool read_status(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
 
-  std::string name_, within_;  // NAME, what stands in brackets
-  int axis_ = -1;              // −1: none in brackets
+  LcmFieldName field_;
 };
 
 }  // namespace ifog

@@ -9,7 +9,12 @@
 #include <sstream>
 #include <utility>
 
+#include "daemon/config/channel_reader.h"
+#include "daemon/config/lcm_url.h"
+#include "daemon/config/reading_context.h"
+#include "daemon/config/sensor_pairs.h"
 #include "daemon/config/table_reader.h"
+#include "daemon/config/transport_reader.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/chain/plausibility.h"
@@ -20,31 +25,26 @@
 namespace ifog {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Range kNotNegative{0.0, kInfinity};
-
-template <typename T, typename U>
-void take(std::optional<U>&& given, T& setting) {
-  if (given) setting = static_cast<T>(std::move(*given));
-}
-
-// What the readers of all tables share.
-struct Context {
-  std::string file;
-  std::filesystem::path folder;
-  std::vector<std::string> errors;
-
-  // "-" is the standard input, not a file.
-  [[nodiscard]] std::string absolute(const std::string& path) const {
-    if (path.empty() || path == "-") return path;
-    return (folder / path).lexically_normal().string();
-  }
-};
-
 std::string as_text(const toml::table& table) {
   std::ostringstream text;
   text << table;
   return text.str();
+}
+
+// Of all keys, those of nested tables, too; a channel's by its name.
+void note_lines(const toml::table& table, const std::string& path, KeyLines& out) {
+  for (const auto& [key, node] : table) {
+    const std::string here = path + std::string(key.str());
+    out.emplace(here, node.source().begin.line);
+    if (const toml::table* const inner = node.as_table()) note_lines(*inner, here + ".", out);
+    const toml::array* const array = node.as_array();
+    for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
+      if (const toml::table* const inner = array->get(i)->as_table()) {
+        const std::string name = here + "." + inner->at_path("name").value_or(std::string());
+        out.emplace(name, inner->source().begin.line);
+        note_lines(*inner, name + ".", out);
+      }
+  }
 }
 
 bool good_name(const std::string& name) {
@@ -54,88 +54,8 @@ bool good_name(const std::string& name) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
-SerialSettings read_serial(TableReader& in) {
-  SerialSettings out;
-  out.device = in.required_text("device", "the path of a serial device, \"/dev/ttyUSB0\"");
-  take(in.integer("baud", 50, 20'000'000), out.baud);
-  take(in.integer("data_bits", 5, 8), out.data_bits);
-  if (const auto parity = in.choice("parity", {"none", "even", "odd"}))
-    out.parity = *parity == "even"  ? SerialSettings::Parity::even
-                 : *parity == "odd" ? SerialSettings::Parity::odd
-                                    : SerialSettings::Parity::none;
-  take(in.integer("stop_bits", 1, 2), out.stop_bits);
-  take(in.integer("baud_base", 1, 100'000'000), out.baud_base);
-  return out;
-}
-
-// What concerns more keys than one is found by the transport itself; a key that is wrong by itself was told.
-void check_network(TableReader& in, const std::string& complaint, std::size_t told, const Context& context) {
-  if (complaint.empty() || context.errors.size() != told) return;
-  const std::string key = complaint.substr(0, complaint.find_first_of(" :"));
-  in.complain(key, complaint.substr(key.size()));
-}
-
-UdpSettings read_udp(TableReader& in, const Context& context) {
-  const std::size_t told = context.errors.size();
-  UdpSettings out;
-  take(in.required_integer("port", 1, 65535), out.port);
-  take(in.text("bind"), out.bind);
-  take(in.text("group"), out.group);
-  take(in.text("interface"), out.interface);
-  take(in.text("host"), out.host);
-  check_network(in, udp_complaint(out), told, context);
-  return out;
-}
-
-TcpSettings read_tcp(TableReader& in, const Context& context) {
-  const std::size_t told = context.errors.size();
-  TcpSettings out;
-  out.host = in.required_text("host", "the sensor's numeric address, \"192.168.1.20\"");
-  take(in.required_integer("port", 1, 65535), out.port);
-  check_network(in, tcp_complaint(out), told, context);
-  return out;
-}
-
-TransportConfig read_transport(const toml::table& table, const std::string& where, Context& context) {
-  TableReader in(table, where, context.file, context.errors);
-  TransportConfig out;
-  const auto type = in.choice("type", {"serial", "can", "udp", "tcp", "file"});
-  if (!type) {
-    if (!in.has("type"))
-      in.complain("type", ": missing; expected \"serial\" | \"can\" | \"udp\" | \"tcp\" | \"file\"");
-    return out;
-  }
-  if (*type == "serial") {
-    out.kind = TransportConfig::Kind::serial;
-    out.serial = read_serial(in);
-  } else if (*type == "can") {
-    out.kind = TransportConfig::Kind::can;
-    out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
-  } else if (*type == "udp") {
-    out.kind = TransportConfig::Kind::udp;
-    out.udp = read_udp(in, context);
-  } else if (*type == "tcp") {
-    out.kind = TransportConfig::Kind::tcp;
-    out.tcp = read_tcp(in, context);
-  } else {
-    out.kind = TransportConfig::Kind::file;
-    out.path = context.absolute(in.required_text("path", "a file or FIFO, \"-\" for the standard input"));
-    if (const auto format = in.choice("format", {"bytes", "candump"})) out.candump = *format == "candump";
-    if (const auto pace = in.choice("pace", {"free", "recorded"})) out.recorded = *pace == "recorded";
-    take(in.number("speed", {1e-3, 1e6}), out.speed);
-    take(in.number("bytes_per_second", {1.0, 1e9}), out.bytes_per_second);
-    take(in.integer("block_bytes", 1, 1'000'000), out.block_bytes);
-    take(in.boolean("await_writer"), out.await_writer);
-    take(in.text("interface"), out.interface);
-    if (out.recorded && !out.candump && out.bytes_per_second <= 0.0)
-      in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second beside it");
-  }
-  in.refuse_the_rest();
-  return out;
-}
-
 FilterChoice read_filter(const toml::table& table, const std::string& where, double& start_up_s,
-                         Context& context) {
+                         ReadingContext& context) {
   TableReader in(table, where, context.file, context.errors);
   FilterChoice out;
   for (const FilterSetting& setting : filter_table()) in.filter_setting(setting, out);
@@ -144,7 +64,7 @@ FilterChoice read_filter(const toml::table& table, const std::string& where, dou
   return out;
 }
 
-RealtimeConfig read_realtime(const toml::table& table, const std::string& where, Context& context) {
+RealtimeConfig read_realtime(const toml::table& table, const std::string& where, ReadingContext& context) {
   TableReader in(table, where, context.file, context.errors);
   RealtimeConfig out;
   take(in.integer("reader_priority", 0, 99), out.reader_priority);
@@ -158,17 +78,19 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
   return out;
 }
 
-RecordConfig read_record(const toml::table& table, const std::string& where, Context& context) {
+RecordConfig read_record(const toml::table& table, const std::string& where, ReadingContext& context) {
   TableReader in(table, where, context.file, context.errors);
   RecordConfig out;
+  const std::size_t told = context.errors.size();
   out.folder = context.absolute(in.required_text("folder", "a folder, \"/var/lib/ifogd/record\""));
   take(in.integer("bytes", 1'000'000, std::numeric_limits<std::int64_t>::max()), out.bytes);
   take(in.number("days", {1e-3, 1e5}), out.days);
   take(in.integer("file_bytes", 100'000, 1'000'000'000), out.file_bytes);
   take(in.number("file_s", {1.0, 1e6}), out.file_s);
   take(in.integer("buffer_bytes", 262'144, 1'000'000'000), out.buffer_bytes);
-  // With fewer than four files, removing the oldest would remove most of what there is.
-  if (out.bytes / 4 < out.file_bytes)
+  // With fewer than four files, removing the oldest would remove most of what there is. A number that is
+  // wrong by itself was told.
+  if (context.errors.size() == told && out.bytes / 4 < out.file_bytes)
     in.complain(in.has("bytes") ? "bytes" : "file_bytes",
                 ": bytes = " + std::to_string(out.bytes) + " with file_bytes = " +
                     std::to_string(out.file_bytes) + ": expected room for at least four files");
@@ -176,56 +98,11 @@ RecordConfig read_record(const toml::table& table, const std::string& where, Con
   return out;
 }
 
-Limits read_limits(TableReader& in, double most) {
-  Limits out;
-  take(in.number("minimum", {-most, most}), out.minimum);
-  take(in.number("maximum", {-most, most}), out.maximum);
-  take(in.number("max_step", {0.0, 2.0 * most}), out.max_step);
-  if (!(out.minimum < out.maximum)) in.complain("maximum", ": not above minimum; expected minimum < maximum");
-  return out;
-}
-
-ChannelConfig read_channel(const toml::table& table, const std::string& where, Context& context) {
-  TableReader in(table, where, context.file, context.errors);
-  ChannelConfig out;
-  out.name = in.required_text("name", "a channel's name with its unit, \"temperature_degC\"");
-  take(in.number("max_age_s", kNotNegative), out.max_age_s);
-  out.limits = read_limits(in, kMostChannel);
-  const auto source = in.choice("source", {"frame", "can", "lcm", "file"});
-  if (!source) {
-    if (!in.has("source"))
-      in.complain("source", ": missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\"");
-    return out;
-  }
-  if (*source == "frame") {
-    out.source = ChannelConfig::Source::frame;
-  } else {
-    take(in.number("scale", {-kMostChannel, kMostChannel}), out.scale);
-    take(in.number("offset", {-kMostChannel, kMostChannel}), out.offset);
-  }
-  if (*source == "can") {
-    out.source = ChannelConfig::Source::can;
-    out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
-    out.dbc = context.absolute(in.required_text("dbc", "a DBC file"));
-    out.signal = in.required_text("signal", "a signal of the DBC file, \"SIGNAL\" or \"MESSAGE.SIGNAL\"");
-  } else if (*source == "lcm") {
-    out.source = ChannelConfig::Source::lcm;
-    out.lcm_channel = in.required_text(
-        "lcm_channel", "an LCM channel that carries ifog.channel_t, ifog.rate_t or ifog.status_t");
-    out.field = in.text("field").value_or("");
-  } else if (*source == "file") {
-    out.source = ChannelConfig::Source::file;
-    out.path = context.absolute(in.required_text("path", "a file that holds one number"));
-    take(in.number("period_s", {1e-3, 3600.0}), out.period_s);
-  }
-  in.refuse_the_rest();
-  return out;
-}
-
-SensorConfig read_sensor(const toml::table& table, Context& context) {
+SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
   TableReader in(table, "sensor", context.file, context.errors);
   SensorConfig out;
   out.line = table.source().begin.line;
+  note_lines(table, "", out.lines);
   out.folder = context.folder.string();
   out.name = in.required_text("name", "a name, letters, digits, _ and -");
   if (!out.name.empty() && !good_name(out.name))
@@ -234,7 +111,13 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   out.model = context.absolute(in.text("model").value_or(""));
   take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
   take(in.number("range_radps", {1e-9, kMostRate_radps}), out.range_radps);
-  out.limits = read_limits(in, kMostRate_radps);
+  out.limits = read_limits(in, kMostRate_radps, context);
+  if (out.range_radps > 0.0 && !context.recorded) {
+    if (out.limits.minimum >= out.range_radps)
+      in.complain("minimum", ": expected less than range_radps, or no rate is left");
+    if (out.limits.maximum <= -out.range_radps)
+      in.complain("maximum", ": expected more than -range_radps, or no rate is left");
+  }
   take(in.boolean("imu"), out.imu);
   take(in.boolean("powered_with_computer"), out.powered_with_computer);
   if (const toml::table* const transport = in.table("transport"))
@@ -270,10 +153,15 @@ SensorConfig read_sensor(const toml::table& table, Context& context) {
   return out;
 }
 
-void read_daemon(const toml::table& table, Config& out, Context& context) {
+void read_daemon(const toml::table& table, Config& out, ReadingContext& context) {
   TableReader in(table, "daemon", context.file, context.errors);
   if (const auto folder = in.text("plugin_folder")) out.plugin_folders = {context.absolute(*folder)};
-  take(in.text("lcm_url"), out.lcm_url);
+  note_lines(table, "", out.lines);
+  if (const auto url = in.text("lcm_url")) {
+    out.lcm_url = *url;
+    if (const std::string expected = lcm_url_complaint(*url); !expected.empty())
+      in.complain("lcm_url", " = " + in_quotes(*url) + ": expected " + expected);
+  }
   take(in.choice("log_level", {"debug", "info", "warning", "error"}), out.log_level);
   take(in.boolean("lock_memory"), out.lock_memory);
   if (const auto folder = in.text("state_folder")) out.state_folder = context.absolute(*folder);
@@ -287,6 +175,15 @@ std::string joined(const std::vector<std::string>& lines) {
 }
 
 }  // namespace
+
+std::uint32_t SensorConfig::line_of(std::string_view key) const {
+  for (;;) {
+    if (const auto found = lines.find(key); found != lines.end()) return found->second;
+    const std::size_t end = key.rfind('.');
+    if (end == std::string_view::npos) return line;
+    key = key.substr(0, end);
+  }
+}
 
 std::string SensorConfig::lcm_channel() const {
   std::string out = "IFOG_" + name;
@@ -326,6 +223,7 @@ SensorConfig SensorConfig::reloaded(const SensorConfig& fresh) const {
   out.model = fresh.model;
   out.filter = fresh.filter;
   out.start_up_s = fresh.start_up_s;
+  out.lines = fresh.lines;
   toml::table mine = parse_toml(text, "");
   const toml::table its = parse_toml(fresh.text, "");
   toml::table& sensor = *mine["sensor"][0].as_table();
@@ -346,15 +244,18 @@ std::string Config::restart_for(const Config& other) const {
                     {"state_folder", state_folder == other.state_folder}});
 }
 
-Config parse_config(const std::string& text, const std::string& path) {
+namespace {
+
+Config parse(const std::string& text, const std::string& path, bool recorded) {
   toml::table root;
   try {
     root = parse_toml(text, path);
   } catch (const std::runtime_error& error) {
     throw ConfigError(error.what());
   }
-  Context context;
+  ReadingContext context;
   context.file = path;
+  context.recorded = recorded;
   context.folder = std::filesystem::absolute(path).parent_path();
   Config out;
   out.file = path;
@@ -381,8 +282,19 @@ Config parse_config(const std::string& text, const std::string& path) {
   }
   if (!in.has("sensor")) context.errors.push_back(path + ": no [[sensor]]: expected at least one");
   in.refuse_the_rest();
+  if (!recorded)
+    for (const auto& found : {shared_sources(out), feedback_loops(out)})
+      context.errors.insert(context.errors.end(), found.begin(), found.end());
   if (!context.errors.empty()) throw ConfigError(joined(context.errors));
   return out;
+}
+
+}  // namespace
+
+Config parse_config(const std::string& text, const std::string& path) { return parse(text, path, false); }
+
+Config parse_recorded_config(const std::string& text, const std::string& path) {
+  return parse(text, path, true);
 }
 
 Config read_config(const std::string& path) {

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "drivers/transport/serial_port.h"
@@ -77,6 +80,9 @@ struct RecordConfig {
   bool operator==(const RecordConfig&) const = default;
 };
 
+// Lines of the file by the path of their key.
+using KeyLines = std::map<std::string, std::uint32_t, std::less<>>;
+
 struct SensorConfig {
   std::string name;  // letters, digits, _ and -; LCM channel IFOG_<NAME in capitals>
   std::string driver;
@@ -96,7 +102,10 @@ struct SensorConfig {
   std::vector<ChannelConfig> channels;
   std::string text;        // this sensor alone as a configuration, as it was written
   std::uint32_t line = 0;  // in the file, for messages
+  KeyLines lines;          // "driver", "transport.port", "channel.supply_V.path"
 
+  // The key's line; of a key that is not there that of its table.
+  [[nodiscard]] std::uint32_t line_of(std::string_view key) const;
   [[nodiscard]] std::string lcm_channel() const;  // "IFOG_NAME"
   // Keys and tables in which `other` differs and that only a restart can change: a model, a filter and its
   // start-up are exchanged between two samples, a device or a driver is not. "" for none.
@@ -113,6 +122,7 @@ struct Config {
   std::string state_folder;  // where learned noise is kept; "": the service manager's STATE_DIRECTORY, if any
   bool lock_memory = true;
   std::vector<SensorConfig> sensors;
+  KeyLines lines;  // of the table [daemon]: "lcm_url"
 
   [[nodiscard]] std::string restart_for(const Config& other) const;  // of the table [daemon], likewise
 };
@@ -122,10 +132,18 @@ struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What is wrong with a sensor once its parts are made, with the key it is due to, as in SensorConfig::lines.
+struct KeyError : std::runtime_error {
+  KeyError(std::string at, const std::string& what) : std::runtime_error(what), key(std::move(at)) {}
+  std::string key;
+};
+
 // Throws ConfigError. Relative paths in it (models, DBC files, captures, plugin folders) are relative to the
 // file. A sensor without `model` has the one that was adopted for it, see use_adopted_models().
 Config read_config(const std::string& path);
 Config parse_config(const std::string& text, const std::string& path);
+// As the daemon has once put it into a flight recording: what runs no more is read all the same.
+Config parse_recorded_config(const std::string& text, const std::string& path);
 
 // Gives every sensor without a model the one that is kept for it in the state folder, if any. folder "":
 // none.

@@ -20,6 +20,9 @@ std::string shortest(double value) {
 }
 
 std::string describe(Range range) {
+  if (range.without_least)
+    return "a number > " + shortest(range.least) +
+           (std::isinf(range.most) ? "" : " and <= " + shortest(range.most));
   if (std::isinf(range.most)) {
     if (std::isinf(range.least)) return "a number";
     return "a number >= " + shortest(range.least);
@@ -105,7 +108,8 @@ std::optional<double> TableReader::number(std::string_view key, Range range) {
   if (node == nullptr) return std::nullopt;
   if (node->is_number()) {
     const double value = node->value<double>().value_or(std::nan(""));
-    if (value >= range.least && value <= range.most) return value;
+    const bool enough = range.without_least ? value > range.least : value >= range.least;
+    if (enough && value <= range.most) return value;
   }
   wrong(key, *node, describe(range));
   return std::nullopt;

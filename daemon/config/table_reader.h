@@ -18,7 +18,8 @@
 namespace ifog {
 
 struct Range {
-  double least, most;  // both allowed
+  double least, most;          // both allowed
+  bool without_least = false;  // but the least
 };
 
 class TableReader {

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/housekeeping/housekeeping.h"
 
-#include <poll.h>
 #include <signal.h>
-#include <sys/signalfd.h>
 #include <systemd/sd-daemon.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "daemon/channels/can_channel.h"
+#include "daemon/housekeeping/signals.h"
 #include "daemon/realtime/realtime.h"
 #include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
@@ -31,38 +29,6 @@ constexpr std::uint64_t kWordedPerSecond = 5;  // event lines of one sensor; the
 // A thread that has not come round for this long is stuck; the watchdog then restarts the service.
 constexpr int kStuck_s = 3;
 
-class Signals {
- public:
-  Signals() {
-    sigset_t set;
-    sigemptyset(&set);
-    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
-    fd_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
-    if (fd_ < 0) throw std::runtime_error("no signalfd left");
-  }
-  ~Signals() { close(fd_); }
-  Signals(const Signals&) = delete;
-  Signals& operator=(const Signals&) = delete;
-
-  // The next signal, 0 when none came until `deadline_ns` of the monotonic clock.
-  int wait(std::int64_t deadline_ns) const {
-    const std::int64_t left = std::max<std::int64_t>(0, deadline_ns - monotonic_ns());
-    const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
-    pollfd wanted{fd_, POLLIN, 0};
-    if (ppoll(&wanted, 1, &timeout, nullptr) <= 0) return 0;
-    // All that are there: SIGHUP comes first, and however often it comes, it must not hide an end.
-    std::array<signalfd_siginfo, 4> infos{};
-    const ssize_t bytes = read(fd_, infos.data(), sizeof infos);
-    int signal = 0;
-    for (std::size_t i = 0; bytes > 0 && i < static_cast<std::size_t>(bytes) / sizeof infos[0]; ++i)
-      if (signal == 0 || signal == SIGHUP) signal = static_cast<int>(infos[i].ssi_signo);
-    return signal;
-  }
-
- private:
-  int fd_;
-};
-
 std::vector<std::string> axis_names(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i) out.emplace_back(description.axis[i]);
@@ -76,35 +42,56 @@ const SensorConfig* sensor_named(const Config& config, const std::string& name) 
   return found == config.sensors.end() ? nullptr : &*found;
 }
 
+// A sensor's complaint where its key is.
+std::string told_at(const Config& config, const SensorConfig& sensor, const std::exception& error) {
+  const auto* const keyed = dynamic_cast<const KeyError*>(&error);
+  return config.file + ":" + std::to_string(keyed == nullptr ? sensor.line : sensor.line_of(keyed->key)) +
+         ": sensor \"" + printable(sensor.name) + "\": " + error.what();
+}
+
 }  // namespace
 
-Housekeeping::Housekeeping(Config config) : config_(std::move(config)), log_(make_log("")) {
-  status_publisher_ = make_lcm_publisher(config_.lcm_url);
+Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
+    : config_(std::move(config)), log_(make_log("")) {
+  const auto publisher = [&] {
+    try {
+      return make_publisher(config_.lcm_url);
+    } catch (const std::exception& error) {
+      const auto line = config_.lines.find("lcm_url");
+      throw std::runtime_error(config_.file +
+                               (line == config_.lines.end() ? "" : ":" + std::to_string(line->second)) +
+                               ": daemon." + error.what());
+    }
+  };
+  status_publisher_ = publisher();
   std::vector<ChannelSources::Wanted> wanted;
   std::string errors;
   for (const SensorConfig& sensor : config_.sensors) {
     try {
-      AssembledSensor parts = assemble(sensor, config_, make_lcm_publisher(config_.lcm_url));
+      AssembledSensor parts = assemble(sensor, config_, publisher());
       const ifog_description& description = parts.pipeline->reader().driver().description();
       int index = 0;
-      for (const ChannelConfig& channel : outside_channels(sensor))
+      for (const ChannelConfig& channel : outside_channels(sensor)) {
+        if (channel.source == ChannelConfig::Source::can) (void)can_channel(channel);
         wanted.push_back({channel, parts.outside, index++});
+      }
       StatusReport report(sensor.name, parts.channels, axis_names(description),
                           parts.pipeline->plan().facts.nominal_rate_hz);
       sensors_.push_back(std::make_unique<Sensor>(Sensor{.config = sensor,
                                                          .parts = std::move(parts),
                                                          .report = std::move(report),
-                                                         .log = make_log(sensor.name)}));
+                                                         .log = make_log(sensor.name),
+                                                         .channels = ChannelWatch(sensor)}));
+      for (const std::string& absent : sensors_.back()->channels.absent())
+        sensors_.back()->log->warn("{}", absent);
       for (const std::string& warning : sensors_.back()->parts.pipeline->reader().driver().warnings())
         sensors_.back()->log->warn("{}", warning);
     } catch (const std::exception& error) {
-      errors += (errors.empty() ? "" : "\n") + config_.file + ":" + std::to_string(sensor.line) +
-                ": sensor \"" + printable(sensor.name) + "\": " + error.what();
+      errors += (errors.empty() ? "" : "\n") + told_at(config_, sensor, error);
     }
   }
   if (!errors.empty()) throw ConfigError(errors);
   sources_ = std::make_unique<ChannelSources>(std::move(wanted), config_.lcm_url);
-  for (const std::string& absent : sources_->absent()) log_->warn("{}", absent);
 }
 
 Housekeeping::~Housekeeping() = default;
@@ -116,7 +103,7 @@ bool Housekeeping::open_all() {
   for (const auto& sensor : sensors_) {
     try {
       sensor->parts.pipeline->open();
-      any = true;
+      any = sensor->open = true;
     } catch (const std::exception& error) {
       sensor->log->error("{}", error.what());
     }
@@ -140,9 +127,9 @@ void Housekeeping::start_all() {
           (sensor->parts.recorder != nullptr ? "three" : "two") + " (TasksMax=, ulimit -u)");
     }
     const PipelinePlan& plan = sensor->parts.pipeline->plan();
-    sensor->log->info("reading {} at {} Hz, publishing on {}",
-                      sensor->parts.pipeline->reader().transport().name(), plan.facts.nominal_rate_hz,
-                      plan.lcm_channel);
+    const Transport& transport = sensor->parts.pipeline->reader().transport();
+    sensor->log->info("{} {} at {} Hz, publishing on {}", sensor->open ? "reading" : "trying again to open",
+                      transport.name(), plan.facts.nominal_rate_hz, plan.lcm_channel);
   }
   sources_->start();
 }
@@ -203,6 +190,8 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (!fault_worded) sensor.log->warn("{}", message.fault);
   sensor.fault = message.fault;
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
+  for (const ChannelWatch::News& news : sensor.channels.look(message, *sensor.parts.outside))
+    sensor.log->log(news.good ? spdlog::level::info : spdlog::level::warn, "{}", news.words);
   if (const std::string vain = sensor.report.nothing_of_it(); !vain.empty())
     sensor.log->warn("{}: are driver {} and its options those of the device? (ifog drivers {})", vain,
                      sensor.config.driver, sensor.config.driver);
@@ -266,13 +255,13 @@ void Housekeeping::reload() {
           config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
       settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
       settings.powered_ns = powered_ns(config);
-      auto parts = std::make_unique<ChainParts>(settings);
+      std::unique_ptr<ChainParts> parts = make_chain_parts(config, settings);
       const bool another = config.text != sensor->config.text ||
                            parts->model_identity() != std::string(sensor->snapshot.model.data());
       renewed.push_back({sensor.get(), std::move(config), std::move(parts),
                          sensor->parts.noise.text(settings.learned), another});
     } catch (const std::exception& error) {
-      errors.push_back("sensor \"" + printable(config.name) + "\": " + error.what());
+      errors.push_back(told_at(fresh, *found, error));
     }
   }
   for (const std::string& error : errors) log_->error("{}", error);

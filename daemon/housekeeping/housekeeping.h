@@ -4,11 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "daemon/channels/channel_sources.h"
+#include "daemon/channels/channel_watch.h"
 #include "daemon/config/config.h"
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
@@ -21,7 +23,9 @@ class Housekeeping {
  public:
   // Throws ConfigError (a sensor that cannot be put together) or std::runtime_error (LCM). SIGTERM, SIGINT
   // and SIGHUP must be blocked in the calling thread, so that all threads block them.
-  explicit Housekeeping(Config config);
+  // It opens nothing but what `make_publisher` does.
+  using PublisherMaker = std::function<std::unique_ptr<Publisher>(const std::string& lcm_url)>;
+  explicit Housekeeping(Config config, const PublisherMaker& make_publisher = make_lcm_publisher);
   ~Housekeeping();
 
   // Until SIGTERM, SIGINT or the end of all files. 0, or 1 when no sensor can run or a file could not be
@@ -34,7 +38,9 @@ class Housekeeping {
     AssembledSensor parts;
     StatusReport report;
     std::shared_ptr<spdlog::logger> log;
+    ChannelWatch channels;
     FilterSnapshot snapshot{};
+    bool open = false;     // at start-up; else it is tried again
     bool answered = true;  // the filter thread answered the last question
     int unanswered = 0;    // seconds since it did
     std::uint64_t reader_turns = 0;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/transport.h"
 
@@ -19,7 +20,8 @@ struct Named {
   std::int64_t status_t::*field;
 };
 
-// Those that stand still while all is well. What the recorder loses it says itself, once.
+// Those that stand still while all is well. What the recorder loses it says itself, once, and so are stale
+// channels told, by name.
 constexpr std::array kFaults{
     Named{"frames_crc", &status_t::frames_crc},
     Named{"frames_format", &status_t::frames_format},
@@ -44,7 +46,6 @@ constexpr std::array kFaults{
     Named{"implausible_samples", &status_t::implausible_samples},
     Named{"channel_drops", &status_t::channel_drops},
     Named{"channel_implausible", &status_t::channel_implausible},
-    Named{"channel_stale", &status_t::channel_stale},
     Named{"out_of_range", &status_t::out_of_range},
     Named{"corrections_refused", &status_t::corrections_refused},
     Named{"divergences", &status_t::divergences},
@@ -62,7 +63,8 @@ std::string fault_of(const Reader& reader) {
     return transport.name() + ": ends within a frame, its last " + std::to_string(left) +
            " bytes are no whole one (is the file cut off?)";
   if (fault.what == nullptr) return "";
-  return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + fault.what;
+  return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + fault.what +
+         (fault.text.empty() ? "" : ", found " + in_quotes(fault.text));
 }
 
 }  // namespace
@@ -90,8 +92,8 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
     case TransportState::gone:
       return status_t::STATE_REOPENING;
     case TransportState::ended:
-      // A fault at the end is a file that is cut off or damaged.
-      if (transport.reason() != 0 || transport.fault().what != nullptr ||
+      // A fault at the end is a file that is cut off or damaged, or another sensor's.
+      if (nothing_in_file(pipeline) || transport.reason() != 0 || transport.fault().what != nullptr ||
           pipeline.reader().counters().bytes_at_end.value() != 0)
         return status_t::STATE_FAILED;
       return status_t::STATE_ENDED;
@@ -106,6 +108,15 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
   if (sample_ns_ == 0) return status_t::STATE_STARTING;
   if (static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s) return status_t::STATE_NO_DATA;
   return status_t::STATE_RUNNING;
+}
+
+// A file is over, all of it is in the books, and no frame was in it.
+bool StatusReport::nothing_in_file(const Pipeline& pipeline) const {
+  const Transport& transport = pipeline.reader().transport();
+  const TransportCounters line = transport.counters();
+  return transport.state() == TransportState::ended && pipeline.ended() &&
+         as_signed(line.bytes) == now_.bytes_read && as_signed(line.frames) == now_.frames_read &&
+         now_.frames_good + now_.samples_decoded == 0;
 }
 
 // What the books balance: of one moment, the filter's.
@@ -184,9 +195,12 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
   now_.model_since = snapshot.model_since_ns / 1000;
+  take_books(snapshot);
   now_.fault = imbalance(snapshot.reader, snapshot.books);
   if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
-  take_books(snapshot);
+  if (now_.fault.empty() && nothing_in_file(pipeline))
+    now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
+                 came() + " (is it this driver's, with these options?)";
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
@@ -219,11 +233,14 @@ void StatusReport::update(Recorder& recorder) {
 
 std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
 
+std::string StatusReport::came() const {
+  return now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
+                              : std::to_string(now_.bytes_read) + " bytes";
+}
+
 std::string StatusReport::nothing_of_it() const {
   if (in_vain_ != kInVain) return "";
-  return (now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
-                               : std::to_string(now_.bytes_read) + " bytes") +
-         " came and no frame of the sensor was in them";
+  return came() + " came and no frame of the sensor was in them";
 }
 
 std::string StatusReport::moved() const {

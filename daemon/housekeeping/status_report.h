@@ -45,6 +45,8 @@ class StatusReport {
   void take_counters(const ReaderCounters& reader, const FilterCounters& filter);
   void take_health(const FilterSnapshot& snapshot);
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
+  [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
+  [[nodiscard]] std::string came() const;  // in words
 
   ifog::status_t before_, now_;
   SensorWatch watch_;

@@ -39,7 +39,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   out.noise = NoiseMemory(state_folder(config.state_folder), sensor.name, sensor.driver, settings.facts);
   settings.learned = out.noise.recalled();
   settings.powered_ns = powered_ns(sensor);
-  auto parts = std::make_unique<ChainParts>(settings);
+  std::unique_ptr<ChainParts> parts = make_chain_parts(sensor, settings);
   out.left_out = parts->left_out();
   out.recorder = make_recorder(sensor, config, driver, out.noise);
   PipelinePlan plan;

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/config/config.h"
+#include "drivers/capture/measurable.h"
 #include "filters/chain/plausibility.h"
 
 namespace ifog {
@@ -25,11 +27,14 @@ SensorFacts sensor_facts(const ifog_description& description, double nominal_rat
   facts.sequence_modulus = description.sequence_modulus;
   facts.nominal_rate_hz = nominal_rate_hz > 0.0 ? nominal_rate_hz : description.nominal_rate_hz;
   if (!(facts.nominal_rate_hz > 0.0))
-    throw std::runtime_error("the driver does not know the sample rate: nominal_rate_hz must be given");
+    throw KeyError("nominal_rate_hz",
+                   "the driver does not know the sample rate: nominal_rate_hz must be given");
   facts.angle_wrap_rad = description.angle_wrap_rad;
   std::copy_n(description.full_scale, kMaxAxes, facts.full_scale_radps.begin());
   facts.frame_channels = static_cast<int>(description.environments);
   facts.channels = facts.frame_channels + outside_channels;
+  for (int c = 0; c < std::min(facts.frame_channels, kMaxChannels); ++c)
+    facts.channel[static_cast<std::size_t>(c)] = channel_limits(description.environment[c], {});
   constexpr std::array<std::string_view, kMaxAxes> kAccelerations{"accel_x_mps2", "accel_y_mps2",
                                                                   "accel_z_mps2"};
   for (int c = 0; c < facts.frame_channels; ++c)
@@ -38,9 +43,17 @@ SensorFacts sensor_facts(const ifog_description& description, double nominal_rat
   for (int c = facts.frame_channels - 1; c >= 0; --c)
     if (std::string_view(description.environment[c]).ends_with("_degC")) facts.temperature_channel = c;
   if (facts.channels > kMaxChannels)
-    throw std::runtime_error(std::to_string(facts.channels) + " channels, expected at most " +
-                             std::to_string(kMaxChannels));
+    throw KeyError("channel", std::to_string(facts.channels) + " channels, expected at most " +
+                                  std::to_string(kMaxChannels));
   return facts;
+}
+
+Limits channel_limits(const std::string& name, const Limits& said) {
+  const Measurable can_be = measurable(name);
+  Limits out = said;
+  out.minimum = std::max(said.minimum, can_be.least);
+  out.maximum = std::min(said.maximum, can_be.most);
+  return out;
 }
 
 void read_sample(const ifog_sample& sample, int frame_channels, Reading& out) noexcept {

@@ -77,7 +77,7 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
 SensorConfig recorded_sensor(const FlightHeader& header) {
   Config config;
   try {
-    config = parse_config(header.configuration, header.configuration_file);
+    config = parse_recorded_config(header.configuration, header.configuration_file);
   } catch (const ConfigError& error) {
     const std::string lines = error.what();
     throw std::runtime_error("was recorded by version " + header.program +

@@ -2,7 +2,9 @@
 #include "daemon/sensor/sensor_parts.h"
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
@@ -27,8 +29,35 @@ std::vector<CanId> wanted_ids(const ifog_description& description) {
 
 void require(bool fits, const SensorConfig& sensor, const char* type, const char* needs) {
   if (!fits)
-    throw std::runtime_error("driver \"" + printable(sensor.driver) +
-                             "\" cannot be fed from a transport of type \"" + type + "\": it takes " + needs);
+    throw KeyError("transport.type", "driver \"" + printable(sensor.driver) +
+                                         "\" cannot be fed from a transport of type \"" + type +
+                                         "\": it takes " + needs);
+}
+
+// Whether the text has it as a word of its own.
+bool has_word(std::string_view text, std::string_view word) {
+  const auto of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !of_word(static_cast<unsigned char>(text[at - 1]))) &&
+        (end == text.size() || !of_word(static_cast<unsigned char>(text[end]))))
+      return true;
+  }
+  return false;
+}
+
+// The sensor's key of that table which a complaint names before any other; "" for none.
+std::string key_in(const SensorConfig& sensor, const std::string& table, const std::string& complaint) {
+  std::string found;
+  std::size_t first = std::string::npos;
+  for (const auto& [key, line] : sensor.lines) {
+    if (!key.starts_with(table) || !has_word(complaint, key.substr(table.size()))) continue;
+    if (const std::size_t at = complaint.find(key.substr(table.size())); at < first) {
+      first = at;
+      found = key;
+    }
+  }
+  return found;
 }
 
 std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const DriverInstance& driver) {
@@ -62,7 +91,12 @@ std::unique_ptr<Transport> file_transport(const SensorConfig& sensor, const Driv
 
 DriverInstance make_sensor_driver(const SensorConfig& sensor,
                                   const std::vector<std::string>& plugin_folders_first) {
-  return make_driver(sensor.driver, sensor.options, plugin_folders(plugin_folders_first), sensor.folder);
+  try {
+    return make_driver(sensor.driver, sensor.options, plugin_folders(plugin_folders_first), sensor.folder);
+  } catch (const std::exception& error) {
+    const std::string key = key_in(sensor, "options.", error.what());
+    throw KeyError(key.empty() ? "driver" : key, error.what());
+  }
 }
 
 SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver) {
@@ -70,8 +104,9 @@ SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverIn
   SerialSettings settings = sensor.transport.serial;
   if (settings.baud == 0) settings.baud = driver.description().baud;
   if (settings.baud == 0)
-    throw std::runtime_error("sensor.transport.baud: missing, and driver \"" + printable(sensor.driver) +
-                             "\" prescribes no speed; expected bits a second");
+    throw KeyError("transport.baud", "sensor.transport.baud: missing, and driver \"" +
+                                         printable(sensor.driver) +
+                                         "\" prescribes no speed; expected bits a second");
   return settings;
 }
 
@@ -116,18 +151,19 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
     if (of_frame && known == out.channels.end()) {
       std::string list;
       for (const std::string& name : out.channels) list += (list.empty() ? "" : ", ") + name;
-      throw std::runtime_error("sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
-                               sensor.driver + "\" carry " + (list.empty() ? "no channels" : list));
+      throw KeyError("channel." + channel.name + ".name",
+                     "sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
+                         printable(sensor.driver) + "\" carry " + (list.empty() ? "no channels" : list));
     }
     if (of_frame) {
       const auto index = static_cast<std::size_t>(known - out.channels.begin());
       out.channel_max_age_s[index] = channel.max_age_s;
-      out.facts.channel[index] = channel.limits;
+      out.facts.channel[index] = channel_limits(channel.name, channel.limits);
     } else if (known != out.channels.end()) {
-      throw std::runtime_error(
-          "sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
-          printable(sensor.driver) +
-          "\" carry a channel of that name; expected another name or source = \"frame\"");
+      throw KeyError("channel." + channel.name + ".name",
+                     "sensor.channel \"" + printable(channel.name) + "\": the frames of driver \"" +
+                         printable(sensor.driver) +
+                         "\" carry a channel of that name; expected another name or source = \"frame\"");
     }
   }
   for (const ChannelConfig& channel : outside) {
@@ -137,10 +173,11 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
   if (sensor.imu) {
     const auto& known = out.facts.acceleration_channel;
     if (out.facts.axes != kMaxAxes || std::any_of(known.begin(), known.end(), [](int c) { return c < 0; }))
-      throw std::runtime_error(
+      throw KeyError(
+          "imu",
           "imu = true: expected a driver that gives rates and accel_x_mps2, accel_y_mps2, accel_z_mps2 of "
           "three axes, \"" +
-          printable(sensor.driver) + "\" as configured does not");
+              printable(sensor.driver) + "\" as configured does not");
   }
   if (sensor.range_radps > 0.0) out.facts.full_scale_radps.fill(sensor.range_radps);
   out.facts.rate = sensor.limits;
@@ -157,7 +194,26 @@ std::optional<std::int64_t> powered_ns(const SensorConfig& sensor) {
 
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor) {
   if (sensor.model.empty()) return nullptr;
-  return std::make_shared<const Model>(read_model(sensor.model));
+  try {
+    return std::make_shared<const Model>(read_model(sensor.model));
+  } catch (const std::exception& error) {
+    throw KeyError("model", error.what());
+  }
+}
+
+std::unique_ptr<ChainParts> make_chain_parts(const SensorConfig& sensor, const ChainSettings& settings) {
+  try {
+    return std::make_unique<ChainParts>(settings);
+  } catch (const ModelMisfit& misfit) {
+    const std::string line = misfit.line > 0 ? ":" + std::to_string(misfit.line) : "";
+    throw KeyError("model", sensor.model + line + ": " + misfit.what());
+  } catch (const std::exception& error) {
+    // A setting that nobody chose here is the model's.
+    const std::string key = key_in(sensor, "filter.", error.what());
+    if (key.empty() && settings.model && settings.model->filter)
+      throw KeyError("model", sensor.model + ": " + error.what());
+    throw KeyError(key.empty() ? "filter" : key, error.what());
+  }
 }
 
 }  // namespace ifog

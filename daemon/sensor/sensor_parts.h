@@ -17,7 +17,7 @@
 
 namespace ifog {
 
-// All throw std::runtime_error with one line.
+// All throw KeyError with one line; transports std::runtime_error, too.
 
 DriverInstance make_sensor_driver(const SensorConfig& sensor, const std::vector<std::string>& plugin_folders);
 
@@ -37,6 +37,9 @@ std::optional<std::int64_t> powered_ns(const SensorConfig& sensor);
 
 // Null when the sensor has none.
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor);
+
+// What the settings make; `sensor` says where a complaint belongs.
+std::unique_ptr<ChainParts> make_chain_parts(const SensorConfig& sensor, const ChainSettings& settings);
 
 // Channels that do not come in the sensor's frames, in the order of the chain's.
 std::vector<ChannelConfig> outside_channels(const SensorConfig& sensor);

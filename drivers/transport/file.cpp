@@ -277,7 +277,7 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
         error_frames_.add(1);
         break;
       case CandumpLine::malformed:
-        report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_);
+        report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_, line);
         break;
       case CandumpLine::remote:
       case CandumpLine::blank:

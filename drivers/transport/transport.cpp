@@ -187,10 +187,13 @@ void Transport::enter(TransportState state, int reason) noexcept {
   state_.store(state, std::memory_order_release);
 }
 
-void Transport::report(const char* what, std::uint64_t line) noexcept {
+void Transport::report(const char* what, std::uint64_t line, std::string_view text) noexcept {
+  malformed_.add(1);
+  const bool first = fault_.load(std::memory_order_relaxed) == nullptr;
+  if (!first && line != 0) return;
+  if (first) fault_length_ = text.copy(fault_text_.data(), fault_text_.size());
   fault_line_.store(line, std::memory_order_relaxed);
   fault_.store(what, std::memory_order_release);
-  malformed_.add(1);
 }
 
 TransportCounters Transport::counters() const {
@@ -200,7 +203,9 @@ TransportCounters Transport::counters() const {
 
 TransportFault Transport::fault() const {
   const char* what = fault_.load(std::memory_order_acquire);
-  return {what, fault_line_.load(std::memory_order_relaxed)};
+  if (what == nullptr) return {};
+  const std::uint64_t line = fault_line_.load(std::memory_order_relaxed);
+  return {what, line, line == 0 ? std::string_view() : std::string_view(fault_text_.data(), fault_length_)};
 }
 
 }  // namespace ifog

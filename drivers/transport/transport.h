@@ -17,6 +17,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/ifog/driver.h"
@@ -71,10 +72,12 @@ struct TransportCounters {
                                 // from somebody else; see fault()
 };
 
-// The latest fault in what was read, for one line in the log: "PATH:LINE: WHAT".
+// The first fault in what was read, which is where to begin to look, for one line in the log: "PATH:LINE:
+// WHAT". What is no matter of lines (a file that is cut off) stands over one that is.
 struct TransportFault {
   const char* what = nullptr;  // static text; nullptr: none so far
   std::uint64_t line = 0;      // 0: not a matter of lines
+  std::string_view text{};     // what stands there, its beginning
 };
 
 class Transport {
@@ -179,7 +182,8 @@ class Transport {
   void left() noexcept;
   void end(int reason) noexcept { enter(TransportState::ended, reason); }
 
-  void report(const char* what, std::uint64_t line) noexcept;  // counts it as malformed, too
+  // Counts it as malformed, too. text: the line's.
+  void report(const char* what, std::uint64_t line, std::string_view text = {}) noexcept;
 
   Counter kernel_drops_, error_frames_;
 
@@ -217,6 +221,8 @@ class Transport {
   std::atomic<int> reason_{0};
   std::atomic<const char*> fault_{nullptr};
   std::atomic<std::uint64_t> fault_line_{0};
+  std::array<char, 60> fault_text_{};  // written once, before the fault
+  std::size_t fault_length_ = 0;
   Counter bytes_, frames_, reopened_, malformed_;
 };
 

@@ -10,6 +10,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/chain/plausibility.h"
 #include "filters/estimator/start_up.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/settings/filter_table.h"
 
 namespace ifog {
@@ -24,6 +25,15 @@ constexpr double kMostLearnedRatio = 1e-3;
 
 double within_reach(double process_noise, double measurement_noise, double period_s) noexcept {
   return std::min(process_noise, kMostLearnedRatio * measurement_noise / period_s);
+}
+
+// Of the first effect on that channel.
+std::uint32_t line_of(const Model& model, const std::string& channel) {
+  for (const Effect& effect : model.effects)
+    for (const std::string& used : {effect.channel, effect.with_channel})
+      if (const ChannelNames names = names_in(used); names.of == channel || names.less == channel)
+        return effect.line;
+  return 0;
 }
 
 }  // namespace
@@ -85,17 +95,21 @@ std::optional<LearnedNoise> ChainParts::learned() const noexcept {
 
 void ChainParts::use_effects(const ChainSettings& settings) {
   // Each channel has a limit of its own: the compensator is given ages in units of it.
-  compensator_.emplace(*settings.model, settings.axes, 1.0,
-                       settings.powered_ns ? 0.0 : settings.since_power_up_s);
+  try {
+    compensator_.emplace(*settings.model, settings.axes, 1.0,
+                         settings.powered_ns ? 0.0 : settings.since_power_up_s);
+  } catch (const std::invalid_argument& error) {
+    throw ModelMisfit(0, error.what());
+  }
   powered_ns_ = settings.powered_ns;
   for (const std::string& name : compensator_->channels()) {
     const auto found = std::find(settings.channels.begin(), settings.channels.end(), name);
     if (found == settings.channels.end()) {
       std::string known;
       for (const std::string& channel : settings.channels) known += (known.empty() ? "" : ", ") + channel;
-      throw std::invalid_argument(
-          "the model uses channel \"" + printable(name) +
-          "\", which this sensor does not have; it has: " + (known.empty() ? "none" : known));
+      throw ModelMisfit(line_of(*settings.model, name), "the model uses channel \"" + printable(name) +
+                                                            "\", which this sensor does not have; it has: " +
+                                                            (known.empty() ? "none" : known));
     }
     const auto index = static_cast<std::size_t>(found - settings.channels.begin());
     wanted_.push_back(index);

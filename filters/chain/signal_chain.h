@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
+
+// The model and the sensor do not go together.
+struct ModelMisfit : std::invalid_argument {
+  ModelMisfit(std::uint32_t at, const std::string& what) : std::invalid_argument(what), line(at) {}
+  std::uint32_t line;  // of the effect in the model's file; 0: not known
+};
 
 struct ChainSettings {
   SensorFacts facts;
@@ -70,8 +77,8 @@ class ExactSum {
 
 class ChainParts {
  public:
-  // Throws std::invalid_argument or std::runtime_error with one line: a setting out of range, an effect of
-  // the model on a channel or an axis that the sensor does not have.
+  // Throws with one line: ModelMisfit, an effect of the model on a channel or an axis that the sensor does
+  // not have; std::invalid_argument or std::runtime_error, a setting out of range.
   explicit ChainParts(const ChainSettings& settings);
   ~ChainParts();
 

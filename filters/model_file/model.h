@@ -7,6 +7,7 @@
 // and says so otherwise. Unknown keys are errors.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -45,6 +46,7 @@ struct Effect {
   // neither corrected nor written to a file.
   bool shown_only = false;
   std::string meaning;
+  std::uint32_t line = 0;  // in the file that it was read from; 0: of none
 };
 
 struct ChannelRange {

@@ -25,6 +25,8 @@ class Table {
   Table(const toml::table& table, std::string file, std::string where)
       : table_(table), file_(std::move(file)), where_(std::move(where)) {}
 
+  [[nodiscard]] std::uint32_t line() const { return table_.source().begin.line; }
+
   [[noreturn]] void fail(const std::string& key, const toml::node* node, const std::string& complaint) const {
     std::ostringstream text;
     text << file_;
@@ -193,6 +195,7 @@ std::string channel_of(Table& table, const std::string& key, const std::string& 
 
 Effect read_effect(Table table) {
   Effect effect;
+  effect.line = table.line();
   effect.form = table.words("form");
   if (effect.form.empty()) table.fail("form", nullptr, "expected the name of a form");
   effect.channel = channel_of(table, "channel", "minus_channel");

@@ -148,13 +148,34 @@ TEST(ChannelSources, AValueThatCannotBeIsLeftOutAndCounted) {
   ChannelSources sources({{one, table, 0}}, kUrl);
   sources.start();
   EXPECT_EQ(await(*table, 20.0).value, 20.0);
-  for (const char* bad : {"1e200", "86", "inf"}) {
+  for (const char* bad : {"1e200", "86", "inf", "0x20", "21,5", "40 x", "+-5", "nan", "1e999", "21 22"}) {
     const std::uint64_t before = table->refused();
     std::ofstream(path) << bad << "\n";
     for (int n = 0; n < 500 && table->refused() == before; ++n) std::this_thread::sleep_for(10ms);
     EXPECT_GT(table->refused(), before) << bad;
     EXPECT_EQ(look(*table).value, 20.0) << bad;
+    EXPECT_NE(table->fault(0), ChannelFault{}) << bad;
   }
+  // Nothing has come: not counted, and the reason is known.
+  const auto left = [&](ChannelFault::Kind kind) {
+    for (int n = 0; n < 500 && table->fault(0).kind != kind; ++n) std::this_thread::sleep_for(10ms);
+    return describe(one, table->fault(0));
+  };
+  const std::string name = "channel 'coil_degC': " + path.string();
+  std::ofstream(path, std::ios::trunc).close();
+  EXPECT_EQ(left(ChannelFault::Kind::empty), name + ": is empty, expected a file that holds one number");
+  const std::uint64_t counted = table->refused();
+  std::filesystem::remove(path);
+  EXPECT_EQ(left(ChannelFault::Kind::unreadable),
+            name + ": cannot read: No such file or directory, expected a file that holds one number");
+  std::filesystem::create_directory(path);
+  EXPECT_EQ(left(ChannelFault::Kind::no_file),
+            name + ": is no regular file, expected a file that holds one number");
+  std::filesystem::remove(path);
+  EXPECT_EQ(table->refused(), counted);
+  std::ofstream(path) << "\t+21.5\r\n";
+  EXPECT_EQ(await(*table, 21.5).value, 21.5);
+  EXPECT_EQ(table->fault(0), ChannelFault{});
   sources.stop();
   std::filesystem::remove(path);
 }

@@ -173,7 +173,7 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nminimum = 5.0\nmaximum = 5.0\n",
        "f.toml:12: sensor.channel.maximum: not above minimum; expected minimum < maximum"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nmax_step = -1.0\n",
-       "f.toml:11: sensor.channel.max_step = -1: expected a number 0 ... 2e+20"},
+       "f.toml:11: sensor.channel.max_step = -1: expected a number > 0 and <= 2e+20"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"lcm\"\nlcm_channel = \"A\"\nscale = inf\n",
        "f.toml:12: sensor.channel.scale = inf: expected a number -1e+20 ... 1e+20"},
       {"[daemon]\nlog_level = \"loud\"\n",
@@ -297,7 +297,7 @@ TEST(Config, TheUsersLimitsOfSensorAndChannel) {
   EXPECT_EQ(sensor.channels.at(1).limits, Limits{});
   EXPECT_EQ(complaint("[[sensor]]\nname = \"a\"\ndriver = \"kvh1750\"\nminimum = 2.0\nmaximum = -2.0\n"
                       "max_step = -1.0\n[sensor.transport]\ntype = \"file\"\npath = \"x\"\n"),
-            "f.toml:6: sensor.max_step = -1: expected a number 0 ... 20000\n"
+            "f.toml:6: sensor.max_step = -1: expected a number > 0 and <= 20000\n"
             "f.toml:5: sensor.maximum: not above minimum; expected minimum < maximum");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The daemon as a user starts it: what it says and how it ends where something is wrong, and a run with
 // channels from outside.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 #include <poll.h>
@@ -103,7 +104,7 @@ TEST_F(Ifogd, APluginOfAnotherInterfaceVersionIsRefusedInOneLine) {
     EXPECT_EQ(ifogd(how), 2);
     ASSERT_EQ(said().size(), 1U) << all_said();
     EXPECT_EQ(said()[0], path("ifogd.toml") +
-                             ":4: sensor \"nose\": " IFOG_REFUSED_PLUGINS
+                             ":6: sensor \"nose\": " IFOG_REFUSED_PLUGINS
                              "/other_version.so: built for interface version 99, this program has version " +
                              std::to_string(IFOG_DRIVER_ABI) + "; build the plugin against this version");
   }
@@ -121,6 +122,78 @@ TEST_F(Ifogd, AWrongConfigurationIsRefusedInOneLine) {
     // A table that is missing because of the broken line may be complained of as well, a line each.
     EXPECT_EQ(lines_with(path("ifogd.toml") + ":"), static_cast<int>(said().size())) << all_said();
   }
+}
+
+// By the line of the key that is due to it, not of the sensor; the same with --check.
+TEST_F(Ifogd, WhatShowsOnlyInThePartsIsToldByItsKeysLine) {
+  write("model.toml",
+        "version = 1\nsensor = \"nose\"\n\n[[effect]]\nform = \"linear\"\nchannel = \"supply_V\"\n"
+        "  [[effect.parameter]]\n  name = \"coefficient\"\n  value = 1e-6\n");
+  write("bad.toml", "version = 7\n");
+  write("bus.dbc", "BU_: G\nBO_ 1 Rate: 8 G\n SG_ Rate_z : 0|16@1- (0.01,0) [-300|300] \"deg/s\" G\n");
+  const std::string sensor = ": sensor \"nose\": ";
+  for (const auto& [more, what] :
+       {std::pair{std::string(kFile) + "[sensor.options]\nformat = \"q\"\n",
+                  ":11" + sensor + "driver kvh1750: format is 'q', expected "},
+        {std::string(kFile) + "[sensor.options]\nformat = \"a\"\nfromat = \"a\"\n",
+         ":12" + sensor + "driver kvh1750: unknown option 'fromat'"},
+        {"model = \"bad.toml\"\n" + std::string(kFile), ":7" + sensor + path("bad.toml") + ":1: version = 7"},
+        {"model = \"model.toml\"\n" + std::string(kFile),
+         ":7" + sensor + path("model.toml") + ":4: the model uses channel \"supply_V\", which"},
+        {std::string(kFile) + "[sensor.filter]\nstate = \"foo\"\n", ":11" + sensor},
+        {std::string("[sensor.transport]\ntype = \"can\"\ninterface = \"can0\"\n"),
+         ":8" + sensor + "driver \"kvh1750\" cannot be fed from a transport of type \"can\""},
+        {std::string(kFile) + "[[sensor.channel]]\nname = \"coil_degC\"\nsource = \"can\"\ninterface = "
+                              "\"can0\"\ndbc = \"bus.dbc\"\nsignal = \"Coil\"\n",
+         ":15" + sensor + path("bus.dbc") + ": no signal \"Coil\""},
+        {std::string(kFile) + "[[sensor.channel]]\nname = \"coil_degC\"\nsource = \"lcm\"\nlcm_channel = "
+                              "\"HULL\"\nfield = \"raw[3]\"\n",
+         std::string(":14: sensor.channel.field = 'raw[3]': expected ")}})
+    for (const char* how : {"", "--check"}) {
+      configure(more);
+      EXPECT_EQ(ifogd(how), 2) << more;
+      EXPECT_EQ(lines_with(path("ifogd.toml") + what), 1) << what << "\n" << all_said();
+    }
+}
+
+TEST_F(Ifogd, ACheckOpensNothing) {
+  configure(std::string(kFile) +
+            "[[sensor.channel]]\nname = \"hull_degC\"\nsource = \"lcm\"\nlcm_channel = \"HULL\"\n");
+  // LCM would try to connect.
+  std::string text;
+  std::getline(std::ifstream(path("ifogd.toml")), text, '\0');
+  write("ifogd.toml", text.replace(text.find("lock_memory"), 0, "lcm_url = \"tcpq://127.0.0.1:1\"\n"));
+  EXPECT_EQ(ifogd(), 1) << all_said();
+  EXPECT_GE(lines_with("LCM tcpq"), 1) << all_said();
+  EXPECT_EQ(ifogd("--check"), 0) << all_said();
+  ASSERT_EQ(said().size(), 1U) << all_said();
+  EXPECT_EQ(said()[0], path("ifogd.toml") + ": good, 1 sensor(s)");
+}
+
+TEST_F(Ifogd, AFileWithoutAFrameHasFailed) {
+  configure(kFile);
+  write("flight.kvh", std::string(50'000, 'x'));
+  EXPECT_EQ(ifogd(), 1) << all_said();
+  EXPECT_EQ(lines_with("nose: failed: " + path("flight.kvh") +
+                       ": ended, and no frame of the sensor was in its 50000 bytes"),
+            1)
+      << all_said();
+  write("flight.kvh", "");
+  EXPECT_EQ(ifogd(), 1) << all_said();
+}
+
+// Of two that cannot be opened one would not run alone; here the other does, and what is said is what is.
+TEST_F(Ifogd, ASensorThatIsNotOpenIsNotSaidToBeRead) {
+  configure(std::string(kFile) +
+            "[[sensor]]\nname = \"tail\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype "
+            "= \"serial\"\ndevice = \"/dev/no-gyro\"\nbaud = 921600\n");
+  write("flight.kvh", recording(30));
+  const std::string command = "timeout -s TERM 3 " IFOG_BINARY_DIR "/daemon/ifogd --config " +
+                              path("ifogd.toml") + " >" + path("said") + " 2>&1";
+  (void)std::system(command.c_str());
+  EXPECT_EQ(lines_with("nose: reading "), 1) << all_said();
+  EXPECT_EQ(lines_with("tail: reading "), 0) << all_said();
+  EXPECT_EQ(lines_with("tail: trying again to open /dev/no-gyro at "), 1) << all_said();
 }
 
 TEST_F(Ifogd, WithoutADeviceNothingCanRun) {
@@ -163,6 +236,7 @@ TEST_F(Ifogd, AFaultInALogIsToldWhereItIs) {
   std::string log;
   for (int i = 0; i < 250; ++i) {
     if (i == 20) log += "rubbish\n";
+    if (i > 200) log += "worse\n";
     char line[64];
     std::snprintf(line, sizeof line, "(1700000000.%06d) can0 100#0000003F00000000\n", i * 4000);
     log += line;
@@ -170,7 +244,9 @@ TEST_F(Ifogd, AFaultInALogIsToldWhereItIs) {
   write("gyro.log", log);
   ifogd();
   EXPECT_GE(lines_with(path("gyro.log") + ":21: "), 1) << all_said();
-  EXPECT_EQ(lines_with("log_faults +1"), 1) << all_said();
+  EXPECT_GE(lines_with(", found 'rubbish'"), 1) << all_said();
+  EXPECT_EQ(lines_with("worse"), 0) << all_said();
+  EXPECT_GE(lines_with("log_faults +"), 1) << all_said();
   EXPECT_EQ(lines_with("250 samples read, 250 published"), 1) << all_said();
 }
 
@@ -214,6 +290,39 @@ TEST_F(Ifogd, WhatComesTwiceOrUnfinishedIsCounted) {
   EXPECT_EQ(lines_with("samples_incomplete +1"), 1) << all_said();
   EXPECT_EQ(lines_with("199 samples read, 199 published"), 1) << all_said();
   EXPECT_EQ(lines_with("bus.dbc:10: '3+ (1,0) [0|0] \"\" X', expected one of 01"), 1) << all_said();
+}
+
+// Of that process, as the kernel has it: bit n - 1 is signal n.
+std::uint64_t blocked_signals(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("SigBlk:", 0) == 0) return std::stoull(line.substr(7), nullptr, 16);
+  return 0;
+}
+
+// Held up at the first thing that it does, writing its version into a pipe that is full, it can no longer be
+// killed by a reload that comes too early.
+TEST_F(Ifogd, SignalsWaitFromItsFirstMoment) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
+  for (const char c = 'x'; ::write(ends[1], &c, 1) == 1;) {
+  }
+  ASSERT_EQ(fcntl(ends[1], F_SETFL, 0), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    dup2(ends[1], STDOUT_FILENO);
+    execl(IFOG_BINARY_DIR "/daemon/ifogd", "ifogd", "--version", nullptr);
+    _exit(127);
+  }
+  constexpr std::uint64_t kOurs = 1U << (SIGHUP - 1) | 1U << (SIGINT - 1) | 1U << (SIGTERM - 1);
+  for (int turn = 0; turn < 1000 && blocked_signals(child) != kOurs; ++turn) usleep(10'000);
+  EXPECT_EQ(blocked_signals(child), kOurs);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  close(ends[0]);
+  close(ends[1]);
 }
 
 // The status messages of the daemon while it runs, with an eye on one of them.

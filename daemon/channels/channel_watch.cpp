@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/channels/channel_watch.h"
+
+#include <net/if.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <iterator>
+
+#include "daemon/sensor/sensor_parts.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+// A file that has been wrong for so long is told, whatever age is allowed; before a channel's first value
+// sooner, as a name may be mistyped.
+constexpr double kLasting_s = 10.0, kFirst_s = 2.0;
+
+// Of a channel of the sensor's frames there is no entry where the default age is good enough.
+ChannelConfig of_frame(const std::string& name, const std::vector<ChannelConfig>& configured) {
+  const auto found = std::find_if(configured.begin(), configured.end(),
+                                  [&](const ChannelConfig& channel) { return channel.name == name; });
+  if (found != configured.end()) return *found;
+  ChannelConfig out;
+  out.name = name;
+  return out;
+}
+
+}  // namespace
+
+ChannelWatch::ChannelWatch(const SensorConfig& sensor)
+    : configured_(sensor.channels), outside_(outside_channels(sensor)), absent_(outside_.size()) {}
+
+std::vector<std::string> ChannelWatch::absent() {
+  std::vector<std::string> out;
+  for (std::size_t place = 0; place < outside_.size(); ++place) {
+    const ChannelConfig& channel = outside_[place];
+    ChannelFault fault;
+    struct stat info {};
+    if (channel.source == ChannelConfig::Source::file) {
+      if (stat(channel.path.c_str(), &info) != 0)
+        fault = {.kind = ChannelFault::Kind::unreadable, .error = errno};
+      else if (!S_ISREG(info.st_mode))
+        fault.kind = ChannelFault::Kind::no_file;
+    }
+    absent_[place] = fault != ChannelFault{} || (channel.source == ChannelConfig::Source::can &&
+                                                 if_nametoindex(channel.interface.c_str()) == 0);
+    if (absent_[place]) out.push_back(describe(channel, fault) + "; the channel has no value until it comes");
+  }
+  return out;
+}
+
+std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const ChannelTable& outside) {
+  std::vector<News> out;
+  // Before the sensor's first sample nothing is known of any.
+  if (status.samples_in == 0 || status.state != status_t::STATE_RUNNING) return out;
+  const std::size_t all = status.channel_name.size();
+  if (seen_.empty()) {
+    seen_.resize(all);
+    for (std::size_t place = 0; place < outside_.size(); ++place)
+      seen_[all - outside_.size() + place].told = absent_[place];
+  }
+  for (std::size_t c = 0; c < all; ++c) {
+    const bool from_frame = c + outside_.size() < all;
+    const std::size_t place = from_frame ? 0 : c - (all - outside_.size());
+    const ChannelConfig channel =
+        from_frame ? of_frame(status.channel_name[c], configured_) : outside_[place];
+    const ChannelFault fault = from_frame ? ChannelFault{} : outside.fault(static_cast<int>(place));
+    Seen& seen = seen_[c];
+    seen.looked_s += 1.0;
+    seen.faulty_s = fault.kind == ChannelFault::Kind::silent ? 0.0 : seen.faulty_s + 1.0;
+    const double age_s = status.channel_age_s[c];
+    const bool never = std::isinf(age_s);
+    const bool old = !never && channel.max_age_s > 0.0 && age_s > channel.max_age_s;
+    const bool awaited = never && seen.looked_s > (channel.max_age_s > 0.0 ? channel.max_age_s : kLasting_s);
+    const bool gone = never ? seen.faulty_s >= kFirst_s
+                            : channel.source == ChannelConfig::Source::file && seen.faulty_s >= kLasting_s &&
+                                  age_s > kLasting_s;
+    // What was told of a channel without a value stands until one comes.
+    const bool missing = old || awaited || gone || (never && seen.told);
+    if (missing == seen.told) continue;
+    seen.told = missing;
+    if (missing)
+      out.push_back({false, describe(channel, fault) +
+                                (never ? "; the channel has no value yet" : "; the last value is held")});
+    else
+      out.push_back({true, "channel " + in_quotes(channel.name) + " has new values"});
+  }
+  return out;
+}
+
+}  // namespace ifog

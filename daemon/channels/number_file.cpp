@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/channels/number_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+
+namespace ifog {
+
+std::variant<double, ChannelFault> number_in(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t from = text.find_first_not_of(kBlank);
+  if (from == std::string_view::npos) return ChannelFault{.kind = ChannelFault::Kind::empty};
+  text = text.substr(from, text.find_last_not_of(kBlank) - from + 1);
+  // from_chars takes no plus sign, and "+-5" is no number.
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size())
+    return ChannelFault{.kind = ChannelFault::Kind::no_number};
+  return number;
+}
+
+std::variant<double, ChannelFault> read_number_file(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (fd < 0) return ChannelFault{.kind = ChannelFault::Kind::unreadable, .error = errno};
+  struct stat info {};
+  if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+    close(fd);
+    return ChannelFault{.kind = ChannelFault::Kind::no_file};
+  }
+  std::array<char, 128> text{};
+  const ssize_t length = ::read(fd, text.data(), text.size());
+  const int error = errno;
+  close(fd);
+  if (length < 0) return ChannelFault{.kind = ChannelFault::Kind::unreadable, .error = error};
+  // No number is so long: its end would be missing.
+  if (static_cast<std::size_t>(length) == text.size())
+    return ChannelFault{.kind = ChannelFault::Kind::no_number};
+  return number_in({text.data(), static_cast<std::size_t>(length)});
+}
+
+}  // namespace ifog

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/sensor_pairs.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include "daemon/config/lcm_field_name.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/ip_address.h"
+#include "msgs/channel_name.h"
+
+namespace ifog {
+namespace {
+
+using Kind = TransportConfig::Kind;
+
+std::string complaint(const Config& config, const SensorConfig& sensor, const std::string& key,
+                      const std::string& what) {
+  return config.file + ":" + std::to_string(sensor.line_of(key)) + ": " +
+         printable("sensor." + key + what, kLongestMessage);
+}
+
+// The device, FIFO or standard input that a transport reads from; "" for one that many may read.
+std::string device_of(const TransportConfig& transport) {
+  if (transport.kind == Kind::serial) return transport.serial.device;
+  if (transport.kind != Kind::file) return "";
+  struct stat info {};
+  const bool regular = stat(transport.path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
+  return transport.path != "-" && regular ? "" : transport.path;
+}
+
+// By whatever names: a link of udev's and the device it leads to.
+bool same_device(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return false;
+  if (a == b) return true;
+  struct stat of_a {
+  }, of_b{};
+  if (stat(a.c_str(), &of_a) == 0 && stat(b.c_str(), &of_b) == 0) {
+    if (S_ISCHR(of_a.st_mode) && S_ISCHR(of_b.st_mode)) return of_a.st_rdev == of_b.st_rdev;
+    return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+  }
+  // Not there now: as far as the names say.
+  std::error_code failed_a, failed_b;
+  const auto place_a = std::filesystem::weakly_canonical(a, failed_a);
+  const auto place_b = std::filesystem::weakly_canonical(b, failed_b);
+  return !failed_a && !failed_b && place_a == place_b;
+}
+
+// In one way of writing. Nothing: no numeric address.
+std::optional<std::string> plain(const std::string& address) {
+  const auto parsed = IpAddress::parse(address);
+  socklen_t size = 0;
+  // Without its interface, which need not be there now.
+  const auto bare = IpAddress::parse(address.substr(0, address.find('%')));
+  const auto place = bare ? bare->at_port(1, "", size) : std::nullopt;
+  if (!parsed || !place) return std::nullopt;
+  return std::string(reinterpret_cast<const char*>(&*place), size) + parsed->interface();
+}
+
+bool same_address(const std::string& a, const std::string& b) {
+  return a == b || (plain(a) && plain(a) == plain(b));
+}
+
+bool is_v6(const UdpSettings& udp) {
+  for (const std::string& address : {udp.group, udp.bind, udp.host})
+    if (const auto parsed = IpAddress::parse(address)) return parsed->is_v6();
+  return false;
+}
+
+bool any_address(const UdpSettings& udp) {
+  return udp.bind.empty() || same_address(udp.bind, "0.0.0.0") || same_address(udp.bind, "::");
+}
+
+// Whether one of two sockets could not be bound, or would be sent the other's datagrams. Those of a group all
+// get their own copy.
+bool same_port(const UdpSettings& a, const UdpSettings& b) {
+  if (a.port != b.port || a.port == 0 || is_v6(a) != is_v6(b)) return false;
+  if (!a.group.empty() && !b.group.empty()) return false;
+  if (a.group.empty() && b.group.empty())
+    return any_address(a) || any_address(b) || same_address(a.bind, b.bind);
+  return any_address(a.group.empty() ? a : b);
+}
+
+// Where the later of two sensors takes from the earlier one; key "": nowhere.
+struct Shared {
+  std::string key, what;
+};
+
+Shared shared(const TransportConfig& first, const TransportConfig& second) {
+  if (first.kind == Kind::udp && second.kind == Kind::udp && same_port(first.udp, second.udp))
+    return {"transport.port", std::to_string(second.udp.port)};
+  if (first.kind == Kind::tcp && second.kind == Kind::tcp && first.tcp.port == second.tcp.port &&
+      first.tcp.port != 0 && !first.tcp.host.empty() && same_address(first.tcp.host, second.tcp.host))
+    return {"transport.port", host_and_port(second.tcp.host, second.tcp.port)};
+  if (const std::string device = device_of(second); same_device(device_of(first), device))
+    return {second.kind == Kind::serial ? "transport.device" : "transport.path", in_quotes(device)};
+  return {};
+}
+
+// The sensors whose corrected rate this one takes as a channel, and itself where it takes its own at all.
+std::vector<std::pair<const SensorConfig*, const ChannelConfig*>> taken_from(const Config& config,
+                                                                             const SensorConfig& sensor) {
+  std::vector<std::pair<const SensorConfig*, const ChannelConfig*>> out;
+  for (const ChannelConfig& channel : sensor.channels) {
+    const auto field = LcmFieldName::parse(channel.field.empty() ? channel.name : channel.field);
+    if (channel.source != ChannelConfig::Source::lcm || !field || !field->of_rate()) continue;
+    for (const SensorConfig& other : config.sensors)
+      if (other.lcm_channel() == channel.lcm_channel && (&other == &sensor || field->name != kRateFields[0]))
+        out.emplace_back(&other, &channel);
+  }
+  return out;
+}
+
+bool leads_to(const Config& config, const SensorConfig& from, const SensorConfig& to,
+              std::set<const SensorConfig*>& seen) {
+  if (&from == &to) return true;
+  if (!seen.insert(&from).second) return false;
+  const auto next = taken_from(config, from);
+  return std::any_of(next.begin(), next.end(),
+                     [&](const auto& each) { return leads_to(config, *each.first, to, seen); });
+}
+
+}  // namespace
+
+std::vector<std::string> shared_sources(const Config& config) {
+  std::vector<std::string> out;
+  for (auto second = config.sensors.begin(); second != config.sensors.end(); ++second)
+    for (auto first = config.sensors.begin(); first != second; ++first)
+      if (const Shared found = shared(first->transport, second->transport); !found.key.empty()) {
+        out.push_back(complaint(config, *second, found.key,
+                                " = " + found.what + ": sensor " + in_quotes(first->name) +
+                                    " reads from there already; expected a source of its own for each"));
+        break;
+      }
+  return out;
+}
+
+std::vector<std::string> feedback_loops(const Config& config) {
+  std::vector<std::string> out;
+  for (const SensorConfig& sensor : config.sensors)
+    for (const auto& [other, channel] : taken_from(config, sensor)) {
+      std::set<const SensorConfig*> seen;
+      if (!leads_to(config, *other, sensor, seen)) continue;
+      out.push_back(complaint(config, sensor, "channel." + channel->name + ".lcm_channel",
+                              " = " + in_quotes(channel->lcm_channel) + ": the rate of sensor " +
+                                  in_quotes(sensor.name) +
+                                  " would come back as a channel of its own; expected one that does not "
+                                  "depend on it"));
+    }
+  return out;
+}
+
+}  // namespace ifog

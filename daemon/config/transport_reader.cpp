@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/transport_reader.h"
+
+#include "daemon/config/table_reader.h"
+
+namespace ifog {
+namespace {
+
+SerialSettings read_serial(TableReader& in) {
+  SerialSettings out;
+  out.device = in.required_text("device", "the path of a serial device, \"/dev/ttyUSB0\"");
+  take(in.integer("baud", 50, 20'000'000), out.baud);
+  take(in.integer("data_bits", 5, 8), out.data_bits);
+  if (const auto parity = in.choice("parity", {"none", "even", "odd"}))
+    out.parity = *parity == "even"  ? SerialSettings::Parity::even
+                 : *parity == "odd" ? SerialSettings::Parity::odd
+                                    : SerialSettings::Parity::none;
+  take(in.integer("stop_bits", 1, 2), out.stop_bits);
+  take(in.integer("baud_base", 1, 100'000'000), out.baud_base);
+  return out;
+}
+
+// What concerns more keys than one is found by the transport itself; a key that is wrong by itself was told.
+void check_network(TableReader& in, const std::string& complaint, std::size_t told,
+                   const ReadingContext& context) {
+  if (complaint.empty() || context.errors.size() != told) return;
+  const std::string key = complaint.substr(0, complaint.find_first_of(" :"));
+  in.complain(key, complaint.substr(key.size()));
+}
+
+UdpSettings read_udp(TableReader& in, const ReadingContext& context) {
+  const std::size_t told = context.errors.size();
+  UdpSettings out;
+  take(in.required_integer("port", 1, 65535), out.port);
+  take(in.text("bind"), out.bind);
+  take(in.text("group"), out.group);
+  take(in.text("interface"), out.interface);
+  take(in.text("host"), out.host);
+  check_network(in, udp_complaint(out), told, context);
+  return out;
+}
+
+TcpSettings read_tcp(TableReader& in, const ReadingContext& context) {
+  const std::size_t told = context.errors.size();
+  TcpSettings out;
+  out.host = in.required_text("host", "the sensor's numeric address, \"192.168.1.20\"");
+  take(in.required_integer("port", 1, 65535), out.port);
+  check_network(in, tcp_complaint(out), told, context);
+  return out;
+}
+
+}  // namespace
+
+TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context) {
+  TableReader in(table, where, context.file, context.errors);
+  TransportConfig out;
+  const auto type = in.choice("type", {"serial", "can", "udp", "tcp", "file"});
+  if (!type) {
+    if (!in.has("type"))
+      in.complain("type", ": missing; expected \"serial\" | \"can\" | \"udp\" | \"tcp\" | \"file\"");
+    return out;
+  }
+  if (*type == "serial") {
+    out.kind = TransportConfig::Kind::serial;
+    out.serial = read_serial(in);
+  } else if (*type == "can") {
+    out.kind = TransportConfig::Kind::can;
+    out.interface = in.required_text("interface", "a CAN interface, \"can0\"");
+  } else if (*type == "udp") {
+    out.kind = TransportConfig::Kind::udp;
+    out.udp = read_udp(in, context);
+  } else if (*type == "tcp") {
+    out.kind = TransportConfig::Kind::tcp;
+    out.tcp = read_tcp(in, context);
+  } else {
+    out.kind = TransportConfig::Kind::file;
+    out.path = context.absolute(in.required_text("path", "a file or FIFO, \"-\" for the standard input"));
+    if (const auto format = in.choice("format", {"bytes", "candump"})) out.candump = *format == "candump";
+    if (const auto pace = in.choice("pace", {"free", "recorded"})) out.recorded = *pace == "recorded";
+    take(in.number("speed", {1e-3, 1e6}), out.speed);
+    take(in.number("bytes_per_second", {1.0, 1e9}), out.bytes_per_second);
+    take(in.integer("block_bytes", 1, 1'000'000), out.block_bytes);
+    take(in.boolean("await_writer"), out.await_writer);
+    take(in.text("interface"), out.interface);
+    if (out.recorded && !out.candump && !in.has("bytes_per_second"))
+      in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second beside it");
+  }
+  in.refuse_the_rest();
+  return out;
+}
+
+}  // namespace ifog
