@@ -189,11 +189,13 @@ void Transport::enter(TransportState state, int reason) noexcept {
 
 void Transport::report(const char* what, std::uint64_t line, std::string_view text) noexcept {
   malformed_.add(1);
-  const bool first = fault_.load(std::memory_order_relaxed) == nullptr;
-  if (!first && line != 0) return;
-  if (first) fault_length_ = text.copy(fault_text_.data(), fault_text_.size());
-  fault_line_.store(line, std::memory_order_relaxed);
-  fault_.store(what, std::memory_order_release);
+  for (KindOfFault& kind : kinds_) {
+    if (kind.fault.what == what) return;
+    if (kind.fault.what != nullptr) continue;
+    kind.fault = {what, line, {kind.text.data(), text.copy(kind.text.data(), kind.text.size())}};
+    fault_.store(&kind.fault, std::memory_order_release);
+    return;
+  }
 }
 
 TransportCounters Transport::counters() const {
@@ -202,10 +204,8 @@ TransportCounters Transport::counters() const {
 }
 
 TransportFault Transport::fault() const {
-  const char* what = fault_.load(std::memory_order_acquire);
-  if (what == nullptr) return {};
-  const std::uint64_t line = fault_line_.load(std::memory_order_relaxed);
-  return {what, line, line == 0 ? std::string_view() : std::string_view(fault_text_.data(), fault_length_)};
+  const TransportFault* const latest = fault_.load(std::memory_order_acquire);
+  return latest == nullptr ? TransportFault{} : *latest;
 }
 
 }  // namespace ifog

@@ -72,12 +72,12 @@ struct TransportCounters {
                                 // from somebody else; see fault()
 };
 
-// The first fault in what was read, which is where to begin to look, for one line in the log: "PATH:LINE:
-// WHAT". What is no matter of lines (a file that is cut off) stands over one that is.
+// The latest kind of fault in what was read, where it first was, which is where to begin to look; for one
+// line in the log: "PATH:LINE: WHAT".
 struct TransportFault {
   const char* what = nullptr;  // static text; nullptr: none so far
   std::uint64_t line = 0;      // 0: not a matter of lines
-  std::string_view text{};     // what stands there, its beginning
+  std::string_view text{};     // what stands there, its beginning; lives as long as the transport
 };
 
 class Transport {
@@ -215,14 +215,17 @@ class Transport {
   // finds that it is stopped.
   std::atomic<int> alarm_{-1};
   // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person;
-  // stop() wakes a waiting read() by the event, not by this flag. The fault's line is published by the fault.
+  // stop() wakes a waiting read() by the event, not by this flag.
   std::atomic<bool> stopped_{false};
   std::atomic<TransportState> state_{TransportState::gone};
   std::atomic<int> reason_{0};
-  std::atomic<const char*> fault_{nullptr};
-  std::atomic<std::uint64_t> fault_line_{0};
-  std::array<char, 60> fault_text_{};  // written once, before the fault
-  std::size_t fault_length_ = 0;
+  // Of each kind the first, written once and then published.
+  struct KindOfFault {
+    TransportFault fault;
+    std::array<char, 60> text{};
+  };
+  std::array<KindOfFault, 6> kinds_{};
+  std::atomic<const TransportFault*> fault_{nullptr};
   Counter bytes_, frames_, reopened_, malformed_;
 };
 

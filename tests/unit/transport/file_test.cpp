@@ -199,6 +199,19 @@ TEST_F(FileTransport, PassesOnlyWantedFramesAndCountsTheRest) {
   EXPECT_STREQ(transport->fault().what, "the log is cut off here");
 }
 
+// Where to begin to look: the first of many, with what stands there.
+TEST_F(FileTransport, OfManyBadLinesTheFirstIsTold) {
+  std::string log = "(1.0) can0 123#01\n";
+  for (int n = 0; n < 1000; ++n) log += "rubbish " + std::to_string(n) + std::string(100, ' ') + "\n";
+  candump(log + "(1.1) can0 123#02\n");
+  const auto transport = opened();
+  EXPECT_EQ(all_frames(*transport).size(), 2U);
+  EXPECT_EQ(transport->counters().malformed, 1000U);
+  EXPECT_EQ(transport->fault().line, 2U);
+  EXPECT_EQ(transport->fault().text.substr(0, 10), "rubbish 0 ");
+  EXPECT_EQ(transport->fault().text.size(), 60U);
+}
+
 TEST_F(FileTransport, ALineThatNeverEndsIsReportedOnceAndPassedOver) {
   candump("(1.0) can0 123#01\n" + std::string(200'000, 'x') + "\n(1.1) can0 123#02\n");
   const auto transport = opened();
