@@ -125,6 +125,23 @@ double CaptureBuilder::believable(std::size_t channel, double value) {
   return kMissing;
 }
 
+// Of the rates just added: the same limits that the daemon's chain has.
+void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
+  bool at_end = false, beyond = false;
+  for (std::uint32_t i = 0; i < description_.axes; ++i) {
+    double& rate = capture_.rate_radps[i].back();
+    const double full_scale = description_.full_scale[i];
+    const bool marked =
+        (sample.valid_axes & 1U << i) == 0 || (description_.kind == IFOG_ANGLE && std::isnan(rate));
+    const bool saturated = full_scale > 0.0 && std::abs(rate) >= full_scale;
+    if (marked || (!saturated && std::abs(rate) <= IFOG_MAX_RATE)) continue;
+    (saturated ? at_end : beyond) = true;
+    rate = kMissing;
+  }
+  at_full_scale_ += at_end ? 1 : 0;
+  implausible_ += beyond ? 1 : 0;
+}
+
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
   const bool first = taken_ + capture_.size() == 0;
   if (first) choose_clock(sample);
@@ -162,7 +179,18 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
     const std::size_t o = i - description_.environments;
     capture_.channels[i].values.push_back(believable(i, o < outside.size() ? outside[o] : kMissing));
   }
+  hold_to_what_can_be(sample);
   last_ = sample;
+}
+
+std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::size_t samples, const char* what) {
+    if (samples != 0) lines.push_back(std::to_string(samples) + " samples " + what + ", taken for missing");
+  };
+  say(at_full_scale, "at or beyond the sensor's full scale");
+  say(implausible, "with a rate that no sensor measures");
+  return lines;
 }
 
 std::vector<std::string> CaptureBuilder::names() const {

@@ -21,6 +21,7 @@ namespace ifog {
 //   - the sequence counter, unwrapped, over the nominal rate, from 0;
 //   - the arrival times, from 0;
 //   - the number of the sample over the nominal rate.
+// As in the daemon a rate that reaches the driver's full scale, or is one that no sensor measures, is NaN.
 // A delta angle becomes a rate over its own sample period, also behind a gap; an angle over the time since
 // the sample before, so the first sample has none. Axes the device marks invalid and environment values that
 // did not come with the sample, or are beyond what their unit can be (measurable.h), are NaN.
@@ -53,6 +54,9 @@ class CaptureBuilder {
   [[nodiscard]] std::size_t missing() const { return missing_; }  // samples the counter says were not there
   // Samples left out because they came twice, or after one that follows.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
+  // Samples with a rate taken for missing: at full scale; or beyond what the driver interface allows.
+  [[nodiscard]] std::size_t at_full_scale() const { return at_full_scale_; }
+  [[nodiscard]] std::size_t implausible() const { return implausible_; }
 
  private:
   enum class Clock { undecided, device, counter, arrival, number };
@@ -64,6 +68,7 @@ class CaptureBuilder {
   double believable(std::size_t channel, double value);
   void refuse(double now) const;
   void add_rates(const ifog_sample& sample, double elapsed, double period);
+  void hold_to_what_can_be(const ifog_sample& sample);
 
   ifog_description description_;
   Capture capture_;
@@ -72,13 +77,17 @@ class CaptureBuilder {
   DeviceCount counter_;      // as the daemon counts
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
-  std::size_t missing_ = 0, repeated_ = 0, impossible_ = 0;
+  std::size_t missing_ = 0, repeated_ = 0, impossible_ = 0, at_full_scale_ = 0, implausible_ = 0;
   std::vector<Measurable> channel_range_;
   std::size_t taken_ = 0;  // rows, by next_rows()
   double last_s_ = 0.0;    // time of the last row
   bool broken_ = false, restarts_ = false;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
 };
+
+// In the words of every command: samples whose rate reaches the full scale, and whose rate no sensor
+// measures. One line each, none for none.
+std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible);
 
 // Hands what a builder has made to a sink, some thousand rows at a time.
 class BuiltRows {

@@ -63,6 +63,7 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
     : capture_(capture), driver_(driver), angle_(capture.axes.size(), 0.0) {
   const ifog_description& d = driver.description();
   rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
+  timed_ = d.has_device_time != 0 || driver.takes_can();
   if (capture.axes.size() == 1) {
     const std::string& own = capture.axes.front();
     const bool by_own_name = axis.empty() && !own.empty() && d.axes > 1;
@@ -109,7 +110,13 @@ ifog_sample CaptureEncoder::next_sample() {
   const double periods = elapsed * rate_hz_;
   // Below one and a half it is jitter of the recorded times, not a missing row.
   const std::uint64_t steps = periods < 1.5 ? 1 : static_cast<std::uint64_t>(std::llround(periods));
-  if (!first) count_ += steps;
+  if (!first) {
+    count_ += steps;
+    elapsed_s_ += elapsed;
+    const std::uint64_t modulus = d.sequence_modulus;
+    const std::uint64_t shown = modulus == 0 ? 1 : (steps - 1) % modulus + 1;
+    told_s_ += static_cast<double>(shown) / rate_hz_;
+  }
 
   sample_.arrival_ns = std::llround(now * 1e9);
   sample_.device_time_ns = sample_.arrival_ns;
@@ -120,8 +127,11 @@ ifog_sample CaptureEncoder::next_sample() {
   }
   sample_.valid_axes = 0;
   std::fill(std::begin(sample_.value), std::end(sample_.value), kMissing);
+  bool at_full_scale = false;
   for (std::size_t i = 0; i < axis_of_.size(); ++i) {
     const double rate = capture_.rate_radps[i][row_];
+    const double full_scale = d.full_scale[axis_of_[i]];
+    at_full_scale = at_full_scale || (full_scale > 0.0 && std::abs(rate) >= full_scale);
     double value = rate;
     if (d.kind == IFOG_DELTA_ANGLE) value = rate * elapsed / static_cast<double>(steps);
     if (d.kind == IFOG_ANGLE && !std::isnan(rate)) {
@@ -132,6 +142,7 @@ ifog_sample CaptureEncoder::next_sample() {
     sample_.value[axis_of_[i]] = value;
     sample_.valid_axes |= 1U << axis_of_[i];
   }
+  at_full_scale_ += at_full_scale ? 1 : 0;
   sample_.environment_fresh = 0;
   for (std::uint32_t i = 0; i < channels_.size(); ++i) {
     if (channels_[i] == nullptr || std::isnan((*channels_[i])[row_])) continue;

@@ -48,6 +48,14 @@ class CaptureEncoder {
   [[nodiscard]] std::size_t rows_done() const { return rows_before_ + row_; }
   // Rows without a rate, in a format that cannot say so: sent as nothing, which is a gap in the counter.
   [[nodiscard]] std::size_t rows_left_out() const { return left_out_; }
+  // Time of the rows so far that whoever reads the frames will not know of, s: of a format without a clock
+  // the counter and the nominal rate are all of its time, and a counter's whole rounds do not show. More than
+  // 0: missing from it; less: added. 0 where the format, or a log of its frames, carries times.
+  [[nodiscard]] double time_lost_s() const { return timed_ ? 0.0 : elapsed_s_ - told_s_; }
+  [[nodiscard]] double elapsed_s() const { return elapsed_s_; }  // from the first row to the last
+  [[nodiscard]] double rate_hz() const { return rate_hz_; }      // that the frames are read by
+  // Rows whose rate reaches the driver's full scale: sent, and missing to whoever reads the frames.
+  [[nodiscard]] std::size_t rows_at_full_scale() const { return at_full_scale_; }
 
  private:
   template <typename Out>
@@ -62,9 +70,11 @@ class CaptureEncoder {
   std::vector<double> angle_;  // by the capture's axis
   ifog_sample sample_{};
   std::size_t row_ = 0;
-  std::size_t rows_before_ = 0;  // in pieces before this one
-  double before_s_ = 0.0;        // time of the row before
-  std::size_t left_out_ = 0;
+  std::size_t rows_before_ = 0;            // in pieces before this one
+  double before_s_ = 0.0;                  // time of the row before
+  double elapsed_s_ = 0.0, told_s_ = 0.0;  // since the first row, by the capture and by the format
+  bool timed_ = false;
+  std::size_t left_out_ = 0, at_full_scale_ = 0;
   std::uint64_t count_ = 0;
   double rate_hz_ = 0.0;
 };

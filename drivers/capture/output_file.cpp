@@ -67,6 +67,22 @@ bool is_standard_output(const std::string& path) {
   return !path.empty() && destination_of(path, error).descriptor == STDOUT_FILENO;
 }
 
+std::optional<FileIdentity> file_identity(const std::string& path) {
+  std::error_code error;
+  const Destination to = destination_of(path, error);
+  if (error) return std::nullopt;
+  struct stat info {};
+  const bool there =
+      to.descriptor >= 0 ? ::fstat(to.descriptor, &info) == 0 : ::stat(to.file.c_str(), &info) == 0;
+  if (there) {
+    if (!S_ISREG(info.st_mode)) return std::nullopt;
+    return FileIdentity{info.st_dev, info.st_ino, ""};
+  }
+  if (to.descriptor >= 0 || to.file.filename().empty() || ::stat(to.file.parent_path().c_str(), &info) != 0)
+    return std::nullopt;
+  return FileIdentity{info.st_dev, info.st_ino, to.file.filename().string()};
+}
+
 OutputFile::OutputFile(std::string path, int descriptor) : path_(std::move(path)), fd_(descriptor) {}
 
 // By way of the other, so that a failure in here runs the destructor.

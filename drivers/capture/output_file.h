@@ -4,6 +4,8 @@
 // to; devices, FIFOs and open descriptors (/dev/stdout) are written as they are, never replaced.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -38,6 +40,18 @@ class OutputFile {
   std::string beside_;  // the name of the bytes until finish(), where a file without one cannot be had
   int fd_ = -1;
 };
+
+// The regular file that a path leads to, through links and open descriptors ("-" is standard output), or
+// would make: what two names of one file have in common.
+struct FileIdentity {
+  std::uintmax_t device = 0, inode = 0;
+  std::string name;  // of a file that is not there yet: in the folder that device and inode are of
+
+  bool operator==(const FileIdentity&) const = default;
+};
+
+// Nothing for a device, a pipe, a folder, and for what leads nowhere: they are no file to be lost.
+[[nodiscard]] std::optional<FileIdentity> file_identity(const std::string& path);
 
 // "-", /dev/stdout, /dev/fd/1 and whatever else leads to descriptor 1.
 [[nodiscard]] bool is_standard_output(const std::string& path);

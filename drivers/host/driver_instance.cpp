@@ -49,6 +49,21 @@ bool ended(const char (&name)[N]) {
   return std::memchr(name, '\0', N) != nullptr;
 }
 
+// What an encoder hands over, through C: an allocation that fails waits for its end.
+template <typename Item>
+struct Collected {
+  std::vector<Item>& out;
+  std::exception_ptr thrown;
+
+  void take(const Item* items, std::size_t count) noexcept {
+    try {
+      if (!thrown) out.insert(out.end(), items, items + count);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  }
+};
+
 // What the host will use as sizes and indices must hold for any plugin, ours or not.
 const char* impossible(const ifog_description& d) {
   if (d.kind > IFOG_ANGLE) return "a kind that is none of rate, delta angle, angle";
@@ -114,12 +129,14 @@ void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::ui
   if (table().encode_bytes == nullptr)
     throw std::runtime_error(std::string("driver ") + table().name + ": cannot encode to bytes");
   ErrorText error{};
-  const auto emit = [](void* sink, const std::uint8_t* bytes, std::size_t length) {
-    auto& target = *static_cast<std::vector<std::uint8_t>*>(sink);
-    target.insert(target.end(), bytes, bytes + length);
+  Collected<std::uint8_t> collected{out, {}};
+  const auto emit = [](void* to, const std::uint8_t* bytes, std::size_t length) {
+    static_cast<Collected<std::uint8_t>*>(to)->take(bytes, length);
   };
   const std::size_t before = out.size();
-  if (table().encode_bytes(instance_, &sample, emit, &out, error.data(), error.size()) == 0) return;
+  const int failed = table().encode_bytes(instance_, &sample, emit, &collected, error.data(), error.size());
+  if (collected.thrown) std::rethrow_exception(collected.thrown);
+  if (failed == 0) return;
   out.resize(before);  // a sample is encoded whole or not at all
   throw std::runtime_error(std::string("driver ") + table().name + ": " +
                            printable(error.data(), kLongestMessage));
@@ -129,11 +146,14 @@ void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_
   if (table().encode_can == nullptr)
     throw std::runtime_error(std::string("driver ") + table().name + ": cannot encode to CAN frames");
   ErrorText error{};
-  const auto emit = [](void* sink, const ifog_can_frame* frame) {
-    static_cast<std::vector<ifog_can_frame>*>(sink)->push_back(*frame);
+  Collected<ifog_can_frame> collected{out, {}};
+  const auto emit = [](void* to, const ifog_can_frame* frame) {
+    static_cast<Collected<ifog_can_frame>*>(to)->take(frame, 1);
   };
   const std::size_t before = out.size();
-  if (table().encode_can(instance_, &sample, emit, &out, error.data(), error.size()) == 0) return;
+  const int failed = table().encode_can(instance_, &sample, emit, &collected, error.data(), error.size());
+  if (collected.thrown) std::rethrow_exception(collected.thrown);
+  if (failed == 0) return;
   out.resize(before);
   throw std::runtime_error(std::string("driver ") + table().name + ": " +
                            printable(error.data(), kLongestMessage));

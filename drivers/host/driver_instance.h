@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -10,6 +11,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "drivers/host/plugin.h"
@@ -41,16 +43,21 @@ class DriverInstance {
   // What the plugin could do without but its user should know: one line each.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
-  // Hot path. `sink` is called with each const ifog_sample& as its last byte is seen; it must not throw. Only
-  // for a driver that takes_bytes() / takes_can().
+  // Hot path. `sink` is called with each const ifog_sample& as its last byte is seen. What it throws is
+  // thrown on once the plugin has returned, and the sink gets none of the samples between: nothing may be
+  // thrown through a plugin's C functions. Only for a driver that takes_bytes() / takes_can().
   template <typename Sink>
   void decode_bytes(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, Sink&& sink) {
-    table().decode_bytes(instance_, bytes.data(), bytes.size(), arrival_ns, &emit_sample<Sink>,
-                         address(sink));
+    Emission<std::remove_reference_t<Sink>> emission{sink, {}};
+    table().decode_bytes(instance_, bytes.data(), bytes.size(), arrival_ns, &decltype(emission)::take,
+                         &emission);
+    emission.throw_on();
   }
   template <typename Sink>
   void decode_can(const ifog_can_frame& frame, Sink&& sink) {
-    table().decode_can(instance_, &frame, &emit_sample<Sink>, address(sink));
+    Emission<std::remove_reference_t<Sink>> emission{sink, {}};
+    table().decode_can(instance_, &frame, &decltype(emission)::take, &emission);
+    emission.throw_on();
   }
   void reset() { table().reset(instance_); }
 
@@ -60,14 +67,26 @@ class DriverInstance {
   void encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out);
 
  private:
+  // A sink on its way through C.
   template <typename Sink>
-  static void* address(Sink& sink) {
-    return const_cast<void*>(static_cast<const void*>(std::addressof(sink)));
-  }
-  template <typename Sink>
-  static void emit_sample(void* sink, const ifog_sample* sample) {
-    (*static_cast<std::remove_reference_t<Sink>*>(sink))(*sample);
-  }
+  struct Emission {
+    Sink& sink;
+    std::exception_ptr thrown;
+
+    static void take(void* user, const ifog_sample* sample) noexcept {
+      auto& self = *static_cast<Emission*>(user);
+      if (self.thrown) return;
+      try {
+        self.sink(*sample);
+      } catch (...) {
+        self.thrown = std::current_exception();
+      }
+    }
+    void throw_on() {
+      if (thrown) [[unlikely]]
+        std::rethrow_exception(std::move(thrown));
+    }
+  };
 
   std::shared_ptr<const Plugin> plugin_;
   void* instance_ = nullptr;

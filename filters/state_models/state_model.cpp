@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/state_models/state_model.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +12,7 @@
 #include "filters/state_models/gauss_markov.h"
 #include "filters/state_models/harmonic.h"
 #include "filters/state_models/random_walk.h"
+#include "filters/state_models/state_name.h"
 #include "filters/state_models/sum.h"
 
 namespace ifog {
@@ -92,6 +95,20 @@ std::unique_ptr<StateModel> make_term(const std::string& term, ParameterReader& 
 
 std::vector<std::string> state_model_names() {
   return {"random-walk", "integrated-random-walk", "gauss-markov", "ar(p)", "arma(p,q)", "harmonic"};
+}
+
+bool is_state_model(const std::string& name) {
+  constexpr std::string_view kPlus = " + ";
+  constexpr std::array kPlain{"random-walk", "integrated-random-walk", "gauss-markov", "harmonic"};
+  for (std::size_t from = 0; from <= name.size();) {
+    const std::size_t to = std::min(name.find(kPlus, from), name.size());
+    const std::string term = name.substr(from, to - from);
+    if (std::find(kPlain.begin(), kPlain.end(), term) == kPlain.end() && orders(term, "ar").size() != 1 &&
+        orders(term, "arma").size() != 2)
+      return false;
+    from = to + kPlus.size();
+  }
+  return true;
 }
 
 std::unique_ptr<StateModel> make_state_model(const std::string& name, std::span<const double> parameters,

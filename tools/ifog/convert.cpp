@@ -9,6 +9,7 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -23,6 +24,7 @@ struct Convert {
 
 void Convert::run() const {
   will_write("TO", to);
+  input.will_read("FROM", from);
   InputFile file(from);
   const bool from_columns = input.has_layout() || file_kind(file) == FileKind::capture;
   // Standard output has no ending: it takes what the capture is not.

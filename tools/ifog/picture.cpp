@@ -14,6 +14,7 @@
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
@@ -28,6 +29,7 @@ struct Arguments {
 
 void run(const Arguments& a) {
   will_write("--output", a.picture);
+  will_read("log", a.log);
   InputFile log(a.log);
   const Table table = read_published(log, a.channel);
   const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";

@@ -11,6 +11,7 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
@@ -27,6 +28,7 @@ struct Simulate {
   void run() const {
     will_write("--output", output);
     will_write("--truth", truth);
+    encoding.will_read("SCENARIO", scenario);
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
     simulate::Simulation made;
     try {

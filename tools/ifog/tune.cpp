@@ -21,7 +21,9 @@
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -52,19 +54,23 @@ Rest rest_of(const CaptureView& capture, double period_s, const std::string& pat
 }
 
 // Evenly spaced columns: a sample that moved or is missing from the record becomes a NaN, so that the
-// filter's step stays the period. Returns one column an axis, at most `most` samples of each, and says how
-// many were left out.
+// filter's step stays the period. Returns one column an axis, of at most `most` rows of the capture whatever
+// is missing between them, and says how many were left out.
 std::vector<std::vector<double>> even(const CaptureView& capture, const Rest& rest, double period_s,
                                       std::size_t most, std::size_t& left) {
   std::vector<std::vector<double>> out(capture.axes.size());
-  std::size_t row = 0, part = 0;
-  for (; row < capture.size(); ++row) {
-    // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing.
-    constexpr double kLongestHole = 10000.0;
+  const std::size_t rows = std::min(capture.size(), most);
+  left = capture.size() - rows;
+  // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing; nor do
+  // all holes together, beyond ten times the rows.
+  constexpr double kLongestHole = 10000.0;
+  std::size_t room = 10 * rows, part = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
     const double steps =
         row == 0 ? 1.0 : std::round((capture.time_s[row] - capture.time_s[row - 1]) / period_s);
-    const auto missing = static_cast<std::size_t>(std::clamp(steps - 1.0, 0.0, kLongestHole));
-    if (out[0].size() + missing + 1 > most) break;
+    const auto hole = static_cast<std::size_t>(std::clamp(steps - 1.0, 0.0, kLongestHole));
+    const std::size_t missing = std::min(hole, std::max<std::size_t>(room, 1));
+    room -= std::min(room, missing);
     while (part < rest.at_rest.size() && rest.at_rest[part].end <= row) ++part;
     const bool resting = part < rest.at_rest.size() && rest.at_rest[part].begin <= row;
     for (std::size_t a = 0; a < out.size(); ++a) {
@@ -72,7 +78,6 @@ std::vector<std::vector<double>> even(const CaptureView& capture, const Rest& re
       out[a].push_back(resting ? capture.rate_radps[a][row] : std::nan(""));
     }
   }
-  left = capture.size() - row;
   return out;
 }
 
@@ -239,10 +244,12 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
 void run(const Options& options) {
   will_write("--json", options.json_file);
   will_write("--write-model", options.model);
+  options.input.will_read("capture", options.capture);
   LongCapture read = options.input.read_long_capture(
       options.capture, nullptr, [](const std::string& column) { return column.starts_with("rate"); });
   read.cut(options.part, options.capture);
-  const CaptureView& capture = read.view();
+  CaptureView capture = read.view();
+  keep_usable_axes(capture, options.capture);
   if (capture.size() < 3)
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
                              " rows, expected at least 200");
@@ -269,8 +276,7 @@ void run(const Options& options) {
   }
   say("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
       capture.axes.size() > 1 ? ", all axes under one model" : "");
-  if (left > 0)
-    say("the last %zu rows are left out; --samples %zu takes all\n", left, columns[0].size() + left);
+  if (left > 0) say("the last %zu rows are left out; --samples %zu takes all\n", left, capture.size());
   for (const std::string& note : notes) say("note: %s\n", note.c_str());
   print(tuning);
   print_held_out(tuning, capture.axes);
@@ -309,7 +315,7 @@ void add_tune(CLI::App& app) {
   // One a flag: a capture that follows is no state model.
   command->add_option("--state", options->states, "state models to try; may stand several times")
       ->allow_extra_args(false);
-  command->add_option("--samples", options->samples, "most samples of each axis to fit")
+  command->add_option("--samples", options->samples, "most rows of the capture to fit")
       ->check(CLI::Range(std::size_t{200}, std::size_t{100000000}))
       ->capture_default_str();
   options->input.add_to(*command);

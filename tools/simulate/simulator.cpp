@@ -27,7 +27,9 @@ class Simulator {
   Simulator(const Scenario& scenario, const Told& told) : s_(scenario), told_(told) {
     if (!(s_.sample_rate_hz > 0.0)) throw std::invalid_argument("sample_rate_hz must be more than 0");
     if (!(s_.duration_s * s_.sample_rate_hz >= 2.0 && s_.duration_s * s_.sample_rate_hz <= 2e9))
-      throw std::invalid_argument("duration_s × sample_rate_hz must be 2 to 2·10⁹ samples");
+      throw std::invalid_argument("duration_s × sample_rate_hz is " +
+                                  std::to_string(s_.duration_s * s_.sample_rate_hz) +
+                                  " samples, expected 2 to 2·10⁹");
     if (s_.axes.empty() || s_.axes.size() > 3) throw std::invalid_argument("axes must be one to three names");
     grid_ = {s_.sample_rate_hz, static_cast<std::size_t>(std::llround(s_.duration_s * s_.sample_rate_hz))};
   }

@@ -128,6 +128,32 @@ TEST_F(Output, OpenDescriptorsAreWrittenWhereTheyAre) {
   EXPECT_FALSE(ifog::is_standard_output(""));
 }
 
+TEST_F(Output, OneFileHasOneIdentityUnderAllItsNames) {
+  write_file(path("file"), "1");
+  fs::create_symlink("file", path("link"));
+  fs::create_hard_link(path("file"), path("hard"));
+  const auto file = ifog::file_identity(path("file"));
+  ASSERT_TRUE(file);
+  EXPECT_EQ(ifog::file_identity(path("link")), file);
+  EXPECT_EQ(ifog::file_identity(path("hard")), file);
+  EXPECT_EQ(ifog::file_identity(path("../") + folder_.filename().string() + "/file"), file);
+  const int opened = ::open(path("file").c_str(), O_RDONLY | O_CLOEXEC);
+  EXPECT_EQ(ifog::file_identity("/dev/fd/" + std::to_string(opened)), file);
+  ::close(opened);
+
+  // One that is not there yet has that of the name it will get.
+  fs::create_symlink("yet", path("to_yet"));
+  const auto yet = ifog::file_identity(path("yet"));
+  ASSERT_TRUE(yet);
+  EXPECT_EQ(ifog::file_identity(path("to_yet")), yet);
+  EXPECT_NE(ifog::file_identity(path("other")), yet);
+  EXPECT_NE(yet, file);
+
+  EXPECT_FALSE(ifog::file_identity("/dev/null"));
+  EXPECT_FALSE(ifog::file_identity(folder_));
+  EXPECT_FALSE(ifog::file_identity(path("none/file")));
+}
+
 TEST_F(Output, SaysWhatIsInTheWay) {
   EXPECT_EQ(refusal(path("no/f")), path("no/f") + ": cannot create: No such file or directory");
   EXPECT_EQ(refusal(folder_), folder_.string() + ": is a folder, expected a file to write");

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <stdexcept>
 
 #include "drivers/host/driver_instance.h"
 
@@ -154,6 +156,19 @@ TEST(DriverHost, FoldersOfTheEnvironmentComeBeforeTheBuildTree) {
 }
 
 // The encoder gives a sample whole or not at all.
+// A plugin's functions are C and noexcept: what a sink throws would end the program there.
+TEST(DriverHost, WhatASinkThrowsComesOutBehindThePlugin) {
+  const std::string rows = "time_s,rate_x_radps\n0,1\n1,2\n2,3\n";
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size());
+  ifog::DriverInstance driver = ifog::make_driver("capture", {{"columns", "rate_x_radps"}});
+  int taken = 0;
+  const auto sink = [&](const ifog_sample&) {
+    if (++taken == 2) throw std::runtime_error("the disk is full");
+  };
+  EXPECT_THROW(driver.decode_bytes(bytes, 0, sink), std::runtime_error);
+  EXPECT_EQ(taken, 2) << "a sink that has thrown gets no more";
+}
+
 TEST(DriverHost, WhatCannotBeEncodedLeavesNothingBehind) {
   ifog::DriverInstance driver = ifog::make_driver("template", {});
   ifog_sample sample{};

@@ -166,6 +166,50 @@ TEST_F(Recording, AMissingRateStaysMissing) {
   EXPECT_TRUE(std::isnan(back.rate_radps[0][10]));
 }
 
+// KVH's data sheet: ±490 °/s. The daemon takes what reaches it for missing, so whoever else reads it must,
+// too.
+TEST_F(Recording, ARateAtFullScaleIsMissing) {
+  constexpr double kFullScale = 490.0 * std::numbers::pi / 180.0;
+  Capture fast = wave({"x", "y", "z"});
+  for (std::size_t i = 100; i < 110; ++i) fast.rate_radps[0][i] = i % 2 == 0 ? 12.0 : -12.0;
+  fast.rate_radps[1][104] = kFullScale * 1.0001;
+  fast.rate_radps[2][105] = kFullScale * 0.9999;
+  const auto plugin = ifog::find_plugin("kvh1750", ifog::plugin_folders());
+  const DriverSettings settings{{"rate_hz", "200"}};
+  ifog::DriverInstance out(plugin, settings), in(plugin, settings);
+  ifog::CaptureEncoder encoder(fast, out, 200.0);
+  std::vector<std::uint8_t> bytes;
+  while (encoder.next(bytes)) {
+  }
+  EXPECT_EQ(encoder.rows_at_full_scale(), 10U);
+  ifog::CaptureBuilder builder(in.description());
+  in.decode_bytes(bytes, 0, [&](const ifog_sample& sample) { builder.add(sample); });
+  EXPECT_EQ(builder.at_full_scale(), 10U);
+  EXPECT_EQ(builder.implausible(), 0U);
+  const Capture back = builder.finish();
+  ASSERT_EQ(back.size(), fast.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    EXPECT_EQ(std::isnan(back.rate_radps[0][i]), i >= 100 && i < 110) << i;
+    EXPECT_EQ(std::isnan(back.rate_radps[1][i]), i == 104) << i;
+    EXPECT_FALSE(std::isnan(back.rate_radps[2][i])) << i;
+  }
+}
+
+// What a format without a clock loses: format A has a counter of 7 bits, B a clock.
+TEST_F(Recording, TimeThatTheFormatCannotCarryIsKnown) {
+  constexpr int kMissingRows = 300;  // two rounds of the counter, and 44 that show
+  const Capture holed = wave({"x", "y", "z"}, kMissingRows);
+  for (const auto& [format, lost_s] : {std::pair{"a", 256.0 / 200.0}, {"b", 0.0}}) {
+    ifog::DriverInstance out(ifog::find_plugin("kvh1750", ifog::plugin_folders()),
+                             {{"rate_hz", "200"}, {"format", format}});
+    ifog::CaptureEncoder encoder(holed, out, 200.0);
+    std::vector<std::uint8_t> bytes;
+    while (encoder.next(bytes)) {
+    }
+    EXPECT_NEAR(encoder.time_lost_s(), lost_s, 1e-9) << format;
+  }
+}
+
 TEST_F(Recording, ACutOffFileIsCounted) {
   const Capture capture = wave({"x", "y", "z"});
   there_and_back(capture, "kvh1750", {{"format", "a"}});

@@ -8,6 +8,7 @@
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -26,6 +27,7 @@ struct Arguments {
 void run(Arguments& a) {
   will_write("--json", a.json);
   will_write("--plot", a.picture);
+  for (const std::string& capture : a.captures) a.input.will_read("capture", capture);
   a.options.kind = a.estimator == "modified"   ? Deviation::kModified
                    : a.estimator == "hadamard" ? Deviation::kHadamard
                                                : Deviation::kAllan;

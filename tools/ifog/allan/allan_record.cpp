@@ -13,6 +13,7 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/rest/rest.h"
+#include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
 namespace {
@@ -121,6 +122,15 @@ class Gaps {
   std::size_t first_row_;
 };
 
+// No value at all in a column's rows.
+bool is_dead(const SeriesView& values) {
+  bool dead = true;
+  for_each_piece(values, 0, values.size(), [&](std::span<const double> piece, std::size_t) {
+    dead = dead && std::all_of(piece.begin(), piece.end(), [](double value) { return std::isnan(value); });
+  });
+  return dead;
+}
+
 // All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
 // rates.
 Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Rows& rows,
@@ -128,8 +138,10 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   std::vector<SeriesView> axes;
   std::string signal, axis;
   for (const LongColumn& column : table.columns)
-    if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw"))
-      axes.push_back(SeriesView(column.values).part(rows.begin, rows.end));
+    if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw")) {
+      const SeriesView rate = SeriesView(column.values).part(rows.begin, rows.end);
+      if (!is_dead(rate)) axes.push_back(rate);
+    }
   Rest all;
   all.samples = rows.end - rows.begin;
   all.at_rest = {{0, all.samples}};
@@ -173,9 +185,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
     record.notes.push_back(gaps.place(clock.first_gap) + ": " + what);
   }
   if (nans > 0) {
-    const std::string what = column + " is missing in " + std::to_string(nans) +
-                             (nans == 1 ? " row" : " rows") + ", first at " + number(time_s.at(first_nan)) +
-                             " s";
+    const std::string what = missing_in_words(column, nans, rate.size(), time_s.at(first_nan));
     if (options.refuse_gaps)
       throw std::runtime_error(gaps.place(first_nan) + ": " + what + ", expected none");
     record.notes.push_back(gaps.place(first_nan) + ": " + what);
@@ -270,12 +280,19 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   const Gaps gaps(name, table, rows.begin);
   const Rest rest = rest_of(name, table, rows, clock, options);
   std::vector<AllanRecord> records;
-  std::string signal, axis, known;
+  std::string signal, axis;
+  std::vector<std::string> axes, left_out;
+  bool has_axis = false;
   for (const LongColumn& column : table.columns) {
     if (!signal_of(column.name, signal, axis)) continue;
-    known += (known.empty() ? "" : ", ") + (axis.empty() ? "(none)" : axis);
+    if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
     if (!options.axis.empty() && axis != options.axis) continue;
+    has_axis = true;
     SeriesView rate = column.values;
+    if (is_dead(rate.part(rows.begin, rows.end))) {
+      left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
+      continue;
+    }
     LongSeries error;
     if (options.minus_reference && signal == "rate") {
       error = less_reference(name, table, rate, axis);
@@ -287,11 +304,14 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     if (const std::string motion = in_words(rest, clock.period_s, time_s.at(0)); !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }
-  if (known.empty())
+  if (axes.empty())
     throw std::runtime_error(
         name + ": no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`");
-  if (records.empty())
-    throw std::runtime_error(name + ": no axis " + in_quotes(options.axis) + ", expected one of " + known);
+  if (records.empty() && !options.axis.empty() && !has_axis)
+    throw std::runtime_error(name + ": --axis is " + in_quotes(options.axis) + ", expected " +
+                             expected_axes(axes));
+  if (records.empty()) refuse_without_rates(name, time_s.size());
+  for (const std::string& dead : left_out) tell_left_out(name, dead, time_s.size());
   return records;
 }
 

@@ -15,6 +15,7 @@
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/captures/whole_table.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -114,6 +115,12 @@ FileKind CaptureInput::kind(const InputFile& file) const {
   return has_driver() ? FileKind::bytes : FileKind::capture;
 }
 
+void CaptureInput::will_read(const std::string& argument, const std::string& path) const {
+  tools::will_read(argument, path);
+  const DriverSettings all = settings();
+  if (const auto found = all.find("dbc"); found != all.end()) tools::will_read("--dbc", found->second);
+}
+
 RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,
                                               const std::function<void(const ifog_sample&)>& sink) const {
   const RecordingCounts counts = decode_recording(file, instance, instance.takes_can() ? channel : "", sink);
@@ -158,6 +165,8 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
   if (builder.impossible() != 0)
     warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", path.c_str(),
          builder.impossible());
+  for (const std::string& line : not_measured_in_words(builder.at_full_scale(), builder.implausible()))
+    warn("%s: %s\n", path.c_str(), line.c_str());
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {

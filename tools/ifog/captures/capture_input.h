@@ -58,6 +58,9 @@ struct CaptureInput {
   // with; what may be meant otherwise is told on standard error.
   [[nodiscard]] Capture read_columns(InputFile& file) const;
 
+  // This capture and what is read to understand it, into the table of the run's files (command_files.h).
+  void will_read(const std::string& argument, const std::string& path) const;
+
   // Throws std::runtime_error with one line.
   [[nodiscard]] DriverInstance make_driver() const;
 

@@ -2,7 +2,9 @@
 #include "tools/ifog/captures/capture_output.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -119,6 +121,17 @@ void write_recording(const LongTable& table, const std::string& from, const std:
     if (encoder.rows_left_out() != 0)
       warn("%s: %zu rows without a rate are left out: the format cannot say so\n", from.c_str(),
            encoder.rows_left_out());
+    if (const double lost_s = encoder.time_lost_s();
+        std::abs(lost_s) > std::max(1.5 / encoder.rate_hz(), 1e-3 * encoder.elapsed_s()))
+      warn(
+          "%s: its %.6g s become %.6g s: the format has no clock, and whoever reads it counts %g samples a "
+          "second\n",
+          from.c_str(), encoder.elapsed_s(), encoder.elapsed_s() - lost_s, encoder.rate_hz());
+    if (encoder.rows_at_full_scale() != 0)
+      warn(
+          "%s: %zu samples at or beyond the sensor's full scale, which every reader of the frames takes for "
+          "missing\n",
+          from.c_str(), encoder.rows_at_full_scale());
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(from) || line.starts_with(to) ? line : from + ": " + line);

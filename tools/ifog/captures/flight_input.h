@@ -26,6 +26,7 @@ class FlightInput {
   explicit FlightInput(InputFile& file);
 
   [[nodiscard]] const FlightHeader& header() const { return reader_.header(); }
+  [[nodiscard]] const std::string& path() const { return file_.path(); }
 
   // The driver of the recording with its options, those of `options` over them; another one, which then has
   // only `options`, where `driver` names it.

@@ -17,8 +17,10 @@
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/compare_picture.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
@@ -133,7 +135,10 @@ void print_axis(const Comparison& result, int axis, bool reference) {
 void run(const Options& options) {
   will_write("--json", options.json_file);
   will_write("--plot", options.plot_file);
-  const Capture capture = options.input.read(options.capture);
+  options.input.will_read("capture", options.capture);
+  will_read("--model", options.model);
+  Capture capture = options.input.read(options.capture);
+  keep_usable_axes(capture, options.capture);
   ComparisonInput in;
   in.time_s = capture.time_s;
   if (capture.size() < 16)

@@ -3,13 +3,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <exception>
+#include <new>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "drivers/ifog/driver.h"
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/describe.h"
 #include "tools/ifog/console/plain_words.h"
@@ -37,8 +40,10 @@ std::string typed_command() { return typed; }
 
 std::vector<std::string> typed_words() { return words; }
 
-int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
-  prepare_standard_streams();
+namespace {
+
+// Exit status; what goes wrong is thrown on.
+int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   typed = "ifog";
   words.assign(argv + std::min(argc, 1), argv + argc);
   for (int i = 1; i < argc; ++i) typed += " " + shell_word(argv[i]);
@@ -59,22 +64,34 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
 
   int status = 0;
   try {
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
-      status = app.exit(error, out, complaint) == 0 ? 0 : 2;
-      say("%s", out.str().c_str());
-      if (status != 0) warn("%s", usage_error(app, argc, argv, error).c_str());
-    } catch (const Failed&) {
-      status = 1;
-    }
-    finish_saying();
-  } catch (const std::exception& error) {
-    warn("ifog: %s\n", error.what());
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
+    status = app.exit(error, out, complaint) == 0 ? 0 : 2;
+    say("%s", out.str().c_str());
+    if (status != 0) warn("%s", usage_error(app, argc, argv, error).c_str());
+  } catch (const Failed&) {
     status = 1;
   }
+  finish_saying();
   return status;
+}
+
+}  // namespace
+
+// The one home of what any command throws: a line and exit 1, whatever it is.
+int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
+  try {
+    prepare_standard_streams();
+    return parse_and_run(argc, argv, commands);
+  } catch (const std::bad_alloc&) {
+    std::fputs("ifog: not enough memory\n", stderr);
+  } catch (const std::exception& error) {
+    warn("ifog: %s\n", printable(error.what(), kLongestMessage).c_str());
+  } catch (...) {
+    warn("ifog: failed, and nothing says why\n");
+  }
+  return 1;
 }
 
 }  // namespace ifog::tools

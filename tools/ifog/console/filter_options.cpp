@@ -7,7 +7,12 @@
 #include <string_view>
 #include <type_traits>
 
+#include "drivers/ifog/quoted.h"
+#include "filters/rules/rule.h"
 #include "filters/settings/filter_table.h"
+#include "filters/state_models/state_model.h"
+#include "filters/state_models/state_name.h"
+#include "tools/ifog/console/checked_values.h"
 
 namespace ifog::tools {
 namespace {
@@ -23,6 +28,39 @@ std::string help(const FilterSetting& setting) {
   return ranged ? out + "; " + expected(setting) : out;
 }
 
+// "" or what is wrong with a name that another room than the table knows.
+std::string wrong_name(const FilterSetting& setting, const std::string& name) {
+  std::string list;
+  if (setting.key == std::string_view("rule")) {
+    for (const RuleEntry& entry : rules()) {
+      if (name == entry.name) return "";
+      list += (list.empty() ? "" : ", ") + std::string(entry.name);
+    }
+  } else if (setting.key == std::string_view("state")) {
+    if (is_state_model(name)) return "";
+    for (const std::string& known : state_model_names()) list += (list.empty() ? "" : ", ") + known;
+    list += ", or a sum of them with ' + '";
+  } else {
+    return "";
+  }
+  return "is " + in_quotes(name) + ", expected one of " + list;
+}
+
+// A whole number may stand for one that is not; the rest of it the setting's row knows.
+template <typename T>
+std::string wrong_number(const FilterSetting& setting, const std::string& text) {
+  constexpr bool kWhole = std::is_integral_v<T>;
+  FilterChoice ignored;
+  bool good = is_number(text, kWhole ? ValueKind::whole : ValueKind::number);
+  if constexpr (kWhole) {
+    std::int64_t value = 0;
+    good = good && CLI::detail::lexical_cast(text, value) && choose(setting, value, ignored);
+  } else if constexpr (std::is_same_v<T, double>) {
+    good = good && choose(setting, std::stod(text), ignored);
+  }
+  return good ? "" : "is " + in_quotes(text) + ", expected " + expected(setting);
+}
+
 template <typename T>
 CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choice) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -34,13 +72,19 @@ CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choi
         },
         help(setting));
   } else {
-    return app.add_option_function<Read<T>>(
+    CLI::Option* const option = app.add_option_function<Read<T>>(
         setting.option,
         [&setting, &choice](const Read<T>& value) {
           if (!choose(setting, value, choice))
             throw CLI::ValidationError(setting.option, "expected " + expected(setting));
         },
         help(setting));
+    return option->check([&setting](const std::string& text) {
+      if constexpr (std::is_same_v<T, std::string>)
+        return wrong_name(setting, text);
+      else
+        return wrong_number<T>(setting, text);
+    });
   }
 }
 

@@ -7,6 +7,9 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
+
+#include "tools/ifog/console/checked_values.h"
 
 namespace ifog::tools {
 namespace {
@@ -59,9 +62,16 @@ std::string choice_of(const std::string& check) {
   return words;
 }
 
+std::string in_words(std::string choice) {
+  for (std::size_t at = 0; (at = choice.find('|', at)) != std::string::npos; at += 2)
+    choice.replace(at, 1, ", ");
+  return "one of " + choice;
+}
+
 void in_plain_words(CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return;  // a flag
   std::string choice, ranges;
+  std::vector<CLI::Validator*> said_here;  // what they want, is in the help
   for (int i = 0;; ++i) {
     CLI::Validator* check = nullptr;
     try {
@@ -70,13 +80,19 @@ void in_plain_words(CLI::Option& option) {
       break;
     }
     const std::string said = check->get_description();
-    if (const std::string words = choice_of(said); !words.empty()) choice = words;
-    if (const std::string range = range_of(said); !range.empty()) ranges += "; " + range;
+    const std::string words = choice_of(said), range = range_of(said);
+    if (!words.empty()) choice = words;
+    if (!range.empty()) ranges += (ranges.empty() ? "" : "; ") + range;
+    if (!words.empty() || !range.empty()) said_here.push_back(check);
     check->description("");
   }
   const std::string type = option.get_type_name();
+  const ValueKind kind = choice.empty() ? value_kind(type) : ValueKind::text;
+  const std::string expected = choice.empty() ? number_in_words(kind, ranges) : in_words(choice);
+  for (CLI::Validator* const check : said_here) say_expected(*check, expected);
+  if (kind != ValueKind::text) hold_to_number(option, kind, expected);
   option.type_name(choice.empty() ? word(type, option.get_name(option.get_positional())) : choice);
-  option.description(option.get_description() + ranges);
+  option.description(option.get_description() + (ranges.empty() ? "" : "; ") + ranges);
 }
 
 }  // namespace

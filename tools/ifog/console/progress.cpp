@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <system_error>
 
 #include "drivers/ifog/quoted.h"
 
@@ -33,7 +35,12 @@ Progress::Progress(const std::string& what, std::size_t total, Between between)
       total_(total),
       step_(start_),
       drawn_at_(start_) {
-  if (terminal_ && between == Between::redraw) between_ = std::thread([this] { redraw_between(); });
+  if (!terminal_ || between != Between::redraw) return;
+  try {
+    between_ = std::thread([this] { redraw_between(); });
+  } catch (const std::system_error&) {
+    // Without a thread to be had the bar moves when the work says so.
+  }
 }
 
 Progress::~Progress() {
@@ -49,11 +56,13 @@ Progress::~Progress() {
   if (drawn_) clear_progress();
 }
 
-void Progress::redraw_between() {
+// A bar that there is no memory to draw must not end the program from this thread.
+void Progress::redraw_between() noexcept try {
   std::unique_lock lock(mutex_);
   if (ended_.wait_for(lock, kQuiet, [this] { return end_; })) return;
   do draw(Clock::now());
   while (!ended_.wait_for(lock, kBetween, [this] { return end_; }));
+} catch (const std::exception&) {
 }
 
 void Progress::at(std::size_t done, std::size_t total) {

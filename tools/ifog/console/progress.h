@@ -36,7 +36,7 @@ class Progress {
 
  private:
   void draw(Clock::time_point now);
-  void redraw_between();
+  void redraw_between() noexcept;
 
   Progress* const outer_;  // that this one stands before: one bar at a time
   const std::string what_;

@@ -15,7 +15,6 @@
 #include <system_error>
 #include <vector>
 
-#include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/progress.h"
 
@@ -71,8 +70,7 @@ void warn(const char* format, ...) {
   va_end(arguments);
 }
 
-void will_write(const std::string& option, const std::string& path) {
-  if (!is_standard_output(path)) return;
+void data_to_standard_output(const std::string& option) {
   if (!data_option.empty())
     throw CLI::ValidationError(
         option, "is to go to standard output, as is " + data_option + "; expected only one of them there");

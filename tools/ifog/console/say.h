@@ -17,9 +17,9 @@ namespace ifog::tools {
 // To standard error: what went wrong or was passed over.
 [[gnu::format(printf, 1, 2)]] void warn(const char* format, ...);
 
-// An output option that may be "-". Call for each before the first say(): from then on people read standard
-// error if it leads to standard output. Throws CLI::ValidationError (usage) when a second one wants it, too.
-void will_write(const std::string& option, const std::string& path);
+// The data of this option takes standard output, and people read standard error from then on. Before the
+// first say(). Throws CLI::ValidationError (usage) when a second one wants it, too.
+void data_to_standard_output(const std::string& option);
 
 // Lines that take the place of the `before` lines drawn last, where people sit at a terminal; elsewhere they
 // follow. Throws as finish_saying() does: nobody reads any more.

@@ -41,6 +41,17 @@ std::string unknown_option(const CLI::App& command, int argc, const char* const*
   return "";
 }
 
+// The parser's "Could not convert: --option = value" expects nothing.
+std::string plainly(const CLI::App& command, const std::string& said) {
+  constexpr std::string_view kSays = "Could not convert: ", kIs = " = ";
+  const std::size_t at = said.find(kIs);
+  if (!said.starts_with(kSays) || at == std::string::npos) return said;
+  const std::string name = said.substr(kSays.size(), at - kSays.size());
+  const CLI::Option* const option = command.get_option_no_throw(name);
+  return name + ": is " + in_quotes(said.substr(at + kIs.size())) + ", expected " +
+         (option == nullptr ? "another value" : option->get_type_name() + " in the range that it can hold");
+}
+
 }  // namespace
 
 std::string usage_error(const CLI::App& app, int argc, const char* const* argv,
@@ -52,6 +63,7 @@ std::string usage_error(const CLI::App& app, int argc, const char* const* argv,
   if (is_command) {
     who += " " + std::string(first);
     const CLI::App& command = *app.get_subcommand(std::string(first));
+    what = plainly(command, what);
     if (const std::string unknown = unknown_option(command, argc, argv); !unknown.empty()) what = unknown;
   } else if (!first.starts_with('-')) {
     what =

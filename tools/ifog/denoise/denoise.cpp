@@ -2,6 +2,7 @@
 // ifog denoise: the daemon's signal chain over a capture or a recording.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -13,18 +14,23 @@
 #include "daemon/config/config.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
+#include "drivers/capture/capture_builder.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/smoother.h"
 #include "filters/model_file/kept_noise.h"
+#include "filters/series/series_view.h"
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/installed.h"
 #include "tools/ifog/console/json_file.h"
@@ -59,6 +65,7 @@ nlohmann::json summary(const Options& options, const DenoisedRows& rows, const O
       one[std::string(name) + "_mean_radps"] = moments->mean();
       one[std::string(name) + "_std_radps"] = moments->deviation();
     }
+    one["missing"] = of_axis.missing;
     axes.push_back(std::move(one));
   }
   const FilterSettings& filter = result.filter;
@@ -80,7 +87,7 @@ nlohmann::json summary(const Options& options, const DenoisedRows& rows, const O
             {"state", filter.state},
             {"process_noise", filter.process_noise},
             {"measurement_noise", filter.measurement_noise},
-            {"from_start_up", result.noise_learned},
+            {"from_start_up", result.noise_learned && !rows.none_filtered()},
             {"window", filter.window},
             {"weights", filter.weights},
             {"draws", filter.draws},
@@ -151,7 +158,10 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
   }
   // What is said on the command line stands over the configuration.
   out.sensor.filter = over(options.filter, std::move(out.sensor.filter));
-  if (!options.model.empty()) out.sensor.model = options.model;
+  if (!options.model.empty())
+    out.sensor.model = options.model;
+  else if (!options.config.empty())
+    will_read("the configuration's model", out.sensor.model);
   if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
   if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;
   out.model = flight != nullptr && options.config.empty() && options.model.empty()
@@ -166,27 +176,56 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
   return out;
 }
 
+// What was not usable, in the words of every command.
+void tell_unusable(const std::string& name, const DenoisedRows& rows, const OfflineResult& result) {
+  for (std::size_t a = 0; a < result.axes.size(); ++a) {
+    const DenoisedRows::AxisMoments& axis = rows.moments(a);
+    const std::string column = result.axes[a].empty() ? "rate" : "rate_" + result.axes[a];
+    const std::string missing = missing_in_words(column, axis.missing, rows.written(), axis.first_missing_s);
+    if (!missing.empty()) warn("%s: %s\n", name.c_str(), missing.c_str());
+  }
+  for (const std::string& line : not_measured_in_words(result.counts.saturated, result.counts.implausible))
+    warn("%s: %s\n", name.c_str(), line.c_str());
+  if (result.model.empty()) return;
+  const auto of_model = [&](std::uint64_t samples, const char* what) {
+    if (samples != 0)
+      warn("%s: %llu samples %s\n", name.c_str(), static_cast<unsigned long long>(samples), what);
+  };
+  of_model(rows.counts().stale,
+           "without a value of a channel that the model wants, or with one too old: corrected with the last "
+           "one, or not at all");
+  of_model(rows.counts().out_of_range, "with a channel outside the range that the model was fitted on");
+  of_model(rows.counts().ramp_unknown, "whose phase on the model's ramp was not known");
+}
+
+void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments) {
+  const std::string name = axis.empty() ? "" : "axis " + axis + ": ";
+  if (std::isnan(moments.raw.mean())) return say("%sno value\n", name.c_str());
+  say("%sstd raw %.4g, compensated %.4g, denoised %.4g deg/h\n", name.c_str(),
+      moments.raw.deviation() / kDegreePerHour, moments.compensated.deviation() / kDegreePerHour,
+      moments.denoised.deviation() / kDegreePerHour);
+}
+
 void tell(const Options& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
-  if (!result.noise_known)
+  if (rows.none_filtered())
     warn(
-        "%s: shorter than the start-up that would show its noise: denoised is the compensated rate; expected "
+        "%s: no longer than the start-up that shows its noise: denoised is the compensated rate; expected "
         "--process-noise and --measurement-noise, or a shorter --start-up\n",
         options.capture.c_str());
+  tell_unusable(options.capture, rows, result);
   say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), rows.written(),
       result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
       static_cast<unsigned long long>(result.counts.missing));
-  say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
-      result.filter.rule.c_str(), result.filter.state.c_str(), result.filter.process_noise,
-      result.filter.measurement_noise,
-      result.noise_learned ? " (from the first seconds of the capture)" : "");
-  for (std::size_t a = 0; a < result.axes.size(); ++a)
-    say("%s%sstd raw %.4g, compensated %.4g, denoised %.4g deg/h\n", result.axes[a].empty() ? "" : "axis ",
-        result.axes[a].empty() ? "" : (result.axes[a] + ": ").c_str(),
-        rows.moments(a).raw.deviation() / kDegreePerHour,
-        rows.moments(a).compensated.deviation() / kDegreePerHour,
-        rows.moments(a).denoised.deviation() / kDegreePerHour);
+  const FilterSettings& filter = result.filter;
+  if (rows.none_filtered())
+    say("filter %s, state %s: not run, the noise is not known\n", filter.rule.c_str(), filter.state.c_str());
+  else
+    say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
+        filter.rule.c_str(), filter.state.c_str(), filter.process_noise, filter.measurement_noise,
+        result.noise_learned ? " (from the first seconds of the capture)" : "");
+  for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
 
 // What the chain left out as invalid takes no part; what it compensated does, so that the same effects are
@@ -206,10 +245,27 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   }
 }
 
+// Steps of the time column that are no multiple of what --rate says are taken for gaps or jitter.
+void tell_other_rate(const Options& options, const LongTable& table) {
+  constexpr double kAlike = 0.2;
+  if (!(options.nominal_rate_hz > 0.0) || table.size() < 2) return;
+  const double own_hz = 1.0 / median_step(table.time_s);
+  if (std::abs(options.nominal_rate_hz / own_hz - 1.0) > kAlike)
+    warn("%s: --rate is %g Hz, the capture's own times say %.6g Hz\n", options.capture.c_str(),
+         options.nominal_rate_hz, own_hz);
+}
+
 void run(Options options) {
+  if (!options.sensor.empty() && options.config.empty())
+    throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
+                                               ", expected --config with it, whose sensors have names");
   will_write("--output", options.output);
   will_write("--json", options.json);
   will_write("--plot", options.picture);
+  options.input.will_read("CAPTURE", options.capture);
+  will_read("--model", options.model);
+  will_read("--noise", options.noise);
+  will_read("--config", options.config);
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
@@ -217,7 +273,11 @@ void run(Options options) {
   const OfflineSettings settings = settings_of(options, capture, flight ? &*flight : nullptr);
   // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
-  const OfflineSink sink{[&](const std::vector<std::string>& axes) { rows.begin(axes); },
+  const OfflineSink sink{[&](const std::vector<std::string>& axes) {
+                           if (settings.model)
+                             tell_model_of_one_axis(*settings.model, settings.sensor.model, axes);
+                           rows.begin(axes);
+                         },
                          [&](double time_s, const Increment& increment, const ChainOutput& out) {
                            rows.add(time_s, increment, out);
                          }};
@@ -233,7 +293,10 @@ void run(Options options) {
     DriverInstance driver = options.input.make_driver();
     result = denoise_recording(options.input, capture, driver, settings, sink);
   } else {
-    result = denoise_capture(options.input.read_long(capture), options.capture, settings, sink);
+    LongTable table = options.input.read_long(capture);
+    keep_usable_axes(table, options.capture);
+    tell_other_rate(options, table);
+    result = denoise_capture(table, options.capture, settings, sink);
   }
   if (options.smooth) smooth(rows.columns(), result);
   rows.finish(options.capture);

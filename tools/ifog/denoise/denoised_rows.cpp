@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/denoise/denoised_rows.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
+
+#include "drivers/capture/row_sink.h"
+#include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
 
@@ -17,7 +21,11 @@ void Moments::add(double value) {
   square_ += difference * (value - mean_);
 }
 
-double Moments::deviation() const { return n_ > 1.0 ? std::sqrt(square_ / (n_ - 1.0)) : 0.0; }
+double Moments::mean() const { return n_ > 0.0 ? mean_ : kMissing; }
+
+double Moments::deviation() const {
+  return n_ > 1.0 ? std::sqrt(square_ / (n_ - 1.0)) : n_ > 0.0 ? 0.0 : kMissing;
+}
 
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(part), keep_(keep || smooth), smooth_(smooth) {}
@@ -82,9 +90,11 @@ void DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
       axis.variance.push_back(variance);
     }
     if (!inside) continue;
-    moments_[a].raw.add(raw);
-    moments_[a].compensated.add(compensated);
-    moments_[a].denoised.add(denoised);
+    AxisMoments& of_axis = moments_[a];
+    if (!std::isfinite(raw) && of_axis.missing++ == 0) of_axis.first_missing_s = time_s;
+    of_axis.raw.add(raw);
+    of_axis.compensated.add(compensated);
+    of_axis.denoised.add(denoised);
     if (smooth_) continue;
     for (const double value : {raw, compensated, denoised, variance}) append(value);
   }
@@ -93,6 +103,9 @@ void DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
 
 void DenoisedRows::finish(const std::string& name) {
   if (written_ == 0 && rows_ > 0) part_.refuse_empty(first_s_, last_s_, name);
+  if (written_ > 0 && std::all_of(moments_.begin(), moments_.end(),
+                                  [&](const AxisMoments& axis) { return axis.missing == written_; }))
+    refuse_without_rates(name, written_);
   if (keep_) {
     std::vector<std::vector<double>*> all{&columns_.dt_s};
     for (DenoisedAxis& axis : columns_.axes)

@@ -16,11 +16,11 @@
 
 namespace ifog::tools {
 
-// Mean and standard deviation of what is a number.
+// Mean and standard deviation of what is a number; NaN where nothing was.
 class Moments {
  public:
   void add(double value);
-  [[nodiscard]] double mean() const { return mean_; }
+  [[nodiscard]] double mean() const;
   [[nodiscard]] double deviation() const;
 
  private:
@@ -45,6 +45,8 @@ class DenoisedRows {
   };
   struct AxisMoments {
     Moments raw, compensated, denoised;
+    std::size_t missing = 0;       // rows without a raw value
+    double first_missing_s = 0.0;  // the time of the first of them
   };
 
   // Writes what of it is in `part`, CSV or HDF5 by the name. keep: the columns as well; smooth: write nothing
@@ -57,10 +59,12 @@ class DenoisedRows {
   // What was kept, of all rows: smoothing fills its last two columns. After the last sample.
   [[nodiscard]] DenoisedColumns& columns() { return columns_; }
   // Of the rows in the part from here on. name: of the capture. Throws std::runtime_error with one line when
-  // there are none, or as OutputFile does.
+  // there are none, or none with a value, or as OutputFile does.
   void finish(const std::string& name);
 
   [[nodiscard]] std::size_t written() const { return written_; }
+  // Not one sample was filtered: the noise was known too late, or never.
+  [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == rows_; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
 

@@ -22,12 +22,26 @@ namespace {
 
 constexpr double kChannelMaxAge_s = 10.0;  // as for the channels of a sensor's own frames in the daemon
 
+// What is wrong with the filter's settings, said of them; with the model, of its file.
+std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::string& model_path) {
+  const auto made = [](const ChainSettings& of) { return std::make_unique<ChainParts>(of); };
+  if (!settings.model || model_path.empty()) return made(settings);
+  try {
+    return made(settings);
+  } catch (const std::exception& error) {
+    ChainSettings without = settings;
+    without.model.reset();
+    static_cast<void>(made(without));  // throws where it was not the model
+    throw std::runtime_error(model_path + ": " + error.what());
+  }
+}
+
 class Chain {
  public:
-  Chain(const ChainSettings& settings, std::optional<std::uint64_t> first_sequence)
+  Chain(const ChainSettings& settings, const OfflineSettings& offline)
       : incrementer_(settings.facts),
-        chain_(std::make_unique<ChainParts>(settings)),
-        first_sequence_(first_sequence) {
+        chain_(parts_of(settings, offline.sensor.model)),
+        first_sequence_(offline.first_sequence) {
     result_.axes = settings.axes;
     result_.left_out = chain_.parts().left_out();
     result_.model = chain_.parts().model_identity();
@@ -122,13 +136,13 @@ class RowTimes {
   double even_s_ = 0.0, last_s_ = 0.0;
 };
 
-ChainSettings chain_settings_of(const LongTable& capture, const CaptureShape& shape,
+ChainSettings chain_settings_of(const LongTable& capture, const std::string& path, const CaptureShape& shape,
                                 const std::vector<std::size_t>& channels, const OfflineSettings& settings,
                                 const SampleClock& clock) {
   ChainSettings out;
   out.facts.axes = static_cast<int>(shape.axes.size());
   if (capture.size() < 2 && settings.sensor.nominal_rate_hz <= 0.0)
-    throw std::runtime_error("the capture has fewer than 2 samples");
+    throw std::runtime_error(path + ": has fewer than 2 samples, expected more or --rate HZ");
   out.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz
                                                                     : rate_of(capture.time_s, clock);
   out.facts.frame_channels = out.facts.channels = static_cast<int>(channels.size());
@@ -149,6 +163,20 @@ ChainSettings chain_settings_of(const LongTable& capture, const CaptureShape& sh
   return out;
 }
 
+// As the daemon sets its chain up, with what only a recording knows. The daemon's own refusal of a driver
+// without a rate would name no file and a key of its configuration.
+ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
+                                 const std::string& path) {
+  const ifog_description& description = driver.description();
+  if (!(settings.sensor.nominal_rate_hz > 0.0) && !(description.nominal_rate_hz > 0.0))
+    throw std::runtime_error(path + ": driver " + driver.table().name +
+                             " does not know the sample rate, expected --rate HZ or --option rate_hz=HZ");
+  ChainSettings out = sensor_chain_settings(settings.sensor, description, settings.model);
+  out.learned = settings.learned;
+  out.since_power_up_s = settings.since_power_up_s;
+  return out;
+}
+
 }  // namespace
 
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
@@ -156,7 +184,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
   const CaptureShape shape = capture_shape(capture.names(), name, capture);
   const std::vector<std::size_t> channels = chosen_channels(capture, shape, settings.model.get());
   const SampleClock clock = capture.size() < 2 ? SampleClock{} : sample_clock(capture.time_s);
-  Chain chain(chain_settings_of(capture, shape, channels, settings, clock), settings.first_sequence);
+  Chain chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings);
   sink.begin(shape.axes);
   // The time, the axes, the channels.
   std::vector<SeriesView> views{capture.time_s};
@@ -198,12 +226,10 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
 
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink) {
-  ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
-  chain_settings.learned = settings.learned;
-  chain_settings.since_power_up_s = settings.since_power_up_s;
+  const ChainSettings chain_settings = recording_settings(settings, driver, file.path());
   const SensorFacts& facts = chain_settings.facts;
   sink.begin(chain_settings.axes);
-  Chain chain(chain_settings, settings.first_sequence);
+  Chain chain(chain_settings, settings);
   Reading reading;
   // Channels that did not come in the frames are not in the recording: never a value, for ever stale.
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
@@ -224,9 +250,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
 
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
                              const OfflineSink& sink) {
-  ChainSettings chain_settings = sensor_chain_settings(settings.sensor, driver.description(), settings.model);
-  chain_settings.learned = settings.learned;
-  chain_settings.since_power_up_s = settings.since_power_up_s;
+  ChainSettings chain_settings = recording_settings(settings, driver, flight.path());
   if (!settings.since_power_up_s) chain_settings.powered_ns = flight.header().powered_ns;
   const SensorFacts& facts = chain_settings.facts;
   sink.begin(chain_settings.axes);
@@ -238,7 +262,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const 
     recorded_at.push_back(
         static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
   }
-  Chain chain(chain_settings, settings.first_sequence);
+  Chain chain(chain_settings, settings);
   Reading reading;
   ChainOutput out;
   double time_s = 0.0;

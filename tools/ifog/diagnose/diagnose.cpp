@@ -3,13 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/diagnosis_json.h"
@@ -33,6 +37,8 @@ void run(const Arguments& arguments) {
   will_write("--json", arguments.json);
   will_write("--write-model", arguments.write_model);
   will_write("--report", arguments.report);
+  for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
+  will_read("--model", arguments.model);
   std::vector<LongCapture> read;
   std::vector<std::string> hashes;  // for the model file, which says what it was found on
   for (const std::string& path : arguments.captures) {
@@ -44,13 +50,19 @@ void run(const Arguments& arguments) {
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
-    for (LongCapture& capture : read) capture.correct(model);
+    tell_model_of_one_axis(model, arguments.model, read.front().view().axes);
+    try {
+      for (LongCapture& capture : read) capture.correct(model);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(arguments.model + ": " + error.what());
+    }
   }
   std::vector<CaptureView> captures;
   for (std::size_t c = 0; c < read.size(); ++c) {
     read[c].cut(arguments.part, arguments.captures[c]);
     captures.push_back(read[c].view());
   }
+  keep_usable_axes(captures, arguments.captures);
   AxesToDiagnose wanted = arguments.wanted;
   if (arguments.latitude_deg) wanted.latitude_rad = *arguments.latitude_deg * kDegree;
   const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, wanted);

@@ -107,6 +107,7 @@ std::string noise_line(const NoiseTerms& noise, const NoiseTerms& error) {
   add("bias instability", noise.B, error.B, kDegreePerHour, "°/h");
   add("rate random walk", noise.K, error.K, kDegreePerHourPerRootHour, "°/h/√h");
   add("rate ramp", noise.R, error.R, kDegreePerHourPerHour, "°/h/h");
+  if (line.back() == ':') return "Noise: no terms that this record shows\n";
   if (!noise.B && !noise.K) line += ", no bias instability or random walk that this record shows";
   return line + "\n";
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -21,6 +22,7 @@
 #include "filters/model_file/sha256.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/diagnose/power_up.h"
@@ -47,6 +49,21 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
     if (other != axis)
       record.other_axes.push_back({rate_of_axis(capture.axes[other]), capture.rate_radps[other]});
   return record;
+}
+
+bool same_numbers(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+// One record given twice, be it as a copy or in another format, would count as twice the evidence.
+void require_each_once(const std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
+  for (std::size_t later = 1; later < captures.size(); ++later)
+    for (std::size_t c = 0; c < later; ++c)
+      if (same_numbers(captures[c].time_s, captures[later].time_s) &&
+          std::equal(captures[c].rate_radps.begin(), captures[c].rate_radps.end(),
+                     captures[later].rate_radps.begin(), captures[later].rate_radps.end(), same_numbers))
+        throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] +
+                                 ", expected each record once");
 }
 
 // What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
@@ -168,6 +185,11 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
                                          const std::vector<std::string>& names,
                                          const AxesToDiagnose& wanted) {
   const std::vector<std::string>& axes = captures.front().axes;
+  for (const std::string& axis : wanted.axes)
+    if (std::find(axes.begin(), axes.end(), axis) == axes.end())
+      throw std::runtime_error(names[0] + ": --axis is " + in_quotes(axis) + ", expected " +
+                               expected_axes(axes));
+  require_each_once(captures, names);
   const bool part = wanted.fit_from != wanted.fit_to;
   const std::optional<double> power_up_s = began_after_power_up(captures, part ? wanted.fit_from : 0.0);
   std::vector<std::size_t> chosen;
@@ -191,7 +213,6 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
     }
   const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
   if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
-  if (found.empty()) throw std::runtime_error("no such axis in " + names[0]);
   return found;
 }
 

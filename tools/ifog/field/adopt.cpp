@@ -9,6 +9,7 @@
 #include "drivers/transport/utc_now.h"
 #include "msgs/axis_name.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
@@ -93,6 +94,7 @@ void tell_innovations(const Watched& watched) {
 
 void adopt(const Arguments& arguments) {
   will_write("--json", arguments.json);
+  will_read("--config", arguments.field.config);
   share_with_the_group();
   catch_interrupts();
   const Field field(arguments.field);

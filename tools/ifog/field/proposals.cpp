@@ -6,6 +6,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/field.h"
@@ -29,6 +30,7 @@ bool is_stale(const Field& field, const Proposal& proposal) {
 
 void run(const Arguments& arguments) {
   will_write("--json", arguments.json);
+  will_read("--config", arguments.field.config);
   const Field field(arguments.field);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   bool damaged = false, any = false;

@@ -15,6 +15,7 @@
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/books.h"
@@ -217,6 +218,7 @@ pid_t daemon_of(const Field& field) {
 
 void run(const Arguments& arguments) {
   will_write("--json", arguments.json);
+  will_read("--config", arguments.field.config);
   const Field field(arguments.field);
   const pid_t daemon = daemon_of(field);
   LiveStatus live(field.lcm_url());

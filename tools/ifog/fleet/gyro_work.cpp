@@ -12,6 +12,7 @@
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
 #include "filters/model_file/sha256.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 
@@ -32,6 +33,7 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
     opened.read.back().cut(settings.part, path);
     opened.captures.push_back(opened.read.back().view());
   }
+  keep_usable_axes(opened.captures, gyro.captures);
   return opened;
 }
 

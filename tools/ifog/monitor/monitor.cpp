@@ -26,6 +26,7 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 #include "tools/ifog/monitor/screen.h"

@@ -21,6 +21,7 @@
 #include "drivers/transport/clock.h"
 #include "drivers/transport/pace.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
@@ -146,6 +147,7 @@ void run(ReplaySettings settings) {
   if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
   if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
   will_write("--json", settings.json);
+  settings.source.input.will_read("capture", settings.source.path);
   settings.source.prefer_can = to.is_can();
   const ReplayTimeline timeline = read_timeline(settings.source);
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// A model beside the axes of a capture that it is to correct.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/model_file/model.h"
+
+namespace ifog::tools {
+
+// Tells on standard error where effects that name no axis, those of a sensor that has one, are subtracted
+// from each of several. path: of the model.
+void tell_model_of_one_axis(const Model& model, const std::string& path,
+                            const std::vector<std::string>& axes);
+
+}  // namespace ifog::tools

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an option's value must be, and the words for one that is not: the value and what was expected.
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class Option;
+class Validator;
+}  // namespace CLI
+
+namespace ifog::tools {
+
+enum class ValueKind { text, number, whole, count };  // count: whole, 0 or more
+
+// By the type as the parser names it, or as a command does.
+ValueKind value_kind(const std::string& type);
+
+// Decimal and finite; whole where the kind says so, and within 64 bits.
+bool is_number(const std::string& text, ValueKind kind);
+
+// "a number more than 0"; "a whole number 1 to 1000". range: of it, may be "".
+std::string number_in_words(ValueKind kind, const std::string& range);
+
+// The check's own words become: is 'VALUE', expected EXPECTED.
+void say_expected(CLI::Validator& check, const std::string& expected);
+
+// The option takes what is_number() says, and nothing else.
+void hold_to_number(CLI::Option& option, ValueKind kind, const std::string& expected);
+
+}  // namespace ifog::tools
