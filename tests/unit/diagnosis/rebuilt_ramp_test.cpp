@@ -164,7 +164,7 @@ TEST(RebuiltRamp, ARecordWithAHole) {
   const RebuiltRamp found = rebuild_ramp({sensor.record()}, 0.01);
   ASSERT_TRUE(found.fit.has_value());
   EXPECT_NEAR(parameter(found.fit->effect, "cycles_per_rad") / kCycles, 1.0, 1e-5);
-  const std::vector<double>& correction = found.fit->correction[0];
+  const Samples& correction = found.fit->correction[0];
   EXPECT_EQ(correction[15000], 0.0);
   EXPECT_NE(correction[14000], 0.0);
   EXPECT_NE(correction[17000], 0.0);
