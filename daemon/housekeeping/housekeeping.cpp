@@ -12,7 +12,6 @@
 #include "daemon/channels/can_channel.h"
 #include "daemon/housekeeping/signals.h"
 #include "daemon/realtime/realtime.h"
-#include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
@@ -33,20 +32,6 @@ std::vector<std::string> axis_names(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i) out.emplace_back(description.axis[i]);
   return out;
-}
-
-// Null: there is none of that name.
-const SensorConfig* sensor_named(const Config& config, const std::string& name) {
-  const auto found = std::find_if(config.sensors.begin(), config.sensors.end(),
-                                  [&](const SensorConfig& sensor) { return sensor.name == name; });
-  return found == config.sensors.end() ? nullptr : &*found;
-}
-
-// A sensor's complaint where its key is.
-std::string told_at(const Config& config, const SensorConfig& sensor, const std::exception& error) {
-  const auto* const keyed = dynamic_cast<const KeyError*>(&error);
-  return config.file + ":" + std::to_string(keyed == nullptr ? sensor.line : sensor.line_of(keyed->key)) +
-         ": sensor \"" + printable(sensor.name) + "\": " + error.what();
 }
 
 }  // namespace
@@ -92,6 +77,12 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
   }
   if (!errors.empty()) throw ConfigError(errors);
   sources_ = std::make_unique<ChannelSources>(std::move(wanted), config_.lcm_url);
+}
+
+std::string Housekeeping::told_at(const Config& config, const SensorConfig& sensor, const std::exception& error) {
+  const auto* const keyed = dynamic_cast<const KeyError*>(&error);
+  return config.file + ":" + std::to_string(keyed == nullptr ? sensor.line : sensor.line_of(keyed->key)) +
+         ": sensor \"" + printable(sensor.name) + "\": " + error.what();
 }
 
 Housekeeping::~Housekeeping() = default;
@@ -210,83 +201,6 @@ bool Housekeeping::all_alive() const {
   return std::all_of(sensors_.begin(), sensors_.end(), [](const auto& sensor) {
     return sensor->unanswered < kStuck_s && sensor->reader_stuck < kStuck_s;
   });
-}
-
-void Housekeeping::say_what_needs_a_restart(const Config& fresh) {
-  if (const std::string keys = config_.restart_for(fresh); !keys.empty())
-    log_->warn("changed in [daemon], needs a restart: {}", keys);
-  for (const SensorConfig& sensor : fresh.sensors)
-    if (sensor_named(config_, sensor.name) == nullptr)
-      log_->warn("sensor \"{}\" is new in {}, needs a restart", printable(sensor.name), config_.file);
-  for (const auto& sensor : sensors_) {
-    const SensorConfig* const other = sensor_named(fresh, sensor->config.name);
-    if (other == nullptr) {
-      sensor->log->warn("no longer in {}: goes on until a restart", config_.file);
-    } else if (const std::string keys = sensor->config.restart_for(*other); !keys.empty()) {
-      sensor->log->warn("changed, needs a restart: {}", keys);
-    }
-  }
-}
-
-void Housekeeping::reload() {
-  struct Renewed {
-    Sensor* sensor;
-    SensorConfig config;
-    std::unique_ptr<ChainParts> parts;
-    std::string noise;  // that the parts begin with, as it is kept
-    bool another;       // model or filter: what was usual of a sensor need not be so any more
-  };
-  notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
-  std::vector<Renewed> renewed;
-  std::vector<std::string> errors;
-  Config fresh;
-  try {
-    fresh = read_config(config_.file);
-  } catch (const std::exception& error) {
-    errors.emplace_back(error.what());
-  }
-  for (const auto& sensor : sensors_) {
-    const SensorConfig* const found = sensor_named(fresh, sensor->config.name);
-    if (found == nullptr) continue;
-    // Only what can change between two samples.
-    SensorConfig config = sensor->config.reloaded(*found);
-    try {
-      ChainSettings settings = sensor_chain_settings(
-          config, sensor->parts.pipeline->reader().driver().description(), read_sensor_model(config));
-      settings.learned = sensor->snapshot.learned ? sensor->snapshot.learned : sensor->parts.noise.recalled();
-      settings.powered_ns = powered_ns(config);
-      std::unique_ptr<ChainParts> parts = make_chain_parts(config, settings);
-      const bool another = config.text != sensor->config.text ||
-                           parts->model_identity() != std::string(sensor->snapshot.model.data());
-      renewed.push_back({sensor.get(), std::move(config), std::move(parts),
-                         sensor->parts.noise.text(settings.learned), another});
-    } catch (const std::exception& error) {
-      errors.push_back(told_at(fresh, *found, error));
-    }
-  }
-  for (const std::string& error : errors) log_->error("{}", error);
-  if (errors.empty()) {
-    say_what_needs_a_restart(fresh);
-    for (Renewed& each : renewed) {
-      for (const std::string& effect : each.parts->left_out())
-        each.sensor->log->warn("not corrected: {}", effect);
-      each.sensor->log->info("reloaded: model {}, filter settings",
-                             each.config.model.empty() ? "none" : each.config.model);
-      each.sensor->config = std::move(each.config);
-      each.sensor->parts.pipeline->filter().offer(std::move(each.parts));
-      record_anew(*each.sensor, each.noise);
-      if (each.another) each.sensor->report.renew_watch();
-    }
-  } else {
-    log_->error("reload refused: nothing has changed for any sensor");
-  }
-  notify("READY=1");
-}
-
-void Housekeeping::record_anew(Sensor& sensor, const std::string& noise) {
-  if (sensor.parts.recorder == nullptr) return;
-  sensor.parts.recorder->set_header(
-      flight_header(sensor.config, config_, sensor.parts.pipeline->reader().driver(), noise));
 }
 
 void Housekeeping::stop_all() {

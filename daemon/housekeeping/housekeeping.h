@@ -49,6 +49,16 @@ class Housekeeping {
     std::string fault{};       // as last logged
     std::uint64_t worded = 0;  // events logged in this second
     std::uint64_t unworded = 0;
+    std::uint32_t settings = 0;  // number of those offered last; 0: those of the start
+  };
+
+  // What a reload has made of a sensor.
+  struct Renewed {
+    Sensor* sensor;
+    SensorConfig config;
+    ChainChoice choice{};
+    std::unique_ptr<ChainParts> parts{};  // null: the choice is the one in use
+    std::string noise{};                  // that the parts begin with, as it is kept
   };
 
   bool open_all();
@@ -63,8 +73,10 @@ class Housekeeping {
   // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
   void reload();
   void say_what_needs_a_restart(const Config& fresh);
-  // The sensor's next recording begins with the settings it has now.
-  void record_anew(Sensor& sensor, const std::string& noise);
+  // A sensor's complaint where its key is.
+  static std::string told_at(const Config& config, const SensorConfig& sensor, const std::exception& error);
+  static Renewed renew(Sensor& sensor, const SensorConfig& fresh);
+  void use(Renewed renewed);
   void stop_all();
   void notify(const std::string& state);
 

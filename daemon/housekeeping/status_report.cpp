@@ -225,8 +225,8 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
 void StatusReport::update(Recorder& recorder) {
   const TapeCounters& tape = recorder.tape().counters();
   now_.record_deliveries = as_signed(tape.deliveries.value());
-  now_.record_lost = as_signed(tape.lost_deliveries.value());
-  now_.record_lost_bytes = as_signed(tape.lost_bytes.value());
+  now_.record_lost = as_signed(recorder.lost_deliveries());
+  now_.record_lost_bytes = as_signed(recorder.lost_bytes());
   now_.record_file_bytes = as_signed(recorder.file_bytes());
   now_.record_removed = as_signed(recorder.files_removed());
 }

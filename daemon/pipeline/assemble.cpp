@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline/assemble.h"
 
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
-#include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
+#include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
 
 namespace ifog {
@@ -16,6 +19,10 @@ std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config
                                         const DriverInstance& driver, const NoiseMemory& noise) {
   const RecordConfig& record = sensor.record;
   if (record.folder.empty()) return nullptr;
+  if (std::error_code none; std::filesystem::exists(record.folder, none) &&
+                            !std::filesystem::is_directory(record.folder, none))
+    throw std::runtime_error("sensor.record.folder = \"" + printable(record.folder) +
+                             "\": is no folder, expected one, or a path that is free for it");
   ArchiveLimits limits;
   limits.bytes = record.bytes;
   limits.age_ns = static_cast<std::int64_t>(record.days * 86'400e9);
@@ -32,8 +39,10 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
                          std::unique_ptr<Publisher> publisher) {
   DriverInstance driver = make_sensor_driver(sensor, config.plugin_folders);
   std::unique_ptr<Transport> transport = make_sensor_transport(sensor, driver);
-  ChainSettings settings = sensor_chain_settings(sensor, driver.description(), read_sensor_model(sensor));
+  const std::shared_ptr<const Model> model = read_sensor_model(sensor);
+  ChainSettings settings = sensor_chain_settings(sensor, driver.description(), model);
   AssembledSensor out;
+  out.choice = chain_choice(sensor, model.get());
   out.channels = settings.channels;
   out.outside = std::make_shared<ChannelTable>(settings.facts.channels - settings.facts.frame_channels);
   out.noise = NoiseMemory(state_folder(config.state_folder), sensor.name, sensor.driver, settings.facts);

@@ -10,6 +10,7 @@
 #include "daemon/pipeline/pipeline.h"
 #include "daemon/recorder/recorder.h"
 #include "daemon/sensor/noise_memory.h"
+#include "daemon/sensor/sensor_parts.h"
 
 namespace ifog {
 
@@ -20,6 +21,7 @@ struct AssembledSensor {
   std::shared_ptr<ChannelTable> outside;
   std::vector<std::string> channels;  // names, as in ChainSettings
   NoiseMemory noise;
+  ChainChoice choice;  // in use, or offered to the filter
   std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
 };
 

@@ -39,15 +39,10 @@ FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& f
   if (!imu_channel_.empty()) imu_encoder_.emplace(facts.temperature_channel);
 }
 
-FilterStage::~FilterStage() {
-  delete offered_.load();
-  delete retired_.load();
-}
-
 bool FilterStage::step() noexcept {
   const Increment* const in = queue_.front();
   if (in == nullptr) return false;
-  if (offered_.load(std::memory_order_relaxed) != nullptr) adopt(in->sequence);
+  if (exchange_.exchange(counters_.device_samples.value(), chain_)) adopted(in->sequence);
   process(*in);
   queue_.pop();
   return true;
@@ -94,8 +89,11 @@ void FilterStage::process(const Increment& in) noexcept {
   const ChainParts& parts = chain_.parts();
   const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
   if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
-  if (imu_encoder_ && !publisher_->publish(imu_channel_.c_str(), imu_encoder_->encode(in, out_)))
-    counters_.imu_failures.add(1);
+  if (imu_encoder_) {
+    const bool imu_sent = publisher_->publish(imu_channel_.c_str(), imu_encoder_->encode(in, out_));
+    imu_encoder_->sent(imu_sent);
+    if (!imu_sent) counters_.imu_failures.add(1);
+  }
   counters_.device_samples.add(in.samples);
   counters_.merged.add(in.samples - 1);
   if (sent) {
@@ -147,12 +145,7 @@ void FilterStage::follow_noise(const Increment& in) noexcept {
   }
 }
 
-void FilterStage::adopt(std::uint64_t sequence) noexcept {
-  // The place of the retired must be free first: parts are deleted by housekeeping, never here.
-  if (retired_.load(std::memory_order_acquire) != nullptr) return;
-  std::unique_ptr<ChainParts> parts(offered_.exchange(nullptr, std::memory_order_acq_rel));
-  if (parts == nullptr) return;
-  retired_.store(chain_.swap(std::move(parts)).release(), std::memory_order_release);
+void FilterStage::adopted(std::uint64_t sequence) noexcept {
   encoder_.use(chain_.parts());
   // A reload that gave the same model is no other one.
   if (chain_.parts().model_identity() != current_.model.data()) current_.model_since_ns = 0;
@@ -160,12 +153,6 @@ void FilterStage::adopt(std::uint64_t sequence) noexcept {
   counters_.filter_resets.add(1);
   events_.report({.kind = EventKind::model_in_use, .sequence = sequence});
 }
-
-void FilterStage::offer(std::unique_ptr<ChainParts> parts) noexcept {
-  delete offered_.exchange(parts.release(), std::memory_order_acq_rel);
-}
-
-void FilterStage::collect_retired() noexcept { delete retired_.exchange(nullptr, std::memory_order_acq_rel); }
 
 // False: the reader was at its books all the time. It is not waited for, because it may wait for this
 // processor.

@@ -11,12 +11,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "daemon/health/books.h"
 #include "daemon/health/latency.h"
 #include "daemon/health/rest_sums.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/parts_exchange.h"
 #include "daemon/pipeline/processor_share.h"
 #include "daemon/publish/imu_encoder.h"
 #include "daemon/publish/publisher.h"
@@ -65,7 +67,6 @@ class FilterStage {
   FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
               std::string imu_channel, std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
               const SharedBooks& reader_books, EventQueue& events, bool measure_latency);
-  ~FilterStage();
 
   // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
   void run(bool spin) noexcept;
@@ -73,10 +74,15 @@ class FilterStage {
   bool step() noexcept;
 
   // Any one other thread.
-  // New parts, in use from the next sample on; parts offered before and not yet taken are replaced.
-  void offer(std::unique_ptr<ChainParts> parts) noexcept;
+  // New parts, in use from the next delivery on; parts offered before and not yet taken are replaced. number:
+  // of their settings, as a recording notes it.
+  void offer(std::unique_ptr<ChainParts> parts, std::uint32_t number = 1) {
+    exchange_.offer(std::move(parts), number);
+  }
   // Frees parts that are out of use.
-  void collect_retired() noexcept;
+  void collect_retired() noexcept { exchange_.collect_retired(); }
+  // The reader's part of it.
+  [[nodiscard]] PartsExchange& exchange() noexcept { return exchange_; }
   // Asks for a snapshot; look again later. False: the last one has not come yet. After the end of run() there
   // is one at every call, without a question.
   bool ask() noexcept;
@@ -88,7 +94,7 @@ class FilterStage {
   enum class Ask : std::uint32_t { none, asked, answered };
   void process(const Increment& in) noexcept;
   void stand_back(std::int64_t slept_ns) noexcept;
-  void adopt(std::uint64_t sequence) noexcept;
+  void adopted(std::uint64_t sequence) noexcept;
   void follow_noise(const Increment& in) noexcept;
   bool answer() noexcept;
 
@@ -112,8 +118,7 @@ class FilterStage {
   FilterSnapshot snapshot_;  // belongs to housekeeping while ask_ is answered
   std::atomic<Ask> ask_{Ask::none};
   std::atomic<bool> finished_{false};
-  std::atomic<ChainParts*> offered_{nullptr};
-  std::atomic<ChainParts*> retired_{nullptr};
+  PartsExchange exchange_;
   FilterCounters counters_;
   ProcessorShare share_;
   std::int64_t rested_ns_ = 0;

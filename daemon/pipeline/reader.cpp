@@ -11,11 +11,13 @@ namespace {
 constexpr auto kTurn = std::chrono::milliseconds(250);
 // While increments wait outside a full ring: a source that falls silent must not keep them there.
 constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
+// Between two looks for room on the tape.
+constexpr auto kPause = std::chrono::milliseconds(1);
 
 }  // namespace
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
+               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over, PartsExchange& exchange,
                SharedBooks& books, EventQueue& events, Tape* tape)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
@@ -24,6 +26,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       incrementer_(facts),
       queue_(queue),
       hand_over_(hand_over),
+      exchange_(exchange),
       books_(books),
       events_(events),
       tape_(tape) {}
@@ -47,6 +50,7 @@ void Reader::take(const ifog_sample& sample) noexcept {
   books_.write(now_);
   if (!taken) return;
   report(increment, before);
+  pushed_ += increment.samples;
   queue_.push();
 }
 
@@ -120,6 +124,16 @@ void Reader::stand_back() noexcept {
   std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
 }
 
+void Reader::record(const Delivery& delivery) noexcept {
+  // A source that keeps its bytes until they are read loses none to a recorder that is at work.
+  if (transport_->holds_back())
+    while (!transport_->stopped() && tape_->worth_waiting(delivery)) std::this_thread::sleep_for(kPause);
+  tape_->put(
+      delivery, turn_ns_,
+      std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
+      reading_.wall_shift_ns);
+}
+
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   const Delivery delivery = transport_->read(timeout);
   if (delivery.restarted) {
@@ -132,6 +146,8 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
     // A recording that is read at its own pace brings its own times of day.
     if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.at(turn_ns_);
     look_outside();
+    const std::uint32_t settings = exchange_.mark(pushed_);
+    if (settings != 0 && tape_ != nullptr) tape_->note_settings(settings);
   }
   const auto sink = [this](const ifog_sample& sample) { take(sample); };
   if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);
@@ -139,11 +155,7 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   publish_counters();
   hand_over_.delivered();
   // After all that anybody waits for.
-  if (tape_ != nullptr && (!delivery.empty() || delivery.restarted))
-    tape_->put(
-        delivery, turn_ns_,
-        std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
-        reading_.wall_shift_ns);
+  if (tape_ != nullptr && (!delivery.empty() || delivery.restarted)) record(delivery);
   counters_.turns.add(1);
   // A source that waits to be read has nobody else's time.
   if (!delivery.empty() && !transport_->holds_back()) stand_back();

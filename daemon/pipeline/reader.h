@@ -14,6 +14,7 @@
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
+#include "daemon/pipeline/parts_exchange.h"
 #include "daemon/pipeline/processor_share.h"
 #include "daemon/recorder/tape.h"
 #include "daemon/sensor/facts.h"
@@ -39,7 +40,7 @@ class Reader {
  public:
   // tape: of the flight recorder, null without one.
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
+         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over, PartsExchange& exchange,
          SharedBooks& books, EventQueue& events, Tape* tape);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
@@ -57,6 +58,7 @@ class Reader {
  private:
   void take(const ifog_sample& sample) noexcept;
   void look_outside() noexcept;
+  void record(const Delivery& delivery) noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
   void publish_counters() noexcept;
   void stand_back() noexcept;
@@ -68,6 +70,7 @@ class Reader {
   Incrementer incrementer_;
   IncrementQueue& queue_;
   HandOver& hand_over_;
+  PartsExchange& exchange_;
   SharedBooks& books_;
   EventQueue& events_;
   Tape* tape_;
@@ -78,6 +81,7 @@ class Reader {
   ProcessorShare share_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
+  std::uint64_t pushed_ = 0;  // samples
   ReaderBooks now_;
   ReaderCounters counters_;
 };

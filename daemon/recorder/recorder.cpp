@@ -7,7 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <system_error>
+#include <iterator>
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
@@ -58,42 +58,75 @@ void Recorder::stop() {
     archive_.add({FlightKind::lost, 0, 0, 0, now_ns},
                  {reinterpret_cast<const std::uint8_t*>(lost.data()), sizeof lost});
   }
-  unwritten_.set(archive_.close(now_ns, wall_ns));
-  file_bytes_.set(archive_.bytes_written());
-  files_removed_.set(archive_.files_removed());
+  std::uint64_t unwritten = archive_.close(now_ns, wall_ns);
+  // What the disk left no way off the tape for.
+  FlightLoss left;
+  for (FlightEntryHead head; tape_.take(head, payload_); ++unwritten) {
+    const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can;
+    if (came) left += {tape_.begins_delivery() ? 1U : 0U, payload_.size()};
+  }
+  unwritten_.set(unwritten);
+  publish_counters();
+  lost_deliveries_.add(left.deliveries);
+  lost_bytes_.add(left.bytes);
+  judge(now_ns);
 }
 
-void Recorder::set_header(FlightHeader header) {
+void Recorder::publish_counters() {
+  file_bytes_.set(archive_.bytes_written());
+  files_removed_.set(archive_.files_removed());
+  lost_deliveries_.set(archive_.lost().deliveries);
+  lost_bytes_.set(archive_.lost().bytes);
+}
+
+void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
   const std::lock_guard lock(mutex_);
-  next_header_ = std::move(header);
+  header.settings = settings;
+  next_headers_[settings] = std::move(header);
 }
 
 void Recorder::turn(std::int64_t now_ns, std::int64_t wall_ns) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (next_header_) archive_.set_header(*std::exchange(next_header_, std::nullopt));
-  }
   drain(now_ns, wall_ns, false);
-  file_bytes_.set(archive_.bytes_written());
-  files_removed_.set(archive_.files_removed());
+  publish_counters();
   judge(now_ns);
+}
+
+// From the tape to the archive, until one is empty, the other full, or new settings begin.
+void Recorder::fill() {
+  FlightEntryHead head;
+  while (settings_due_ == 0 && !archive_.full() && tape_.take(head, payload_)) {
+    if (head.kind == FlightKind::settings) {
+      settings_due_ = head.length;
+      return;
+    }
+    archive_.add(head, payload_, tape_.begins_delivery());
+    if (head.kind != FlightKind::lost) continue;
+    std::array<std::uint64_t, 2> lost{};
+    std::memcpy(lost.data(), payload_.data(), sizeof lost);
+    for (std::size_t i = 0; i < lost.size(); ++i) told_[i] += lost[i];
+  }
+}
+
+// True: all before them is written, and what comes begins another file.
+bool Recorder::begin_settings() {
+  if (settings_due_ == 0 || archive_.entries_waiting() > 0) return false;
+  const std::lock_guard lock(mutex_);
+  const auto found = next_headers_.find(std::exchange(settings_due_, 0));
+  if (found == next_headers_.end()) return true;
+  archive_.set_header(std::move(found->second));
+  next_headers_.erase(next_headers_.begin(), std::next(found));
+  return true;
 }
 
 // Until the tape is empty or the disk takes no more.
 void Recorder::drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
-  FlightEntryHead head;
-  do {
-    while (!archive_.full() && tape_.take(head, payload_)) {
-      archive_.add(head, payload_);
-      if (head.kind != FlightKind::lost) continue;
-      std::array<std::uint64_t, 2> lost{};
-      std::memcpy(lost.data(), payload_.data(), sizeof lost);
-      for (std::size_t i = 0; i < lost.size(); ++i) told_[i] += lost[i];
-    }
-    const bool more = archive_.full();
-    archive_.turn(now_ns, wall_ns, flush);
-    if (!more) return;
-  } while (!archive_.full());
+  for (bool more = true; more;) {
+    fill();
+    const bool full = archive_.full();
+    archive_.turn(now_ns, wall_ns, flush || (settings_due_ != 0 && archive_.error() == 0));
+    tape_.attend(archive_.error() == 0);
+    more = begin_settings() || (settings_due_ == 0 && full && !archive_.full());
+  }
 }
 
 void Recorder::say(std::string message, bool good) {
@@ -104,6 +137,11 @@ void Recorder::say(std::string message, bool good) {
 }
 
 void Recorder::judge(std::int64_t now_ns) {
+  const std::uint64_t gone = archive_.lost().deliveries;
+  if (const std::uint64_t before = std::exchange(gone_seen_, gone); before != gone)
+    say("recorder: " + archive_.path() + ": the recording in work has been taken away, " +
+            std::to_string(gone - before) + " deliveries with it",
+        false);
   const std::uint64_t lost = tape_.counters().lost_deliveries.value();
   if (std::exchange(lost_seen_, lost) != lost) last_loss_ns_ = now_ns;
   const int error = archive_.error();
@@ -112,7 +150,7 @@ void Recorder::judge(std::int64_t now_ns) {
     troubled_ = true;
     trouble_since_ns_ = now_ns;
     say("recorder: " + archive_.path() + ": " +
-            (error != 0 ? std::system_category().message(error) + ", nothing is recorded until it takes more"
+            (error != 0 ? archive_.complaint() + ", nothing is recorded until it takes more"
                         : std::string("slower than what is to be recorded, a part is left out")) +
             "; what is lost is counted",
         false);

@@ -5,9 +5,9 @@
 
 #include <array>
 #include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 
@@ -28,8 +28,8 @@ class Recorder {
   void start();
   // After the reader thread: takes what is still on the tape to the disk and ends the file.
   void stop();
-  // From now on; the file in work ends.
-  void set_header(FlightHeader header);
+  // Of what comes behind the tape's note of these settings (Tape::note_settings), which begins a file.
+  void set_header(FlightHeader header, std::uint32_t settings);
 
   // What the log should say, each trouble once and its end once; "" for nothing new. good: it is over.
   [[nodiscard]] std::string take_message(bool& good);
@@ -37,6 +37,13 @@ class Recorder {
   [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_bytes_.value(); }
   [[nodiscard]] std::uint64_t files_removed() const noexcept { return files_removed_.value(); }
   [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return unwritten_.value(); }
+  // Of what came: what found no room, was taken away while it was written, or at the end found no disk.
+  [[nodiscard]] std::uint64_t lost_deliveries() const noexcept {
+    return tape_.counters().lost_deliveries.value() + lost_deliveries_.value();
+  }
+  [[nodiscard]] std::uint64_t lost_bytes() const noexcept {
+    return tape_.counters().lost_bytes.value() + lost_bytes_.value();
+  }
 
   // One round of the thread's work, at these times; for tests.
   void turn(std::int64_t now_ns, std::int64_t wall_ns);
@@ -44,6 +51,9 @@ class Recorder {
  private:
   void run();
   void drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush);
+  void fill();
+  bool begin_settings();
+  void publish_counters();
   void judge(std::int64_t now_ns);
   void say(std::string message, bool good);
 
@@ -56,14 +66,15 @@ class Recorder {
   // A trouble: since when, and what had been lost before it.
   bool troubled_ = false;
   std::int64_t trouble_since_ns_ = 0, last_loss_ns_ = 0;
-  std::uint64_t lost_before_ = 0, lost_seen_ = 0;
+  std::uint64_t lost_before_ = 0, lost_seen_ = 0, gone_seen_ = 0;
+  std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
 
   std::mutex mutex_;  // never taken by a real-time thread
-  std::optional<FlightHeader> next_header_;
+  std::map<std::uint32_t, FlightHeader> next_headers_;  // by the number of their settings
   std::string message_;
   bool message_good_ = false;
 
-  Counter file_bytes_, files_removed_, unwritten_;
+  Counter file_bytes_, files_removed_, unwritten_, lost_deliveries_, lost_bytes_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

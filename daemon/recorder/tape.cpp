@@ -3,16 +3,46 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
+
+#include "drivers/transport/clock.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kHead = sizeof(FlightEntryHead);
 constexpr std::size_t kFrameHead = 6;  // u32 id, u8 flags, u8 length
+// Beside FlightFlag, on the tape only.
+constexpr std::uint8_t kBeginsDelivery = 128;
+// A recorder that was last seen at work so long ago is held up by its disk.
+constexpr std::int64_t kAtWork_ns = 1'000'000'000;
+
+std::size_t bytes_of(const Delivery& delivery) noexcept {
+  std::size_t out = delivery.bytes.size();
+  for (const ifog_can_frame& frame : delivery.frames) out += kFrameHead + frame.length;
+  return out;
+}
 
 }  // namespace
 
-Tape::Tape(std::size_t bytes) : queue_(std::max(bytes, kLeastBytes)) {}
+Tape::Tape(std::size_t bytes) : bytes_(std::max(bytes, kLeastBytes)), queue_(bytes_) {}
+
+// All that put() may push of it.
+std::size_t Tape::room_for(const Delivery& delivery) noexcept {
+  return bytes_of(delivery) + (1 + delivery.frames.size()) * kHead + static_cast<std::size_t>(kMaxChannels + 1) * (kHead + 8) +
+         kHead + (kHead + 16);
+}
+
+bool Tape::worth_waiting(const Delivery& delivery) const noexcept {
+  const std::int64_t attended_ns = attended_ns_.load(std::memory_order_relaxed);
+  const std::size_t room = room_for(delivery);
+  return attended_ns != 0 && room <= bytes_ && queue_.write_available() < room &&
+         monotonic_ns() - attended_ns < kAtWork_ns;
+}
+
+void Tape::attend(bool at_work) noexcept {
+  attended_ns_.store(at_work ? monotonic_ns() : 0, std::memory_order_relaxed);
+}
 
 void Tape::push(const FlightEntryHead& head, const void* payload, std::size_t length) noexcept {
   FlightEntryHead whole = head;
@@ -47,15 +77,10 @@ void Tape::push_frame(const ifog_can_frame& frame, std::uint8_t flags, std::int6
 
 void Tape::put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
                std::int64_t wall_shift_ns) noexcept {
-  std::size_t frame_bytes = 0;
-  for (const ifog_can_frame& frame : delivery.frames) frame_bytes += kFrameHead + frame.length;
-  const std::size_t bytes = delivery.bytes.size() + frame_bytes;
+  const std::size_t bytes = bytes_of(delivery);
   counters_.deliveries.add(1);
   counters_.bytes.add(bytes);
-  // All that may be pushed below.
-  const std::size_t needed = kHead + delivery.bytes.size() + delivery.frames.size() * kHead + frame_bytes +
-                             (channels.size() + 1) * (kHead + 8) + (kHead + 16);
-  if (queue_.write_available() < needed) {
+  if (queue_.write_available() < room_for(delivery)) {
     counters_.lost_deliveries.add(1);
     counters_.lost_bytes.add(bytes);
     ++untold_deliveries_;
@@ -68,13 +93,18 @@ void Tape::put(const Delivery& delivery, std::int64_t read_ns, std::span<const C
     push({FlightKind::lost, 0, 0, 0, read_ns}, lost.data(), sizeof lost);
     untold_deliveries_ = untold_bytes_ = 0;
   }
+  if (settings_due_ != 0) {
+    const FlightEntryHead note{FlightKind::settings, 0, 0, std::exchange(settings_due_, 0), read_ns};
+    queue_.push(reinterpret_cast<const std::uint8_t*>(&note), sizeof note);
+  }
   push_state(channels, wall_shift_ns);
   auto flags = static_cast<std::uint8_t>((delivery.restarted || reopened_ ? kFlightReopened : 0) |
                                          (delivery.stamped ? kFlightStamped : 0));
   reopened_ = false;
+  flags |= kBeginsDelivery;
   for (const ifog_can_frame& frame : delivery.frames) {
     push_frame(frame, flags, read_ns);
-    flags &= static_cast<std::uint8_t>(~kFlightReopened);
+    flags &= static_cast<std::uint8_t>(~(kFlightReopened | kBeginsDelivery));
   }
   if (delivery.bytes.empty() && !delivery.frames.empty()) return;
   const bool timed = delivery.arrival_ns != 0;
@@ -88,10 +118,13 @@ bool Tape::take(FlightEntryHead& head, std::vector<std::uint8_t>& payload) {
     if (queue_.read_available() < kHead) return false;
     queue_.pop(reinterpret_cast<std::uint8_t*>(&begun_.emplace()), kHead);
   }
-  if (queue_.read_available() < begun_->length) return false;
-  payload.resize(begun_->length);
-  if (begun_->length > 0) queue_.pop(payload.data(), payload.size());
+  const std::size_t length = begun_->kind == FlightKind::settings ? 0 : begun_->length;
+  if (queue_.read_available() < length) return false;
+  payload.resize(length);
+  if (length > 0) queue_.pop(payload.data(), payload.size());
   head = *begun_;
+  begins_delivery_ = (head.flags & kBeginsDelivery) != 0;
+  head.flags &= static_cast<std::uint8_t>(~kBeginsDelivery);
   begun_.reset();
   return true;
 }

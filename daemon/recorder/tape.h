@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <optional>
@@ -36,25 +37,41 @@ class Tape {
   void put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
            std::int64_t wall_shift_ns) noexcept;
 
-  // Recorder thread: the oldest entry; false: there is none, or it is still being written.
+  // Reader thread: what is put from now on was filtered with the settings of this number, not 0.
+  void note_settings(std::uint32_t number) noexcept { settings_due_ = number; }
+  // Reader thread, for a source that can wait: there is no room for this delivery, and the recorder is at
+  // work and will make some.
+  [[nodiscard]] bool worth_waiting(const Delivery& delivery) const noexcept;
+
+  // Recorder thread: the oldest entry; false: there is none, or it is still being written. A `settings` entry
+  // has no payload, its number is the head's length.
   bool take(FlightEntryHead& head, std::vector<std::uint8_t>& payload);
+  // Recorder thread: the entry that was taken last is the first of a delivery.
+  [[nodiscard]] bool begins_delivery() const noexcept { return begins_delivery_; }
+  // Recorder thread: that it is at work; not when the disk takes nothing.
+  void attend(bool at_work) noexcept;
 
   [[nodiscard]] const TapeCounters& counters() const noexcept { return counters_; }
 
  private:
+  static std::size_t room_for(const Delivery& delivery) noexcept;
   void push(const FlightEntryHead& head, const void* payload, std::size_t length) noexcept;
   void push_state(std::span<const ChannelValue> channels, std::int64_t wall_shift_ns) noexcept;
   void push_frame(const ifog_can_frame& frame, std::uint8_t flags, std::int64_t read_ns) noexcept;
 
+  std::size_t bytes_;
   boost::lockfree::spsc_queue<std::uint8_t> queue_;
   // Reader thread.
   std::array<ChannelValue, kMaxChannels> recorded_{};  // of each channel, the last
   std::int64_t wall_shift_ns_ = 0;
   std::uint64_t untold_deliveries_ = 0, untold_bytes_ = 0;  // lost since the last `lost` entry
   bool reopened_ = false;                                   // with a delivery that was lost
+  std::uint32_t settings_due_ = 0;
   TapeCounters counters_;
+  std::atomic<std::int64_t> attended_ns_{0};  // monotonic; 0: not
   // Recorder thread.
   std::optional<FlightEntryHead> begun_;
+  bool begins_delivery_ = false;
 };
 
 }  // namespace ifog

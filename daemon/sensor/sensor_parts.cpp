@@ -5,6 +5,7 @@
 #include <cctype>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
@@ -19,6 +20,14 @@ namespace ifog {
 namespace {
 
 constexpr double kFrameChannelMaxAge_s = 10.0;
+
+// All of it: a member more does not compile.
+auto tied(const FilterChoice& choice) {
+  const auto& [rule, state, weights, process_noise, measurement_noise, floor, state_parameters, window, draws,
+               follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed] = choice;
+  return std::tie(rule, state, weights, process_noise, measurement_noise, floor, state_parameters, window,
+                  draws, follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed);
+}
 
 std::vector<CanId> wanted_ids(const ifog_description& description) {
   std::vector<CanId> ids;
@@ -185,6 +194,14 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
   out.start_up_s = sensor.start_up_s;
   out.model = std::move(model);
   return out;
+}
+
+bool ChainChoice::operator==(const ChainChoice& other) const {
+  return tied(filter) == tied(other.filter) && start_up_s == other.start_up_s && model == other.model;
+}
+
+ChainChoice chain_choice(const SensorConfig& sensor, const Model* model) {
+  return {sensor.filter, sensor.start_up_s, model != nullptr ? model_text(*model) : ""};
 }
 
 std::optional<std::int64_t> powered_ns(const SensorConfig& sensor) {

@@ -31,6 +31,16 @@ std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, con
 ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_description& description,
                                     std::shared_ptr<const Model> model);
 
+// What a reload can change of a sensor's chain: of equal ones the parts would be equal, too.
+struct ChainChoice {
+  FilterChoice filter;
+  double start_up_s = 0.0;
+  std::string model;  // its text, "" for none
+
+  bool operator==(const ChainChoice& other) const;
+};
+ChainChoice chain_choice(const SensorConfig& sensor, const Model* model);
+
 // When a sensor was switched on, arrival clock: of one that is switched on with the computer when that was,
 // suspended time since then included. Nothing is known of others.
 std::optional<std::int64_t> powered_ns(const SensorConfig& sensor);

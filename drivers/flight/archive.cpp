@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace ifog {
@@ -52,6 +53,12 @@ std::uint64_t number_of(std::string_view name) {
   return made_here && number < kMostFiles ? number : 0;
 }
 
+FlightLoss load_of(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery) {
+  const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can ||
+                    head.kind == FlightKind::message;
+  return came ? FlightLoss{begins_delivery ? 1U : 0U, payload.size()} : FlightLoss{};
+}
+
 }  // namespace
 
 FlightArchive::FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header)
@@ -61,9 +68,18 @@ FlightArchive::FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits
 
 FlightArchive::~FlightArchive() { close(now_ns_, wall_ns_); }
 
-void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_t> payload) {
+void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_t> payload,
+                        bool begins_delivery) {
   append_entry(waiting_, head, payload);
   ++entries_waiting_;
+  waiting_load_ += load_of(head, payload, begins_delivery);
+}
+
+std::string FlightArchive::complaint() const {
+  if (error_ == EBUSY) return "another recorder writes into it (expected a folder of its own)";
+  const std::string words = std::generic_category().message(error_);
+  const bool full = error_ == ENOSPC || error_ == EDQUOT || error_ == EFBIG;
+  return full ? words : words + " (expected a folder that can be written)";
 }
 
 void FlightArchive::set_header(FlightHeader header) {
@@ -127,6 +143,7 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   }
   header_.file = random_number();
   header_.number = next_number_;
+  header_.began = began_ != 0 ? began_ : next_number_;
   header_.opened_ns = wall_ns;
   open_name_ = file_name(next_number_, wall_ns);
   if (const int error = folder_->begin(open_name_ + std::string(kOpen)); error != 0) {
@@ -149,6 +166,8 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   }
   file_entries_ = state_.size();
   open_ = true;
+  file_load_ = {};
+  began_ = header_.began;
   ++next_number_;
   return 0;
 }
@@ -159,6 +178,10 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns) {
   std::memcpy(bytes.data(), told.data(), sizeof told);
   // Without it the file is as one that was being written when its writer was killed: whole to its last block.
   int error = write(BlockType::end, bytes);
+  if (error == ENOENT) {
+    forget_file();
+    return error;
+  }
   if (const int finished = folder_->finish(open_name_); error == 0) error = finished;
   open_ = false;
   file_bytes_ = 0;
@@ -166,6 +189,14 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns) {
   looked_ = false;
   if (const int looked = look(now_ns, wall_ns); error == 0) error = looked;
   return error;
+}
+
+// The open file has been taken away, and what it held with it.
+void FlightArchive::forget_file() {
+  folder_->leave();
+  lost_ += std::exchange(file_load_, {});
+  open_ = looked_ = false;
+  file_bytes_ = 0;
 }
 
 // The waiting entries that are state are what the next file begins with.
@@ -185,13 +216,19 @@ bool FlightArchive::file_is_full(std::int64_t now_ns) const {
 int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {
   if (!open_)
     if (const int error = begin_file(now_ns, wall_ns); error != 0) return error;
-  const int error = write(BlockType::data, waiting_);
+  int error = write(BlockType::data, waiting_);
+  if (error == ENOENT) {
+    forget_file();
+    error = begin_file(now_ns, wall_ns);
+    if (error == 0) error = write(BlockType::data, waiting_);
+  }
   if (error == EBADF) open_ = looked_ = false;  // a half-written block could not be taken back: another file
   if (error != 0) return error;
   file_entries_ += entries_waiting_;
   if (header_.carries != FlightHeader::Carries::messages) remember_state();
   waiting_.clear();
   entries_waiting_ = 0;
+  file_load_ += std::exchange(waiting_load_, {});
   waiting_since_ns_ = -1;
   return 0;
 }
@@ -210,7 +247,7 @@ int FlightArchive::tidy() {
   if (!looked_)
     if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
   if (file_is_full(now_ns_))
-    if (const int error = end_file(now_ns_, wall_ns_); error != 0) return error;
+    if (const int error = end_file(now_ns_, wall_ns_); error != 0 && error != ENOENT) return error;
   while (!kept_.empty() && now_ns_ - kept_.front().last_ns > limits_.age_ns)
     if (const int error = remove_oldest(); error != 0) return error;
   return 0;
@@ -234,6 +271,7 @@ std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
   if (open_) error_ = end_file(now_ns, wall_ns);
   waiting_.clear();
+  lost_ += std::exchange(waiting_load_, {});
   return std::exchange(entries_waiting_, 0);
 }
 

@@ -31,14 +31,26 @@ struct ArchiveLimits {
   std::int64_t flush_ns = 1'000'000'000;  // nothing waits longer to be written
 };
 
+// What came and will be in no recording.
+struct FlightLoss {
+  std::uint64_t deliveries = 0, bytes = 0;
+
+  FlightLoss& operator+=(const FlightLoss& other) {
+    deliveries += other.deliveries;
+    bytes += other.bytes;
+    return *this;
+  }
+};
+
 class FlightArchive {
  public:
   // now_ns throughout: a clock that nobody sets. wall_ns: for names and the age of files that were there.
   FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header);
   ~FlightArchive();  // close() at the time of the last turn()
 
-  // One entry behind the others. Only while not full().
-  void add(const FlightEntryHead& head, std::span<const std::uint8_t> payload);
+  // One entry behind the others. Only while not full(). begins_delivery: it is the first of what one read
+  // brought.
+  void add(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery = true);
   [[nodiscard]] bool full() const { return waiting_.size() >= kBlockTarget; }
   // Writes what is due, begins and ends files, removes old ones. `flush`: all that waits is due.
   void turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush = false);
@@ -47,8 +59,11 @@ class FlightArchive {
   // Writes what waits and ends the file. What the disk does not take now is lost: its entries are returned.
   std::uint64_t close(std::int64_t now_ns, std::int64_t wall_ns);
 
-  // errno of the disk's last answer, 0 while it is well.
+  // errno of the disk's last answer, 0 while it is well; and in words, with what was expected.
   [[nodiscard]] int error() const { return error_; }
+  [[nodiscard]] std::string complaint() const;
+  // With files that were taken away while they were written, and when it was closed.
+  [[nodiscard]] const FlightLoss& lost() const { return lost_; }
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
   [[nodiscard]] std::uint64_t files_removed() const { return files_removed_; }
   [[nodiscard]] std::uint64_t entries_waiting() const { return entries_waiting_; }
@@ -68,6 +83,7 @@ class FlightArchive {
   int write(BlockType type, std::span<const std::uint8_t> content);
   int write_waiting(std::int64_t now_ns, std::int64_t wall_ns);
   void remember_state();
+  void forget_file();
   int remove_oldest();
   int tidy();
   [[nodiscard]] bool file_is_full(std::int64_t now_ns) const;
@@ -88,6 +104,7 @@ class FlightArchive {
   std::string open_name_;                    // as it will be called
   std::uint64_t file_bytes_ = 0, file_entries_ = 0;
   std::int64_t file_since_ns_ = 0;
+  std::uint64_t began_ = 0;  // number of the run's first file
 
   std::vector<std::uint8_t> waiting_, block_;
   std::uint64_t entries_waiting_ = 0;
@@ -96,6 +113,8 @@ class FlightArchive {
   // The latest value of each channel and the wall clock's shift: each file begins with them.
   std::map<std::pair<FlightKind, std::uint16_t>, std::vector<std::uint8_t>> state_;
 
+  FlightLoss waiting_load_, file_load_;  // deliveries that wait, and in the open file
+  FlightLoss lost_;
   int error_ = 0;
   std::uint64_t bytes_written_ = 0, files_removed_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
@@ -28,9 +29,17 @@ class Playback {
                                in_quotes(header.driver) + " after sensor " + in_quotes(first_.sensor) +
                                " of driver " + in_quotes(first_.driver) +
                                " or with other channels, expected recordings of one");
-    if (!begun_) first_ = header;
-    begun_ = true;
     outside_.resize(header.channels.size());
+    if (std::exchange(begun_, true)) {
+      if (sink_.file) sink_.file(header);
+    } else {
+      first_ = header;
+    }
+  }
+
+  void miss() {
+    if (sink_.missing) sink_.missing();
+    interrupt();
   }
 
   void interrupt() {
@@ -95,7 +104,7 @@ void decode_flight(FlightReader& reader, DriverInstance& driver, const RecordedS
     if (item == FlightReader::Item::header)
       playback.begin(reader.header());
     else if (item == FlightReader::Item::hole)
-      playback.interrupt();
+      playback.miss();
     else
       playback.take(reader.entry());
   }

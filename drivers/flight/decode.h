@@ -24,6 +24,11 @@ struct RecordedSamples {
   std::function<void(const RecordedSample&)> sample;
   std::function<void()>
       discontinuity;  // the device was opened again, or something of the recording is missing
+  // Before a discontinuity that the daemon did not have: something of the recording is missing. May be empty.
+  std::function<void()> missing{};
+  // A file begins behind the first, before its samples: of another run, or with other settings, perhaps. May
+  // be empty.
+  std::function<void(const FlightHeader&)> file{};
 };
 
 // The next sample onto whatever `reader` gives, to its end. Throws std::runtime_error, without the file's

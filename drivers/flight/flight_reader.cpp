@@ -89,6 +89,9 @@ FlightReader::Item FlightReader::begin_file() {
   const bool goes_on =
       in_file_ && closed_ && whole_ && fresh.run == header_.run && fresh.number == header_.number + 1;
   const bool first = !in_file_;
+  const bool same_run = !first && fresh.run == header_.run;
+  if (same_run && fresh.number > header_.number + 1) counts_.missing_files += fresh.number - header_.number - 1;
+  if (!first && !same_run && closed_ && fresh.opened_ns < closed_ns_) ++counts_.early_files;
   finish_file();
   header_ = std::move(fresh);
   file_at_ = passed_;
@@ -114,6 +117,9 @@ void FlightReader::take_block() {
   std::uint64_t told = 0;
   if (content_.size() >= sizeof told) std::memcpy(&told, content_.data(), sizeof told);
   closed_ = true;
+  closed_ns_ = INT64_MIN;
+  if (content_.size() >= sizeof told + sizeof closed_ns_)
+    std::memcpy(&closed_ns_, content_.data() + sizeof told, sizeof closed_ns_);
   if (told > file_entries_) {
     counts_.missing_entries += told - file_entries_;
     whole_ = false;
@@ -134,8 +140,9 @@ bool FlightReader::take_entry_ahead() {
   if (entry_.head.kind != FlightKind::lost) return true;
   std::uint64_t deliveries = 0, bytes = 0;
   if (entry_.value(deliveries) && entry_.value(bytes, sizeof deliveries)) {
-    counts_.lost_deliveries += deliveries;
-    counts_.lost_bytes += bytes;
+    const bool messages = header_.carries == FlightHeader::Carries::messages;
+    (messages ? counts_.lost_messages : counts_.lost_deliveries) += deliveries;
+    counts_.lost_bytes += messages ? 0 : bytes;
   }
   return false;
 }
@@ -170,6 +177,12 @@ std::vector<std::string> losses(const FlightCounts& counts) {
   say(counts.missing_entries, "entries are missing by the recording's own count");
   say(counts.lost_deliveries, "deliveries (" + std::to_string(counts.lost_bytes) +
                                   " bytes) came and were not recorded: the disk was slow or full");
+  say(counts.lost_messages,
+      "messages are not in the recording: lost on LCM on the way to it, or the disk was slow or full");
+  say(counts.missing_files, "recording(s) between the first and the last are not there");
+  say(counts.early_files,
+      "recording(s) begun before the one in front had ended: two recorders wrote at once, or the clock was "
+      "set back");
   return lines;
 }
 

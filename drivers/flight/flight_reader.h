@@ -22,7 +22,10 @@ struct FlightCounts {
   std::uint64_t open_files = 0;       // without an end: still written, or what wrote it was killed
   std::uint64_t missing_entries = 0;  // that a file's end tells of and are not there
   std::uint64_t lost_deliveries = 0,
-                lost_bytes = 0;  // that came and were not recorded: the disk was too slow
+                lost_bytes = 0;     // that came and were not recorded: the disk was too slow
+  std::uint64_t lost_messages = 0;  // the same of a recording of messages: LCM or the disk was too slow
+  std::uint64_t missing_files = 0;  // of a run, between those that are there
+  std::uint64_t early_files = 0;    // begun before the one in front of them had ended, in another run
 };
 
 class FlightReader {
@@ -71,6 +74,7 @@ class FlightReader {
   std::uint64_t file_at_ = 0;                             // where the file begins in the stream
   std::uint64_t file_entries_ = 0;                        // of the present file, so far
   bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
+  std::int64_t closed_ns_ = 0;  // wall clock, of the file before once it is closed_
   bool header_due_ = false, ended_ = false;
   BlockHead block_;
   bool header_block_ = false;

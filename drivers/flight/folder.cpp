@@ -17,10 +17,17 @@ namespace {
 
 int result(int returned) { return returned == 0 ? 0 : errno; }
 
+bool same_file(const struct stat& a, const struct stat& b) {
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 class DiskFolder final : public FlightFolder {
  public:
   explicit DiskFolder(std::string path) : path_(std::move(path)) {}
-  ~DiskFolder() override { leave(); }
+  ~DiskFolder() override {
+    leave();
+    let_go();
+  }
   DiskFolder(const DiskFolder&) = delete;
   DiskFolder& operator=(const DiskFolder&) = delete;
 
@@ -52,16 +59,43 @@ class DiskFolder final : public FlightFolder {
     return error;
   }
 
+  int keep_to_oneself();
+  void let_go() {
+    if (lock_fd_ >= 0) ::close(std::exchange(lock_fd_, -1));
+  }
+  [[nodiscard]] bool is_there() const;
+
   std::string path_, open_name_;
+  int lock_fd_ = -1;  // of the folder: goes with the process, however that ends
   int fd_ = -1;
   off_t size_ = 0;
 };
+
+// A lock on the folder itself, so that no file has to be left in it. A file system that knows none does
+// without.
+int DiskFolder::keep_to_oneself() {
+  const int fd = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return errno;
+  struct stat held {
+  }, now{};
+  const bool same =
+      lock_fd_ >= 0 && ::fstat(lock_fd_, &held) == 0 && ::fstat(fd, &now) == 0 && same_file(held, now);
+  const bool taken = !same && ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (same || taken) {
+    ::close(fd);
+    return taken ? EBUSY : 0;
+  }
+  let_go();
+  lock_fd_ = fd;
+  return 0;
+}
 
 int DiskFolder::list(std::vector<File>& out) {
   out.clear();
   std::error_code error;
   if (std::filesystem::create_directories(path_, error)) ::chmod(path_.c_str(), 0750);
   if (error) return error.value();
+  if (const int refused = keep_to_oneself(); refused != 0) return refused;
   DIR* const folder = ::opendir(path_.c_str());
   if (folder == nullptr) return errno;
   while (const dirent* const entry = ::readdir(folder)) {
@@ -88,8 +122,19 @@ int DiskFolder::begin(const std::string& name) {
   return 0;
 }
 
+// Under its name, in its folder.
+bool DiskFolder::is_there() const {
+  struct stat open {
+  }, named{};
+  return ::fstat(fd_, &open) == 0 && ::stat(in(open_name_).c_str(), &named) == 0 && same_file(open, named);
+}
+
 int DiskFolder::append(std::span<const std::uint8_t> bytes) {
   if (fd_ < 0) return EBADF;
+  if (!is_there()) {
+    leave();
+    return ENOENT;
+  }
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t n = ::write(fd_, bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;

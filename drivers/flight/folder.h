@@ -21,11 +21,12 @@ class FlightFolder {
   };
 
   virtual ~FlightFolder() = default;
-  // What is in it; made if it is not there.
+  // What is in it; made if it is not there. From then on it is this one's alone: EBUSY where another has it.
   virtual int list(std::vector<File>& out) = 0;
   // Makes the file `name` and leaves it open. It must not exist.
   virtual int begin(const std::string& name) = 0;
-  // Behind what the open file holds: all of it, or nothing is left of it.
+  // Behind what the open file holds: all of it, or nothing is left of it. ENOENT: somebody has taken the file
+  // away.
   virtual int append(std::span<const std::uint8_t> bytes) = 0;
   // The open file's content is on the disk, then its name becomes `name`. Closes it in any case.
   virtual int finish(const std::string& name) = 0;

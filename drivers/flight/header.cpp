@@ -66,6 +66,10 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
     out.run = number<std::uint64_t>(key, value);
   else if (key == "number")
     out.number = number<std::uint64_t>(key, value);
+  else if (key == "began")
+    out.began = number<std::uint64_t>(key, value);
+  else if (key == "settings")
+    out.settings = number<std::uint32_t>(key, value);
   else if (key == "opened_ns")
     out.opened_ns = number<std::int64_t>(key, value);
   else if (key == "powered_ns")
@@ -118,6 +122,8 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   for (const std::string& channel : header.channels) add("channel", channel);
   add("run", std::to_string(header.run));
   add("number", std::to_string(header.number));
+  if (header.began != 0) add("began", std::to_string(header.began));
+  if (header.settings != 0) add("settings", std::to_string(header.settings));
   add("opened_ns", std::to_string(header.opened_ns));
   if (header.powered_ns) add("powered_ns", std::to_string(*header.powered_ns));
   add("configuration_file", header.configuration_file);

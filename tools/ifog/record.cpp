@@ -114,7 +114,7 @@ void LcmRecorder::tell_trouble() {
   troubled_ = error != 0;
   if (troubled_)
     warn("%s: %s; nothing is recorded until it takes more\n", options_.folder.c_str(),
-         std::system_category().message(error).c_str());
+         archive_.complaint().c_str());
   else
     warn("%s: all is recorded again, %llu messages were lost\n", options_.folder.c_str(),
          static_cast<unsigned long long>(lost_total_));
@@ -139,7 +139,7 @@ void LcmRecorder::run() {
       static_cast<unsigned long long>(lost_total_) + unwritten, static_cast<long long>(on_the_way));
   if (messages_ == 0) throw Failed("nothing heard");
   if (archive_.error() != 0)
-    throw std::runtime_error(options_.folder + ": " + std::system_category().message(archive_.error()));
+    throw std::runtime_error(options_.folder + ": " + archive_.complaint());
 }
 
 }  // namespace

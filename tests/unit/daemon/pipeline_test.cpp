@@ -68,6 +68,45 @@ TEST(Pipeline, AFilterThatCannotKeepUpLosesNoAngle) {
   EXPECT_NEAR(messages.back().angle[0], sent_angle(kCount), 1e-13);
 }
 
+// What LCM did not take is in the next message: who integrates has every increment once, and `dt` is the time
+// since the message before.
+TEST(Pipeline, IncrementsThatWereNotSentAreInTheNextMessage) {
+  constexpr int kCount = 1000, kFrom = 300, kTo = 500;
+  Rig rig(frames(kCount), kFrame, true);
+  rig.publisher->imu_refused_from = kFrom;
+  rig.publisher->imu_refused_to = kTo;
+  rig.run_to_the_end();
+  const std::vector<imu_t> increments = rig.publisher->increments();
+  ASSERT_EQ(increments.size(), static_cast<std::size_t>(kCount - (kTo - kFrom)));
+  double angle = 0.0, turned_s = 0.0, time_s = 0.0, moved_s = 0.0, velocity = 0.0;
+  int samples = 0;
+  for (const imu_t& each : increments) {
+    angle += each.delta_theta[0];
+    turned_s += each.turned_s[0];
+    moved_s += each.moved_s[2];
+    velocity += each.delta_v[2];
+    time_s += each.dt;
+    samples += each.merged;
+  }
+  EXPECT_EQ(samples, kCount);
+  EXPECT_NEAR(angle, sent_angle(kCount), 1e-13);
+  EXPECT_NEAR(turned_s, kCount * 1e-3, 1e-9);
+  EXPECT_NEAR(moved_s, kCount * 1e-3, 1e-9);
+  EXPECT_NEAR(time_s, kCount * 1e-3, 1e-9);
+  Rig undisturbed(frames(kCount), kFrame, true);
+  undisturbed.run_to_the_end();
+  double expected = 0.0;
+  for (const imu_t& each : undisturbed.publisher->increments()) expected += each.delta_v[2];
+  EXPECT_NEAR(velocity, expected, 1e-9);
+  const imu_t& after = increments[kFrom];
+  EXPECT_EQ(after.seq, kTo);
+  EXPECT_EQ(after.merged, kTo - kFrom + 1);
+  EXPECT_NEAR(after.dt, (kTo - kFrom + 1) * 1e-3, 1e-9);
+  EXPECT_NE(after.flags & rate_t::FLAG_MERGED, 0);
+  EXPECT_EQ(increments[kFrom + 1].merged, 1);
+  EXPECT_EQ(increments[kFrom + 1].flags & rate_t::FLAG_MERGED, 0);
+}
+
 // Increments for an inertial navigation: the sums of both are exact over merged samples. Accelerations travel
 // as float32 in units of the standard gravity (the maker's format).
 TEST(Pipeline, IncrementsOfAngleAndVelocityAddUpOverOverflow) {

@@ -11,11 +11,13 @@
 #include <unistd.h>
 
 #include <ifog/decode.h>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -234,6 +236,119 @@ TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
       ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
   // The noise did come from there: without it the first seconds are the raw rate.
   EXPECT_NE(published_[1000].denoised[0], published_[1000].compensated[0]);
+}
+
+// Through a reload that changes nothing, one that changes the model, one that changes the filter, and a restart:
+// each sample comes out as it was published, its noise learned from the first seconds of each run.
+TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
+  filter_lines_ = "[sensor.filter]\nstart_up_s = 0.3\n";
+  configure();
+  start();
+  const auto reload = [&](const std::string& expected) {
+    kill(child_, SIGHUP);
+    for (int n = 0; n < 600 && text_of(path("said")).find(expected) == std::string::npos; ++n) listen(20);
+    EXPECT_NE(text_of(path("said")).find(expected), std::string::npos) << text_of(path("said"));
+    // New parts are in use from the next delivery on: the next one at the latest.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  };
+  ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
+  ASSERT_NE(published_.back().denoised[0], published_.back().compensated[0]);  // its noise is known
+  reload("nothing changed, the filter goes on");
+  const std::size_t unchanged = published_.size();
+  ASSERT_TRUE(send_and_await(200)) << text_of(path("said"));
+  for (std::size_t n = unchanged; n < published_.size(); ++n)
+    ASSERT_EQ(published_[n].flags & (rate_t::FLAG_NOISE_UNKNOWN | rate_t::FLAG_FILTER_RESET), 0) << n;
+  std::string other = text_of(path("model.toml"));
+  other.replace(other.find("1e-3"), 4, "4e-3");
+  write("model.toml", other);
+  reload("reloaded: model");
+  ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
+  filter_lines_ = "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n";
+  configure();
+  write("model.toml", other);
+  reload("reloaded: model");
+  ASSERT_TRUE(send_and_await(300)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  start();
+  ASSERT_TRUE(send_and_await(300)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  std::set<std::string> models;
+  for (const rate_t& message : published_) models.insert(message.model);
+  EXPECT_EQ(models.size(), 2U);
+  fs::remove(path("model.toml"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  EXPECT_EQ(complaint_, "");
+  const auto rows = rows_of("denoised.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ASSERT_EQ(rows[n][1 + 4 * axis], published_[n].raw[axis]) << n;
+      ASSERT_EQ(rows[n][2 + 4 * axis], published_[n].compensated[axis]) << n;
+      ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
+      ASSERT_EQ(rows[n][4 + 4 * axis], published_[n].variance[axis]) << n;
+    }
+  // Without its beginning nobody knows how the filter stood: that is said.
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(path("record/nose"))) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  ASSERT_EQ(files.size(), 4U);
+  fs::remove(files.front());
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  EXPECT_NE(complaint_.find("from 0.000 s on, until the filter has settled, this need not be what was published"), std::string::npos)
+      << complaint_;
+}
+
+// A timer that runs it must see that it failed.
+TEST_F(RecordedFlight, ANightThatCannotJudgeFails) {
+  configure();
+  const std::string night = "night --config " + path("ifogd.toml");
+  EXPECT_NE(ifog(night), 0);  // no state folder
+  EXPECT_NE(complaint_.find("expected the daemon's state folder"), std::string::npos) << complaint_;
+  fs::create_directories(path("state"));
+  EXPECT_EQ(ifog(night), 0) << complaint_;  // nothing is recorded yet
+  write("state/nose.night.json", "{");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("nose.night.json: is no JSON object"), std::string::npos) << complaint_;
+  write("state/nose.night.json", "{\"schema\": \"ifog.night/1\"}");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("nose.night.json: damaged: key 'until' not found"), std::string::npos) << complaint_;
+  EXPECT_EQ(complaint_.find("json.exception"), std::string::npos) << complaint_;
+  fs::remove(path("state/nose.night.json"));
+  fs::create_directories(path("record/nose"));
+  write("record/nose/00000001-20260101T000000Z.ifr", "junk");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("is no flight recording"), std::string::npos) << complaint_;
+  fs::remove_all(path("record/nose"));
+  write("record/nose", "a file");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("record/nose: cannot read"), std::string::npos) << complaint_;
+}
+
+// All settings of the configuration: where the drivers are, too.
+TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
+  configure();
+  start();
+  ASSERT_TRUE(send_and_await(100)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  write("raw.bin", sent_);
+  // A program that is not in the build tree finds no drivers beside itself.
+  fs::create_directories(path("bin"));
+  fs::copy(IFOG_BINARY_DIR "/tools/ifog/ifog", path("bin/ifog"));
+  fs::path plugin;
+  for (const auto& entry : fs::recursive_directory_iterator(IFOG_BINARY_DIR "/drivers/plugins/kvh1750"))
+    if (entry.path().extension() == ".so") plugin = entry.path();
+  fs::create_directories(path("plugins"));
+  fs::copy(plugin, path("plugins") / plugin.filename());
+  std::string configuration = text_of(path("ifogd.toml"));
+  configuration.replace(0, 8, "[daemon]\nplugin_folder = \"plugins\"");
+  write("ifogd.toml", configuration);
+  for (const std::string recording : {"record/nose", "raw.bin"}) {
+    const int status = std::system((path("bin/ifog") + " denoise " + path(recording) + " --config " +
+                                    path("ifogd.toml") + " --output " + path("out.csv") + " >/dev/null 2>" +
+                                    path("complaint"))
+                                       .c_str());
+    EXPECT_EQ(status, 0) << recording << ": " << text_of(path("complaint"));
+  }
 }
 
 TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) {

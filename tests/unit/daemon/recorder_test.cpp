@@ -251,7 +251,9 @@ TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   EXPECT_EQ(read.counts.lost_bytes, lost);
 }
 
-TEST(Recorder, AnotherHeaderBeginsAnotherFile) {
+// New settings begin a file with the very delivery that they take effect at, also where that is within a turn
+// of the recorder.
+TEST(Recorder, NewSettingsBeginAFileAtTheirFirstDelivery) {
   MemoryDisk disk;
   Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
   const std::vector<std::uint8_t> bytes{1, 2, 3};
@@ -260,16 +262,92 @@ TEST(Recorder, AnotherHeaderBeginsAnotherFile) {
   recorder.turn(3 * kSecond, kWall);
   FlightHeader other = header();
   other.configuration = "another model";
-  recorder.set_header(other);
-  recorder.tape().put(delivery(bytes, 2), 2, {}, 0);
+  recorder.set_header(other, 1);
+  const std::vector<std::uint8_t> last{4}, next{5};
+  recorder.tape().put(delivery(last, 2), 2, {}, 0);  // with the settings before
+  recorder.tape().note_settings(1);
+  recorder.tape().put(delivery(next, 3), 3, {}, 0);
   recorder.turn(4 * kSecond, kWall);
   recorder.turn(6 * kSecond, kWall);
   const ReadBack read = read_back(all_of(disk));
   ASSERT_EQ(read.headers.size(), 2U);
   EXPECT_EQ(read.headers[0].configuration, "");
   EXPECT_EQ(read.headers[1].configuration, "another model");
-  EXPECT_EQ(read.payloads.size(), 2U);
+  EXPECT_EQ(read.headers[0].settings, 0U);
+  EXPECT_EQ(read.headers[1].settings, 1U);
+  EXPECT_EQ(read.headers[1].began, read.headers[0].number);
+  EXPECT_EQ(read.payloads, (std::vector<std::vector<std::uint8_t>>{bytes, last, next}));
   EXPECT_TRUE(read.holes.empty());
+  const ReadBack second = read_back(disk.files.rbegin()->second);
+  EXPECT_EQ(second.payloads, std::vector<std::vector<std::uint8_t>>{next});
+}
+
+// A disk that refuses holds new settings up, and what was read before them is not taken for theirs.
+TEST(Recorder, NewSettingsWaitForWhatIsBeforeThem) {
+  MemoryDisk disk;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  disk.refuses = EIO;
+  const std::vector<std::uint8_t> before{1}, after{2};
+  recorder.tape().put(delivery(before, 1), 1, {}, 0);
+  recorder.set_header(header(), 1);
+  recorder.tape().note_settings(1);
+  recorder.tape().put(delivery(after, 2), 2, {}, 0);
+  for (int second = 1; second < 5; ++second) recorder.turn(second * kSecond, kWall);
+  disk.refuses = 0;
+  for (int second = 5; second < 10; ++second) recorder.turn(second * kSecond, kWall);
+  ASSERT_EQ(disk.files.size(), 2U);
+  EXPECT_EQ(read_back(disk.files.begin()->second).payloads, std::vector<std::vector<std::uint8_t>>{before});
+  EXPECT_EQ(read_back(disk.files.rbegin()->second).payloads, std::vector<std::vector<std::uint8_t>>{after});
+}
+
+TEST(Recorder, AFolderThatNeverWorksLosesAllAndSaysSo) {
+  MemoryDisk disk;
+  disk.refuses = ENOTDIR;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  recorder.start();
+  Rig rig(frames(20'000), 100, true, 1024, 0us, true, &recorder.tape());
+  rig.run_to_the_end();
+  recorder.stop();
+  EXPECT_EQ(recorder.lost_deliveries(), recorder.tape().counters().deliveries.value());
+  EXPECT_EQ(recorder.lost_bytes(), 20'000 * kFrame);
+  EXPECT_EQ(rig.publisher->messages().size(), 20'000U);
+}
+
+TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
+  MemoryDisk disk;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  for (int second = 1; second < 20; ++second) {
+    if (second == 10) disk.files.clear();
+    recorder.tape().put(delivery(bytes, second), second, {}, 0);
+    recorder.turn(second * kSecond, kWall);
+  }
+  bool good = false;
+  const std::string message = recorder.take_message(good);
+  EXPECT_NE(message.find("the recording in work has been taken away"), std::string::npos) << message;
+  EXPECT_GE(recorder.lost_deliveries(), 7U);
+  EXPECT_EQ(recorder.lost_bytes(), 3 * recorder.lost_deliveries());
+}
+
+// A source that keeps its bytes until they are read loses none to a recorder that is slower than the decoding
+// of a file; one that nobody attends holds nothing up.
+TEST(Recorder, AFileAtFreePaceIsRecordedWhole) {
+  MemoryDisk disk;
+  const std::vector<std::uint8_t> sent = frames(60'000);  // eight times the tape
+  ASSERT_GT(sent.size(), 8 * Tape::kLeastBytes);
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  recorder.start();
+  Rig rig(sent, 3600, true, 1024, 0us, true, &recorder.tape());
+  rig.run_to_the_end();
+  recorder.stop();
+  EXPECT_EQ(recorder.lost_deliveries(), 0U);
+  std::size_t recorded = 0;
+  for (const auto& payload : read_back(all_of(disk)).payloads) recorded += payload.size();
+  EXPECT_EQ(recorded, sent.size());
+  Tape alone(Tape::kLeastBytes);
+  Rig other(sent, 3600, true, 1024, 0us, true, &alone);
+  other.run_to_the_end();
+  EXPECT_GT(alone.counters().lost_deliveries.value(), 0U);
 }
 
 }  // namespace

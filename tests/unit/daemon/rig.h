@@ -67,6 +67,7 @@ class KeepingPublisher final : public Publisher {
       imu_t increment{};
       const bool whole = decode_message(message, increment);
       const std::lock_guard lock(mutex_);
+      if (const int n = imu_messages_++; n >= imu_refused_from && n < imu_refused_to) return false;
       if (whole) increments_.push_back(increment);
       return whole;
     }
@@ -86,9 +87,13 @@ class KeepingPublisher final : public Publisher {
     return increments_;
   }
 
+  // Messages of imu_t, by their number, that LCM does not take. Before the start.
+  int imu_refused_from = 0, imu_refused_to = 0;
+
  private:
   std::chrono::microseconds pause_;
   std::mutex mutex_;
+  int imu_messages_ = 0;
   std::vector<rate_t> messages_;
   std::vector<imu_t> increments_;
 };

@@ -2,7 +2,10 @@
 // Files that begin, end and go; a disk that is full, damaged, or shared with others; a year of it.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "tests/unit/flight/recordings.h"
@@ -138,6 +141,111 @@ TEST(FlightArchive, ADiskThatRefusesLosesNothingThatWaits) {
   EXPECT_EQ(bench.archive.close(bench.now_ns, kWall), 0U);
   EXPECT_EQ(numbers(read_back(all_of(bench.disk))), counting(0, n));
   EXPECT_TRUE(losses(read_back(all_of(bench.disk)).counts).empty());
+}
+
+// Somebody removes the file in work: what it held is lost and known to be, what waited and what comes goes into
+// another one, and a reader says that one is missing.
+TEST(FlightArchive, AFileThatIsTakenAwayIsCountedAndTheNextGoesOn) {
+  ArchiveLimits limits;
+  limits.file_ns = 100 * kSecond;
+  Bench bench(limits);
+  const auto seconds = [&, n = std::uint64_t{0}](int count) mutable {
+    for (int i = 0; i < count; ++i) {
+      bench.now_ns += kSecond;
+      bench.add(n++);
+      bench.turn();
+    }
+  };
+  seconds(150);
+  const std::uint64_t before = numbers(read_back(all_of(bench.disk))).size();
+  bench.disk.files.erase(bench.disk.open);
+  const std::uint64_t left = numbers(read_back(all_of(bench.disk))).size();
+  ASSERT_LT(left, before);
+  seconds(20);
+  EXPECT_EQ(bench.archive.error(), 0);
+  EXPECT_EQ(bench.archive.lost().deliveries, before - left);
+  EXPECT_EQ(bench.archive.close(bench.now_ns, kWall + bench.now_ns), 0U);
+  const ReadBack read = read_back(all_of(bench.disk));
+  EXPECT_EQ(read.payloads.size(), 170 - (before - left));
+  EXPECT_EQ(read.counts.missing_files, 1U);
+  EXPECT_EQ(read.holes, std::vector<std::size_t>{left});
+}
+
+TEST(FlightArchive, WhatTheDiskDidNotTakeAtTheEndIsLost) {
+  Bench bench({});
+  bench.disk.refuses = ENOTDIR;
+  for (std::uint64_t n = 0; n < 12; ++n) {
+    bench.now_ns += kSecond;
+    bench.add(n);
+    bench.turn();
+  }
+  EXPECT_EQ(bench.archive.lost().deliveries, 0U);  // it waits
+  EXPECT_EQ(bench.archive.complaint(), "Not a directory (expected a folder that can be written)");
+  EXPECT_EQ(bench.archive.close(bench.now_ns, kWall), 12U);
+  EXPECT_EQ(bench.archive.lost().deliveries, 12U);
+  EXPECT_EQ(bench.archive.lost().bytes, [] {
+    std::uint64_t sum = 0;
+    for (std::uint64_t n = 0; n < 12; ++n) sum += numbered(n).size();
+    return sum;
+  }());
+}
+
+// On a real disk: who comes second is refused, and has the folder once the first is gone.
+TEST(FlightArchive, OneRecorderAFolder) {
+  const std::string path = testing::TempDir() + "one-recorder-" + std::to_string(::getpid());
+  std::vector<FlightFolder::File> files;
+  auto first = make_flight_folder(path);
+  EXPECT_EQ(first->list(files), 0);
+  EXPECT_EQ(first->list(files), 0);
+  FlightArchive second(make_flight_folder(path), {}, some_header());
+  second.add({FlightKind::bytes, 0, 0, 0, 1}, numbered(1));
+  second.turn(kSecond, kWall, true);
+  EXPECT_EQ(second.complaint(), "another recorder writes into it (expected a folder of its own)");
+  EXPECT_EQ(second.entries_waiting(), 1U);
+  // Removed and made anew it is another folder, which is locked as well.
+  std::filesystem::remove_all(path);
+  EXPECT_EQ(first->list(files), 0);
+  second.turn(3 * kSecond, kWall, true);
+  EXPECT_EQ(second.error(), EBUSY);
+  first.reset();
+  second.turn(5 * kSecond, kWall, true);
+  EXPECT_EQ(second.error(), 0);
+  // A file that is taken away on a real disk.
+  std::filesystem::remove_all(path);
+  second.add({FlightKind::bytes, 0, 0, 0, 1}, numbered(2));
+  second.turn(7 * kSecond, kWall, true);
+  EXPECT_EQ(second.error(), 0);
+  EXPECT_EQ(second.lost().deliveries, 1U);
+  EXPECT_EQ(second.close(8 * kSecond, kWall), 0U);
+  std::filesystem::remove_all(path);
+}
+
+// As the folders of those that did not lock have them: read as one they are two gyros.
+TEST(FlightArchive, RunsThatOverlapAreTold) {
+  MemoryDisk disk;
+  for (const std::int64_t begin_ns : {0 * kSecond, 5 * kSecond, 100 * kSecond}) {
+    FlightArchive archive(std::make_unique<MemoryFolder>(disk), {}, some_header());
+    archive.add({FlightKind::bytes, 0, 0, 0, begin_ns}, numbered(1));
+    archive.turn(begin_ns, kWall + begin_ns, true);
+    archive.close(begin_ns + 20 * kSecond, kWall + begin_ns + 20 * kSecond);
+  }
+  const ReadBack read = read_back(all_of(disk));
+  EXPECT_EQ(read.counts.early_files, 1U);
+  ASSERT_EQ(losses(read.counts).size(), 1U);
+  EXPECT_NE(losses(read.counts)[0].find("two recorders wrote at once"), std::string::npos);
+}
+
+TEST(FlightArchive, WhatLcmLostIsNoFaultOfTheDisk) {
+  MemoryDisk disk;
+  FlightHeader header = some_header();
+  header.carries = FlightHeader::Carries::messages;
+  FlightArchive archive(std::make_unique<MemoryFolder>(disk), {}, header);
+  const std::uint64_t lost[2] = {88, 0};
+  archive.add({FlightKind::lost, 0, 0, 0, 1}, {reinterpret_cast<const std::uint8_t*>(lost), sizeof lost});
+  archive.close(1, kWall);
+  EXPECT_EQ(losses(read_back(all_of(disk)).counts),
+            std::vector<std::string>{"88 messages are not in the recording: lost on LCM on the way to it, or "
+                                     "the disk was slow or full"});
 }
 
 TEST(FlightArchive, ABlockHalfWrittenOnAFullDiskIsWrittenAnewInAnotherFile) {

@@ -54,6 +54,10 @@ class MemoryFolder final : public FlightFolder {
   int append(std::span<const std::uint8_t> bytes) override {
     if (disk_.open.empty()) return EBADF;
     if (disk_.refuses != 0) return disk_.refuses;
+    if (!disk_.files.contains(disk_.open)) {
+      disk_.open.clear();
+      return ENOENT;
+    }
     std::vector<std::uint8_t>& file = disk_.files[disk_.open];
     if (const std::uint64_t used = disk_.used(); used + bytes.size() > disk_.room) {
       if (!disk_.cuts_back) {

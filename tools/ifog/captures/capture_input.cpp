@@ -102,8 +102,9 @@ DriverSettings CaptureInput::settings() const {
   return out;
 }
 
-DriverInstance CaptureInput::make_driver() const {
-  DriverInstance made = ifog::make_driver(driver_name(), settings());
+DriverInstance CaptureInput::make_driver(const std::vector<std::string>& folders,
+                                         const std::string& files_from) const {
+  DriverInstance made = ifog::make_driver(driver_name(), settings(), plugin_folders(folders), files_from);
   for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
   return made;
 }

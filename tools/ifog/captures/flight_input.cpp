@@ -55,7 +55,8 @@ FlightInput::FlightInput(InputFile& file)
 }
 
 DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options,
-                                        const std::vector<std::string>& folders) const {
+                                        const std::vector<std::string>& folders,
+                                        const std::string& files_from) const {
   const bool other = !driver.empty() && driver != header().driver;
   DriverSettings settings = other ? DriverSettings{} : header().options;
   std::vector<std::unique_ptr<NamedText>> carried;
@@ -68,7 +69,7 @@ DriverInstance FlightInput::make_driver(const std::string& driver, const DriverS
       throw std::runtime_error(
           "is a recording of LCM messages, expected none of --driver and --option with it");
     DriverInstance made =
-        ifog::make_driver(other ? driver : header().driver, settings, plugin_folders(folders));
+        ifog::make_driver(other ? driver : header().driver, settings, plugin_folders(folders), files_from);
     for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
     return made;
   });
@@ -102,7 +103,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
                                      ++counts.samples;
                                      sink.sample(sample);
                                    },
-                                   sink.discontinuity};
+                                   sink.discontinuity, sink.missing, sink.file};
     decode_flight(reader_, driver, counting);
     const std::uint64_t before = driver.counters().bytes_skipped;
     driver.reset();

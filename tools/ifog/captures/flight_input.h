@@ -30,9 +30,11 @@ class FlightInput {
 
   // The driver of the recording with its options, those of `options` over them; another one, which then has
   // only `options`, where `driver` names it.
-  // folders: that plugins are looked for in; empty: the standard places.
+  // folders: that plugins are looked for in; empty: the standard places. files_from: where relative paths in
+  // the options begin; "": where the process is.
   [[nodiscard]] DriverInstance make_driver(const std::string& driver, const DriverSettings& options,
-                                           const std::vector<std::string>& folders = {}) const;
+                                           const std::vector<std::string>& folders = {},
+                                           const std::string& files_from = {}) const;
   // As the daemon had it configured, and the model it used: what the recording carries of it, else the file
   // that it names. Null: none.
   [[nodiscard]] SensorConfig sensor() const;

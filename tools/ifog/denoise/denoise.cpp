@@ -151,6 +151,8 @@ OfflineSettings settings_of(Options& options, const InputFile& capture, const Fl
                                     ? "has several sensors; expected --sensor NAME"
                                     : "has no sensor \"" + printable(options.sensor) + "\""));
     out.sensor = *found;
+    out.plugin_folders = config.plugin_folders;
+    if (options.input.options.empty()) out.files_from = out.sensor.folder;
     if (file_kind(capture) != FileKind::capture && !options.input.has_driver()) {
       options.input.driver = out.sensor.driver;
       for (const auto& [key, value] : out.sensor.options) options.input.options.push_back(key + "=" + value);
@@ -215,9 +217,18 @@ void tell(const Options& options, const DenoisedRows& rows, const OfflineResult&
         "--process-noise and --measurement-noise, or a shorter --start-up\n",
         options.capture.c_str());
   tell_unusable(options.capture, rows, result);
+  if (result.not_as_published_from_s && options.config.empty())
+    warn(
+        "%s: from %.3f s on, until the filter has settled, this need not be what was published: the "
+        "recording "
+        "lacks something there\n",
+        options.capture.c_str(), *result.not_as_published_from_s);
   say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), rows.written(),
       result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
       static_cast<unsigned long long>(result.counts.missing));
+  if (result.runs > 1 || result.exchanges > 0)
+    say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): each as it was; at the end\n",
+        result.runs, result.exchanges);
   const FilterSettings& filter = result.filter;
   if (rows.none_filtered())
     say("filter %s, state %s: not run, the noise is not known\n", filter.rule.c_str(), filter.state.c_str());
@@ -270,12 +281,12 @@ void run(Options options) {
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
   if (kind == FileKind::flight && !recorded_messages(capture)) flight.emplace(capture);
-  const OfflineSettings settings = settings_of(options, capture, flight ? &*flight : nullptr);
+  const auto settings = [&] { return settings_of(options, capture, flight ? &*flight : nullptr); };
   // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
   const OfflineSink sink{[&](const std::vector<std::string>& axes) {
-                           if (settings.model)
-                             tell_model_of_one_axis(*settings.model, settings.sensor.model, axes);
+                           const OfflineSettings of = settings();
+                           if (of.model) tell_model_of_one_axis(*of.model, of.sensor.model, axes);
                            rows.begin(axes);
                          },
                          [&](double time_s, const Increment& increment, const ChainOutput& out) {
@@ -284,19 +295,22 @@ void run(Options options) {
   OfflineResult result;
   const ReadingProgress progress(capture, "denoising");
   if (flight) {
-    DriverInstance driver = flight->make_driver(options.input.driver_name(), options.input.settings());
-    result = denoise_flight(*flight, driver, settings, sink);
+    const OfflineSettings first = settings();
+    DriverInstance driver = flight->make_driver(options.input.driver_name(), options.input.settings(),
+                                                first.plugin_folders, first.files_from);
+    result = denoise_flight(*flight, driver, settings, !options.config.empty(), sink);
   } else if (kind == FileKind::bytes || kind == FileKind::candump) {
+    const OfflineSettings all = settings();
     if (!options.input.has_driver())
       throw std::runtime_error(
           options.capture + ": is no capture in columns, expected --driver NAME, --dbc FILE or --config F");
-    DriverInstance driver = options.input.make_driver();
-    result = denoise_recording(options.input, capture, driver, settings, sink);
+    DriverInstance driver = options.input.make_driver(all.plugin_folders, all.files_from);
+    result = denoise_recording(options.input, capture, driver, all, sink);
   } else {
     LongTable table = options.input.read_long(capture);
     keep_usable_axes(table, options.capture);
     tell_other_rate(options, table);
-    result = denoise_capture(table, options.capture, settings, sink);
+    result = denoise_capture(table, options.capture, settings(), sink);
   }
   if (options.smooth) smooth(rows.columns(), result);
   rows.finish(options.capture);

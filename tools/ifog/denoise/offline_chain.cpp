@@ -36,39 +36,66 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
   }
 }
 
+void add(const IncrementerCounts& from, IncrementerCounts& to) {
+  for (std::uint64_t IncrementerCounts::*count :
+       {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
+        &IncrementerCounts::repeated, &IncrementerCounts::restarts, &IncrementerCounts::invalid,
+        &IncrementerCounts::saturated, &IncrementerCounts::implausible,
+        &IncrementerCounts::channel_implausible, &IncrementerCounts::clock_steps})
+    to.*count += from.*count;
+}
+
 class Chain {
  public:
   Chain(const ChainSettings& settings, const OfflineSettings& offline)
-      : incrementer_(settings.facts),
-        chain_(parts_of(settings, offline.sensor.model)),
-        first_sequence_(offline.first_sequence) {
+      : model_path_(offline.sensor.model), first_sequence_(offline.first_sequence) {
+    begin(settings);
+  }
+  // As the daemon starts.
+  void begin(const ChainSettings& settings) {
+    if (incrementer_) add(incrementer_->counts(), result_.counts);
+    incrementer_.emplace(settings.facts);
+    chain_.emplace(parts_of(settings, model_path_));
+    sequence_shift_ = 0;
     result_.axes = settings.axes;
-    result_.left_out = chain_.parts().left_out();
-    result_.model = chain_.parts().model_identity();
-    result_.noise_learned = !chain_.parts().noise_known();
     result_.sample_rate_hz = settings.facts.nominal_rate_hz;
+    describe();
+  }
+  // As it takes other settings into use, from the next sample on.
+  void exchange(const ChainSettings& settings) {
+    (void)chain_->swap(parts_of(settings, model_path_));
+    describe();
   }
   // Null: the sample came twice.
   const Increment* run(const Reading& reading, ChainOutput& out) {
-    if (!incrementer_.next(reading, increment_)) return nullptr;
+    if (!incrementer_->next(reading, increment_)) return nullptr;
     // Modulo 2^64: the part may begin before where its own counter does.
     if (first_sequence_)
       sequence_shift_ = *std::exchange(first_sequence_, std::nullopt) - increment_.sequence;
     increment_.sequence += sequence_shift_;
-    chain_.process(increment_, out);
+    chain_->process(increment_, out);
     return &increment_;
   }
-  void discontinuity() { incrementer_.discontinuity(); }
+  void discontinuity() { incrementer_->discontinuity(); }
   OfflineResult finish() {
-    result_.counts = incrementer_.counts();
-    result_.filter = chain_.parts().filter();
-    result_.noise_known = chain_.parts().noise_known();
+    add(incrementer_->counts(), result_.counts);
+    result_.filter = chain_->parts().filter();
+    result_.noise_known = chain_->parts().noise_known();
     return std::move(result_);
   }
 
  private:
-  Incrementer incrementer_;
-  SignalChain chain_;
+  void describe() {
+    for (const std::string& effect : chain_->parts().left_out())
+      if (std::find(result_.left_out.begin(), result_.left_out.end(), effect) == result_.left_out.end())
+        result_.left_out.push_back(effect);
+    result_.model = chain_->parts().model_identity();
+    result_.noise_learned = !chain_->parts().noise_known();
+  }
+
+  std::string model_path_;
+  std::optional<Incrementer> incrementer_;
+  std::optional<SignalChain> chain_;
   Increment increment_;
   std::optional<std::uint64_t> first_sequence_;
   std::uint64_t sequence_shift_ = 0;
@@ -248,43 +275,130 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
   return chain.finish();
 }
 
-OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
-                             const OfflineSink& sink) {
-  ChainSettings chain_settings = recording_settings(settings, driver, flight.path());
-  if (!settings.since_power_up_s) chain_settings.powered_ns = flight.header().powered_ns;
-  const SensorFacts& facts = chain_settings.facts;
-  sink.begin(chain_settings.axes);
-  const std::vector<ChannelConfig> outside = outside_channels(settings.sensor);
-  // By name: the settings may be others than those it was recorded with.
-  std::vector<std::size_t> recorded_at;
-  for (const ChannelConfig& channel : outside) {
-    const std::vector<std::string>& names = flight.header().channels;
-    recorded_at.push_back(
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
+namespace {
+
+// A flight recording through the chain, run by run of the daemon.
+class FlightChain {
+ public:
+  FlightChain(FlightInput& flight, DriverInstance& driver, const std::function<OfflineSettings()>& settings,
+              const OfflineSink& sink)
+      : flight_(flight),
+        driver_(driver),
+        settings_(settings),
+        sink_(sink),
+        first_(settings_()),
+        now_(chain_settings(first_)),
+        chain_(now_, first_),
+        run_(flight.header().run),
+        number_(flight.header().settings),
+        missed_(!begins_a_run(flight.header())) {
+    sink_.begin(now_.axes);
   }
-  Chain chain(chain_settings, settings);
-  Reading reading;
-  ChainOutput out;
-  double time_s = 0.0;
-  bool first = true;
-  const RecordedSamples samples{[&](const RecordedSample& recorded) {
-                                  read_sample(recorded.sample, facts.frame_channels, reading);
-                                  reading.wall_shift_ns = recorded.wall_shift_ns;
-                                  reading.came_ns = recorded.came_ns;
-                                  for (std::size_t i = 0; i < outside.size(); ++i) {
-                                    const std::size_t c = static_cast<std::size_t>(facts.frame_channels) + i;
-                                    const ChannelValue now = recorded_at[i] < recorded.outside.size()
-                                                                 ? recorded.outside[recorded_at[i]]
-                                                                 : ChannelValue{};
-                                    reading.channel[c] = now.value;
-                                    reading.channel_age_s[c] = now.age_s(recorded.came_ns);
-                                  }
-                                  const Increment* const increment = chain.run(reading, out);
-                                  if (increment == nullptr) return;
-                                  if (!std::exchange(first, false)) time_s += increment->dt_s;
-                                  sink.sample(time_s, *increment, out);
-                                },
-                                [&] { chain.discontinuity(); }};
+
+  void take(const RecordedSample& recorded) {
+    read_sample(recorded.sample, now_.facts.frame_channels, reading_);
+    reading_.wall_shift_ns = recorded.wall_shift_ns;
+    reading_.came_ns = recorded.came_ns;
+    for (std::size_t i = 0; i < recorded_at_.size(); ++i) {
+      const std::size_t c = static_cast<std::size_t>(now_.facts.frame_channels) + i;
+      const ChannelValue value =
+          recorded_at_[i] < recorded.outside.size() ? recorded.outside[recorded_at_[i]] : ChannelValue{};
+      reading_.channel[c] = value.value;
+      reading_.channel_age_s[c] = value.age_s(recorded.came_ns);
+    }
+    const Increment* const increment = chain_.run(reading_, out_);
+    if (increment == nullptr) return;
+    if (came_ns_) time_s_ += between_runs_ ? pause_s(recorded.came_ns, *increment) : increment->dt_s;
+    between_runs_ = false;
+    came_ns_ = recorded.came_ns;
+    if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = time_s_;
+    sink_.sample(time_s_, *increment, out_);
+  }
+
+  void discontinuity() { chain_.discontinuity(); }
+  void missing() { missed_ = true; }
+
+  void file(const FlightHeader& header) {
+    const bool another_run = header.run != run_;
+    if (!another_run && header.settings == number_) return;
+    run_ = header.run;
+    number_ = header.settings;
+    OfflineSettings settings = settings_();
+    // What was said of the first sample.
+    if (another_run) settings.since_power_up_s.reset();
+    now_ = chain_settings(settings);
+    if (another_run) {
+      ++runs_;
+      between_runs_ = true;
+      missed_ = !begins_a_run(header);
+      chain_.begin(now_);
+    } else {
+      ++exchanges_;
+      chain_.exchange(now_);
+    }
+  }
+
+  OfflineResult finish() {
+    OfflineResult out = chain_.finish();
+    out.runs = runs_;
+    out.exchanges = exchanges_;
+    out.not_as_published_from_s = missed_at_s_;
+    return out;
+  }
+
+ private:
+  // Nobody knows it of an older recording.
+  static bool begins_a_run(const FlightHeader& header) {
+    return header.began == 0 || header.number == header.began;
+  }
+  ChainSettings chain_settings(const OfflineSettings& settings) {
+    ChainSettings out = recording_settings(settings, driver_, flight_.path());
+    if (!settings.since_power_up_s) out.powered_ns = flight_.header().powered_ns;
+    // By name: the settings may be others than those it was recorded with.
+    const std::vector<std::string>& names = flight_.header().channels;
+    recorded_at_.clear();
+    for (const ChannelConfig& channel : outside_channels(settings.sensor))
+      recorded_at_.push_back(
+          static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
+    return out;
+  }
+
+  // From one run to the next by when their samples came; a clock that was set back says nothing.
+  [[nodiscard]] double pause_s(std::int64_t came_ns, const Increment& increment) const {
+    return came_ns > *came_ns_ ? static_cast<double>(came_ns - *came_ns_) * 1e-9 : increment.dt_s;
+  }
+
+  FlightInput& flight_;
+  DriverInstance& driver_;
+  const std::function<OfflineSettings()>& settings_;
+  const OfflineSink& sink_;
+  std::vector<std::size_t> recorded_at_;
+  OfflineSettings first_;
+  ChainSettings now_;
+  Chain chain_;
+  std::uint64_t run_;
+  std::uint32_t number_;
+  std::size_t runs_ = 1, exchanges_ = 0;
+  Reading reading_;
+  ChainOutput out_;
+  double time_s_ = 0.0;
+  std::optional<std::int64_t> came_ns_;  // of the sample before
+  bool between_runs_ = false;
+  bool missed_;                        // something, before the next sample
+  std::optional<double> missed_at_s_;  // the first time
+};
+
+}  // namespace
+
+OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
+                             const std::function<OfflineSettings()>& settings, bool fixed,
+                             const OfflineSink& sink) {
+  FlightChain chain(flight, driver, settings, sink);
+  RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
+                          [&] { chain.discontinuity(); },
+                          [&] { chain.missing(); },
+                          {}};
+  if (!fixed) samples.file = [&](const FlightHeader& header) { chain.file(header); };
   const RecordingCounts counts = flight.for_each_sample(driver, samples);
   for (const std::string& loss : losses(counts))
     warn("%s: %s\n", flight.header().sensor.c_str(), loss.c_str());

@@ -20,6 +20,10 @@
 namespace ifog::tools {
 
 struct OfflineSettings {
+  // Of a configuration that says the driver, too: where plugins are looked for, and where relative paths in
+  // its options begin. Empty: the standard places, and where the process is.
+  std::vector<std::string> plugin_folders;
+  std::string files_from;
   SensorConfig sensor;                  // model, filter, options, channels; its transport is not used
   std::shared_ptr<const Model> model;   // null: none
   std::optional<LearnedNoise> learned;  // ChainSettings::learned
@@ -45,6 +49,11 @@ struct OfflineResult {
   std::vector<std::string> left_out;  // effects of the model that are not corrected
   std::string model;                  // identity
   double sample_rate_hz = 0.0;        // nominal
+  // Of a flight recording: something is missing there, or its run's beginning, and the filter of the daemon may
+  // have stood otherwise.
+  std::optional<double> not_as_published_from_s;
+  std::size_t runs = 1;               // of the daemon, in a flight recording
+  std::size_t exchanges = 0;          // of model or filter settings within them
 };
 
 // All throw std::runtime_error or std::invalid_argument with one line.
@@ -52,7 +61,10 @@ struct OfflineResult {
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink);
 // The samples, times and channels that the daemon had.
-OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver, const OfflineSettings& settings,
+// As it was recorded: settings are asked for at the first file, at each with which the daemon took others into
+// use, and at each run of the daemon, which begins anew. `fixed`: those of the first for all of it.
+OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
+                             const std::function<OfflineSettings()>& settings, bool fixed,
                              const OfflineSink& sink);
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
                                 const OfflineSettings& settings, const OfflineSink& sink);

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
@@ -89,6 +90,8 @@ class Night {
       : arguments_(arguments), field_(field), sensor_(sensor) {}
 
   std::string run();
+  // The recordings could not be judged: what run() gave is why.
+  [[nodiscard]] bool failed() const { return failed_; }
 
  private:
   std::string judge(const std::vector<RecordedFile>& all);
@@ -106,6 +109,7 @@ class Night {
   const Field& field_;
   const SensorConfig& sensor_;
   bool gone_through_ = false;  // not to be looked at again
+  bool failed_ = false;
 };
 
 std::string Night::run() {
@@ -124,6 +128,7 @@ std::string Night::run() {
     said = judge(newest(std::move(files), arguments_.most_bytes));
   } catch (const std::exception& error) {
     said = error.what();
+    failed_ = true;
   }
   if (gone_through_) {
     const StateInHand hand(field_.state());
@@ -267,18 +272,31 @@ void run(const Arguments& arguments) {
   share_with_the_group();
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
+  if (std::error_code none; !std::filesystem::is_directory(field.state(), none))
+    throw std::runtime_error(field.state() + ": is no folder, expected the daemon's state folder (--state)");
+  bool failed = false;
   for (const SensorConfig& sensor : field.required_config().sensors) {
     if (!arguments.sensors.empty() &&
         std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
       continue;
     std::string said;
+    Night night(arguments, field, sensor);
+    bool good = false;
     try {
-      said = Night(arguments, field, sensor).run();
+      said = night.run();
+      good = !night.failed();
     } catch (const std::exception& error) {
       said = error.what();
     }
-    say("%s: %s\n", sensor.name.c_str(), printable(said, kLongestMessage).c_str());
+    const std::string line = sensor.name + ": " + printable(said, kLongestMessage);
+    // Each sensor has its night, whatever became of another's.
+    if (good)
+      say("%s\n", line.c_str());
+    else
+      warn("%s\n", line.c_str());
+    failed = failed || !good;
   }
+  if (failed) throw Failed("not every sensor could be judged");
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace ifog::tools {
 // refused, as write_file() would follow it. Throws std::runtime_error with one line.
 void write_state_file(const std::string& path, std::string_view bytes);
 
+// Throws std::runtime_error with one line: the file and what is wrong in it.
 [[noreturn]] void refuse_keys(const std::string& path, const nlohmann::json::exception& error);
 
 // `read` of what a file says, a wrong or missing key as one line with the file's name.

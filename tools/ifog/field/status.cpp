@@ -229,7 +229,9 @@ void run(const Arguments& arguments) {
   if (daemon != 0)
     say("ifogd runs, process %d, %s\n", static_cast<int>(daemon), where.c_str());
   else if (!live.all().empty())
-    say("a daemon is heard on %s; none works with %s\n", field.lcm_url().c_str(), where.c_str());
+    say("a daemon is heard on %s; none has marked %s as its own: it works with another, or may not write "
+        "there\n",
+        field.lcm_url().c_str(), where.c_str());
   else
     say("ifogd does not run; this is what %s knows\n", where.c_str());
   ordered_json sensors = ordered_json::array();

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "drivers/capture/text_file.h"
+#include "tools/ifog/field/state_json.h"
 #include "tools/ifog/fleet/gyro_work.h"
 
 namespace ifog::tools {
@@ -52,7 +53,7 @@ std::map<std::string, nlohmann::json> noise_by_axis(const std::string& path, con
     for (const auto& [axis, terms] : model.noise) by_axis[axis] = single ? noise : noise.at(axis);
     return by_axis;
   } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(path + ": damaged: " + error.what());
+    refuse_keys(path, error);
   }
 }
 

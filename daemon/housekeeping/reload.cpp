@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Housekeeping::reload(): the configuration read again, and what of it is exchanged between two samples.
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/housekeeping/housekeeping.h"
+#include "daemon/sensor/flight_header.h"
+#include "daemon/sensor/sensor_parts.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/clock.h"
+
+namespace ifog {
+namespace {
+
+// Null: there is none of that name.
+const SensorConfig* sensor_named(const Config& config, const std::string& name) {
+  const auto found = std::find_if(config.sensors.begin(), config.sensors.end(),
+                                  [&](const SensorConfig& sensor) { return sensor.name == name; });
+  return found == config.sensors.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void Housekeeping::say_what_needs_a_restart(const Config& fresh) {
+  if (const std::string keys = config_.restart_for(fresh); !keys.empty())
+    log_->warn("changed in [daemon], needs a restart: {}", keys);
+  for (const SensorConfig& sensor : fresh.sensors)
+    if (sensor_named(config_, sensor.name) == nullptr)
+      log_->warn("sensor \"{}\" is new in {}, needs a restart", printable(sensor.name), config_.file);
+  for (const auto& sensor : sensors_) {
+    const SensorConfig* const other = sensor_named(fresh, sensor->config.name);
+    if (other == nullptr) {
+      sensor->log->warn("no longer in {}: goes on until a restart", config_.file);
+    } else if (const std::string keys = sensor->config.restart_for(*other); !keys.empty()) {
+      sensor->log->warn("changed, needs a restart: {}", keys);
+    }
+  }
+}
+
+// Everything that a sensor's part of the fresh configuration makes, before anything of it is used. Throws
+// std::runtime_error with one line.
+Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fresh) {
+  // Only what can change between two samples.
+  Renewed out{.sensor = &sensor, .config = sensor.config.reloaded(fresh)};
+  const std::shared_ptr<const Model> model = read_sensor_model(out.config);
+  ChainSettings settings = sensor_chain_settings(
+      out.config, sensor.parts.pipeline->reader().driver().description(), model);
+  out.choice = chain_choice(out.config, model.get());
+  // What is as it was goes on: its filter has learned the noise and found the rate.
+  if (out.choice == sensor.parts.choice) return out;
+  settings.learned = sensor.snapshot.learned ? sensor.snapshot.learned : sensor.parts.noise.recalled();
+  settings.powered_ns = powered_ns(out.config);
+  out.parts = make_chain_parts(out.config, settings);
+  out.noise = sensor.parts.noise.text(settings.learned);
+  return out;
+}
+
+void Housekeeping::use(Renewed renewed) {
+  Sensor& sensor = *renewed.sensor;
+  sensor.config = std::move(renewed.config);
+  if (renewed.parts == nullptr) {
+    sensor.log->info("reloaded: nothing changed, the filter goes on");
+    return;
+  }
+  for (const std::string& effect : renewed.parts->left_out()) sensor.log->warn("not corrected: {}", effect);
+  sensor.log->info("reloaded: model {}, filter settings",
+                   sensor.config.model.empty() ? "none" : sensor.config.model);
+  sensor.parts.choice = std::move(renewed.choice);
+  const std::uint32_t number = ++sensor.settings;
+  // Before the filter can have the parts: the recorder must know what their note means.
+  if (sensor.parts.recorder != nullptr)
+    sensor.parts.recorder->set_header(
+        flight_header(sensor.config, config_, sensor.parts.pipeline->reader().driver(), renewed.noise),
+        number);
+  sensor.parts.pipeline->filter().offer(std::move(renewed.parts), number);
+  // What was usual of the sensor need not be so any more.
+  sensor.report.renew_watch();
+}
+
+void Housekeeping::reload() {
+  notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
+  std::vector<Renewed> renewed;
+  std::vector<std::string> errors;
+  Config fresh;
+  try {
+    fresh = read_config(config_.file);
+  } catch (const std::exception& error) {
+    errors.emplace_back(error.what());
+  }
+  for (const auto& sensor : sensors_) {
+    const SensorConfig* const found = sensor_named(fresh, sensor->config.name);
+    if (found == nullptr) continue;
+    try {
+      renewed.push_back(renew(*sensor, *found));
+    } catch (const std::exception& error) {
+      errors.push_back(told_at(fresh, *found, error));
+    }
+  }
+  for (const std::string& error : errors) log_->error("{}", error);
+  if (errors.empty()) {
+    say_what_needs_a_restart(fresh);
+    for (Renewed& each : renewed) use(std::move(each));
+  } else {
+    log_->error("reload refused: nothing has changed for any sensor");
+  }
+  notify("READY=1");
+}
+
+}  // namespace ifog
