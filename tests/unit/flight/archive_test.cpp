@@ -149,7 +149,7 @@ TEST(FlightArchive, AFileThatIsTakenAwayIsCountedAndTheNextGoesOn) {
   ArchiveLimits limits;
   limits.file_ns = 100 * kSecond;
   Bench bench(limits);
-  const auto seconds = [&, n = std::uint64_t{0}](int count) mutable {
+  auto seconds = [&, n = std::uint64_t{0}](int count) mutable {
     for (int i = 0; i < count; ++i) {
       bench.now_ns += kSecond;
       bench.add(n++);
