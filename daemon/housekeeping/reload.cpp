@@ -47,8 +47,8 @@ Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fr
   // Only what can change between two samples.
   Renewed out{.sensor = &sensor, .config = sensor.config.reloaded(fresh)};
   const std::shared_ptr<const Model> model = read_sensor_model(out.config);
-  ChainSettings settings = sensor_chain_settings(
-      out.config, sensor.parts.pipeline->reader().driver().description(), model);
+  ChainSettings settings =
+      sensor_chain_settings(out.config, sensor.parts.pipeline->reader().driver().description(), model);
   out.choice = chain_choice(out.config, model.get());
   // What is as it was goes on: its filter has learned the noise and found the rate.
   if (out.choice == sensor.parts.choice) return out;

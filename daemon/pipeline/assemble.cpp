@@ -19,8 +19,8 @@ std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config
                                         const DriverInstance& driver, const NoiseMemory& noise) {
   const RecordConfig& record = sensor.record;
   if (record.folder.empty()) return nullptr;
-  if (std::error_code none; std::filesystem::exists(record.folder, none) &&
-                            !std::filesystem::is_directory(record.folder, none))
+  if (std::error_code none;
+      std::filesystem::exists(record.folder, none) && !std::filesystem::is_directory(record.folder, none))
     throw std::runtime_error("sensor.record.folder = \"" + printable(record.folder) +
                              "\": is no folder, expected one, or a path that is free for it");
   ArchiveLimits limits;

@@ -21,7 +21,7 @@ struct AssembledSensor {
   std::shared_ptr<ChannelTable> outside;
   std::vector<std::string> channels;  // names, as in ChainSettings
   NoiseMemory noise;
-  ChainChoice choice;  // in use, or offered to the filter
+  ChainChoice choice;                 // in use, or offered to the filter
   std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
 };
 

@@ -24,8 +24,8 @@ class PartsExchange {
   // Frees parts that are out of use.
   void collect_retired() noexcept;
 
-  // Reader, before it decodes a delivery, `samples` having been pushed: the number of the settings that are in
-  // use from the next sample on, 0 where they are what they were.
+  // Reader, before it decodes a delivery, `samples` having been pushed: the number of the settings that are
+  // in use from the next sample on, 0 where they are what they were.
   [[nodiscard]] std::uint32_t mark(std::uint64_t samples) noexcept;
 
   // The queue's consumer, `samples` of the pushed being behind it: exchanges the chain's parts where that is

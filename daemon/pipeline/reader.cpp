@@ -17,8 +17,8 @@ constexpr auto kPause = std::chrono::milliseconds(1);
 }  // namespace
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over, PartsExchange& exchange,
-               SharedBooks& books, EventQueue& events, Tape* tape)
+               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
+               PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
@@ -128,10 +128,9 @@ void Reader::record(const Delivery& delivery) noexcept {
   // A source that keeps its bytes until they are read loses none to a recorder that is at work.
   if (transport_->holds_back())
     while (!transport_->stopped() && tape_->worth_waiting(delivery)) std::this_thread::sleep_for(kPause);
-  tape_->put(
-      delivery, turn_ns_,
-      std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
-      reading_.wall_shift_ns);
+  tape_->put(delivery, turn_ns_,
+             std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
+             reading_.wall_shift_ns);
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

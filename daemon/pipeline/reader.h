@@ -40,8 +40,8 @@ class Reader {
  public:
   // tape: of the flight recorder, null without one.
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over, PartsExchange& exchange,
-         SharedBooks& books, EventQueue& events, Tape* tape);
+         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
+         PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
   void run() noexcept;

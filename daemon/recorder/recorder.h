@@ -69,7 +69,7 @@ class Recorder {
   std::uint64_t lost_before_ = 0, lost_seen_ = 0, gone_seen_ = 0;
   std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
 
-  std::mutex mutex_;  // never taken by a real-time thread
+  std::mutex mutex_;                                    // never taken by a real-time thread
   std::map<std::uint32_t, FlightHeader> next_headers_;  // by the number of their settings
   std::string message_;
   bool message_good_ = false;

@@ -29,8 +29,8 @@ Tape::Tape(std::size_t bytes) : bytes_(std::max(bytes, kLeastBytes)), queue_(byt
 
 // All that put() may push of it.
 std::size_t Tape::room_for(const Delivery& delivery) noexcept {
-  return bytes_of(delivery) + (1 + delivery.frames.size()) * kHead + static_cast<std::size_t>(kMaxChannels + 1) * (kHead + 8) +
-         kHead + (kHead + 16);
+  return bytes_of(delivery) + (1 + delivery.frames.size()) * kHead +
+         static_cast<std::size_t>(kMaxChannels + 1) * (kHead + 8) + kHead + (kHead + 16);
 }
 
 bool Tape::worth_waiting(const Delivery& delivery) const noexcept {

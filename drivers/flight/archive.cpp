@@ -54,8 +54,8 @@ std::uint64_t number_of(std::string_view name) {
 }
 
 FlightLoss load_of(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery) {
-  const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can ||
-                    head.kind == FlightKind::message;
+  const bool came =
+      head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
   return came ? FlightLoss{begins_delivery ? 1U : 0U, payload.size()} : FlightLoss{};
 }
 

@@ -29,7 +29,12 @@ class Playback {
                                in_quotes(header.driver) + " after sensor " + in_quotes(first_.sensor) +
                                " of driver " + in_quotes(first_.driver) +
                                " or with other channels, expected recordings of one");
-    outside_.resize(header.channels.size());
+    // Of another run the channels are unknown until it says them.
+    if (!begun_ || header.run != run_) {
+      outside_.assign(header.channels.size(), {});
+      wall_shift_ns_ = 0;
+    }
+    run_ = header.run;
     if (std::exchange(begun_, true)) {
       if (sink_.file) sink_.file(header);
     } else {
@@ -76,6 +81,7 @@ class Playback {
   DriverInstance& driver_;
   const RecordedSamples& sink_;
   FlightHeader first_;
+  std::uint64_t run_ = 0;
   bool begun_ = false;
   std::vector<ChannelValue> outside_;
   std::int64_t wall_shift_ns_ = 0;

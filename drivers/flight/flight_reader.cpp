@@ -90,7 +90,8 @@ FlightReader::Item FlightReader::begin_file() {
       in_file_ && closed_ && whole_ && fresh.run == header_.run && fresh.number == header_.number + 1;
   const bool first = !in_file_;
   const bool same_run = !first && fresh.run == header_.run;
-  if (same_run && fresh.number > header_.number + 1) counts_.missing_files += fresh.number - header_.number - 1;
+  if (same_run && fresh.number > header_.number + 1)
+    counts_.missing_files += fresh.number - header_.number - 1;
   if (!first && !same_run && closed_ && fresh.opened_ns < closed_ns_) ++counts_.early_files;
   finish_file();
   header_ = std::move(fresh);

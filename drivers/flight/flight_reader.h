@@ -74,7 +74,7 @@ class FlightReader {
   std::uint64_t file_at_ = 0;                             // where the file begins in the stream
   std::uint64_t file_entries_ = 0;                        // of the present file, so far
   bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
-  std::int64_t closed_ns_ = 0;  // wall clock, of the file before once it is closed_
+  std::int64_t closed_ns_ = 0;                            // wall clock, of the file before once it is closed_
   bool header_due_ = false, ended_ = false;
   BlockHead block_;
   bool header_block_ = false;

@@ -16,12 +16,12 @@ namespace ifog {
 struct FlightHeader {
   enum class Carries { bytes, can, messages };
 
-  std::uint64_t file = 0;      // random, of this file: the checksums of its blocks hold in no other
-  std::uint64_t run = 0;       // random, of the recorder's run
-  std::uint64_t number = 0;    // of the file in its folder; the next of the same run goes on where this ends
-  std::uint64_t began = 0;     // number of the file that the run began with; 0: not known
-  // Of the settings that all in the file was filtered with, in the run: 0 from its beginning, another from the
-  // file's first sample on.
+  std::uint64_t file = 0;    // random, of this file: the checksums of its blocks hold in no other
+  std::uint64_t run = 0;     // random, of the recorder's run
+  std::uint64_t number = 0;  // of the file in its folder; the next of the same run goes on where this ends
+  std::uint64_t began = 0;   // number of the file that the run began with; 0: not known
+  // Of the settings that all in the file was filtered with, in the run: 0 from its beginning, another from
+  // the file's first sample on.
   std::uint32_t settings = 0;
   std::int64_t opened_ns = 0;  // wall clock
   std::string program;         // version of what recorded

@@ -138,8 +138,7 @@ void LcmRecorder::run() {
       static_cast<unsigned long long>(messages_), static_cast<unsigned long long>(archive_.bytes_written()),
       static_cast<unsigned long long>(lost_total_) + unwritten, static_cast<long long>(on_the_way));
   if (messages_ == 0) throw Failed("nothing heard");
-  if (archive_.error() != 0)
-    throw std::runtime_error(options_.folder + ": " + archive_.complaint());
+  if (archive_.error() != 0) throw std::runtime_error(options_.folder + ": " + archive_.complaint());
 }
 
 }  // namespace

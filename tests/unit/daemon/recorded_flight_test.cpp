@@ -338,8 +338,8 @@ TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
   fs::create_directories(path("bin"));
   fs::copy(IFOG_BINARY_DIR "/tools/ifog/ifog", path("bin/ifog"));
   fs::path plugin;
-  for (const auto& entry : fs::recursive_directory_iterator(IFOG_BINARY_DIR "/drivers/plugins/kvh1750"))
-    if (entry.path().extension() == ".so") plugin = entry.path();
+  for (const auto& entry : fs::recursive_directory_iterator(IFOG_BINARY_DIR "/plugins"))
+    if (entry.path().filename().string().find("kvh1750") != std::string::npos) plugin = entry.path();
   fs::create_directories(path("plugins"));
   fs::copy(plugin, path("plugins") / plugin.filename());
   std::string configuration = text_of(path("ifogd.toml"));

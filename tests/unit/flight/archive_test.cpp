@@ -143,8 +143,8 @@ TEST(FlightArchive, ADiskThatRefusesLosesNothingThatWaits) {
   EXPECT_TRUE(losses(read_back(all_of(bench.disk)).counts).empty());
 }
 
-// Somebody removes the file in work: what it held is lost and known to be, what waited and what comes goes into
-// another one, and a reader says that one is missing.
+// Somebody removes the file in work: what it held is lost and known to be, what waited and what comes goes
+// into another one, and a reader says that one is missing.
 TEST(FlightArchive, AFileThatIsTakenAwayIsCountedAndTheNextGoesOn) {
   ArchiveLimits limits;
   limits.file_ns = 100 * kSecond;

@@ -49,11 +49,11 @@ struct OfflineResult {
   std::vector<std::string> left_out;  // effects of the model that are not corrected
   std::string model;                  // identity
   double sample_rate_hz = 0.0;        // nominal
-  // Of a flight recording: something is missing there, or its run's beginning, and the filter of the daemon may
-  // have stood otherwise.
+  // Of a flight recording: something is missing there, or its run's beginning, and the filter of the daemon
+  // may have stood otherwise.
   std::optional<double> not_as_published_from_s;
-  std::size_t runs = 1;               // of the daemon, in a flight recording
-  std::size_t exchanges = 0;          // of model or filter settings within them
+  std::size_t runs = 1;       // of the daemon, in a flight recording
+  std::size_t exchanges = 0;  // of model or filter settings within them
 };
 
 // All throw std::runtime_error or std::invalid_argument with one line.
@@ -61,8 +61,8 @@ struct OfflineResult {
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink);
 // The samples, times and channels that the daemon had.
-// As it was recorded: settings are asked for at the first file, at each with which the daemon took others into
-// use, and at each run of the daemon, which begins anew. `fixed`: those of the first for all of it.
+// As it was recorded: settings are asked for at the first file, at each with which the daemon took others
+// into use, and at each run of the daemon, which begins anew. `fixed`: those of the first for all of it.
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
                              const OfflineSink& sink);

@@ -49,10 +49,11 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
   if (!daemon_) {
     // One without a mark in the folder would go on with the old model, and nobody would see what comes of it.
     if (live_->listen(kHeardWithin, [&] { return live_->of(sensor_) != nullptr; }))
-      throw std::runtime_error("sensor " + in_quotes(sensor_) + " is heard on " + field.lcm_url() +
-                               ", of a daemon that has not marked " + field.state() +
-                               " as its own: expected the state folder of that one (--state), and one that it "
-                               "may write");
+      throw std::runtime_error(
+          "sensor " + in_quotes(sensor_) + " is heard on " + field.lcm_url() +
+          ", of a daemon that has not marked " + field.state() +
+          " as its own: expected the state folder of that one (--state), and one that it "
+          "may write");
     return;
   }
   if (::kill(*daemon_, 0) != 0)

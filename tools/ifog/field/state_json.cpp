@@ -42,8 +42,8 @@ void refuse_keys(const std::string& path, const nlohmann::json::exception& error
   // Behind the library's own "[json.exception.out_of_range.403] ".
   const std::string what = error.what();
   const std::size_t words = what.find("] ");
-  throw std::runtime_error(path + ": damaged: " +
-                           printable(words == std::string::npos ? what : what.substr(words + 2)));
+  throw std::runtime_error(
+      path + ": damaged: " + printable(words == std::string::npos ? what : what.substr(words + 2)));
 }
 
 }  // namespace ifog::tools
