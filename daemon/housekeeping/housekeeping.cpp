@@ -79,7 +79,8 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
   sources_ = std::make_unique<ChannelSources>(std::move(wanted), config_.lcm_url);
 }
 
-std::string Housekeeping::told_at(const Config& config, const SensorConfig& sensor, const std::exception& error) {
+std::string Housekeeping::told_at(const Config& config, const SensorConfig& sensor,
+                                  const std::exception& error) {
   const auto* const keyed = dynamic_cast<const KeyError*>(&error);
   return config.file + ":" + std::to_string(keyed == nullptr ? sensor.line : sensor.line_of(keyed->key)) +
          ": sensor \"" + printable(sensor.name) + "\": " + error.what();
