@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/denoise/chain_run.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "daemon/sensor/facts.h"
+#include "daemon/sensor/sensor_parts.h"
+
+namespace ifog::tools {
+namespace {
+
+// What is wrong with the filter's settings, said of them; with the model, of its file.
+std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::string& model_path) {
+  const auto made = [](const ChainSettings& of) { return std::make_unique<ChainParts>(of); };
+  if (!settings.model || model_path.empty()) return made(settings);
+  try {
+    return made(settings);
+  } catch (const std::exception& error) {
+    ChainSettings without = settings;
+    without.model.reset();
+    static_cast<void>(made(without));  // throws where it was not the model
+    throw std::runtime_error(model_path + ": " + error.what());
+  }
+}
+
+void add(const IncrementerCounts& from, IncrementerCounts& to) {
+  for (std::uint64_t IncrementerCounts::*count :
+       {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
+        &IncrementerCounts::repeated, &IncrementerCounts::restarts, &IncrementerCounts::invalid,
+        &IncrementerCounts::saturated, &IncrementerCounts::implausible,
+        &IncrementerCounts::channel_implausible, &IncrementerCounts::clock_steps})
+    to.*count += from.*count;
+}
+
+}  // namespace
+
+// As the daemon sets its chain up, with what only a recording knows. The daemon's own refusal of a driver
+// without a rate would name no file and a key of its configuration.
+ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
+                                 const std::string& path) {
+  const ifog_description& description = driver.description();
+  if (!(settings.sensor.nominal_rate_hz > 0.0) && !(description.nominal_rate_hz > 0.0))
+    throw std::runtime_error(path + ": driver " + driver.table().name +
+                             " does not know the sample rate, expected --rate HZ or --option rate_hz=HZ");
+  ChainSettings out = sensor_chain_settings(settings.sensor, description, settings.model);
+  out.learned = settings.learned;
+  out.since_power_up_s = settings.since_power_up_s;
+  return out;
+}
+
+ChainRun::ChainRun(const ChainSettings& settings, const OfflineSettings& offline)
+    : model_path_(offline.sensor.model), first_sequence_(offline.first_sequence) {
+  begin(settings);
+}
+
+void ChainRun::begin(const ChainSettings& settings) {
+  if (incrementer_) add(incrementer_->counts(), result_.counts);
+  incrementer_.emplace(settings.facts);
+  chain_.emplace(parts_of(settings, model_path_));
+  sequence_shift_ = 0;
+  result_.axes = settings.axes;
+  result_.sample_rate_hz = settings.facts.nominal_rate_hz;
+  describe();
+}
+
+void ChainRun::exchange(const ChainSettings& settings) {
+  (void)chain_->swap(parts_of(settings, model_path_));
+  describe();
+}
+
+const Increment* ChainRun::run(const Reading& reading, ChainOutput& out) {
+  if (!incrementer_->next(reading, increment_)) return nullptr;
+  // Modulo 2^64: the part may begin before where its own counter does.
+  if (first_sequence_) sequence_shift_ = *std::exchange(first_sequence_, std::nullopt) - increment_.sequence;
+  increment_.sequence += sequence_shift_;
+  chain_->process(increment_, out);
+  return &increment_;
+}
+
+OfflineResult ChainRun::finish() {
+  add(incrementer_->counts(), result_.counts);
+  result_.filter = chain_->parts().filter();
+  result_.noise_known = chain_->parts().noise_known();
+  return std::move(result_);
+}
+
+void ChainRun::describe() {
+  for (const std::string& effect : chain_->parts().left_out())
+    if (std::find(result_.left_out.begin(), result_.left_out.end(), effect) == result_.left_out.end())
+      result_.left_out.push_back(effect);
+  result_.model = chain_->parts().model_identity();
+  result_.noise_learned = !chain_->parts().noise_known();
+}
+
+}  // namespace ifog::tools

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "daemon/sensor/facts.h"
+#include "daemon/sensor/sensor_parts.h"
+#include "tools/ifog/console/say.h"
+#include "tools/ifog/denoise/chain_run.h"
+#include "tools/ifog/denoise/offline_chain.h"
+
+namespace ifog::tools {
+namespace {
+
+// A flight recording through the chain, run by run of the daemon.
+class FlightChain {
+ public:
+  FlightChain(FlightInput& flight, DriverInstance& driver, const std::function<OfflineSettings()>& settings,
+              const OfflineSink& sink)
+      : flight_(flight),
+        driver_(driver),
+        settings_(settings),
+        sink_(sink),
+        first_(settings_()),
+        now_(chain_settings(first_)),
+        chain_(now_, first_),
+        run_(flight.header().run),
+        number_(flight.header().settings),
+        missed_(!begins_a_run(flight.header())) {
+    sink_.begin(now_.axes);
+  }
+
+  void take(const RecordedSample& recorded) {
+    read_sample(recorded.sample, now_.facts.frame_channels, reading_);
+    reading_.wall_shift_ns = recorded.wall_shift_ns;
+    reading_.came_ns = recorded.came_ns;
+    for (std::size_t i = 0; i < recorded_at_.size(); ++i) {
+      const std::size_t c = static_cast<std::size_t>(now_.facts.frame_channels) + i;
+      const ChannelValue value =
+          recorded_at_[i] < recorded.outside.size() ? recorded.outside[recorded_at_[i]] : ChannelValue{};
+      reading_.channel[c] = value.value;
+      reading_.channel_age_s[c] = value.age_s(recorded.came_ns);
+    }
+    const Increment* const increment = chain_.run(reading_, out_);
+    if (increment == nullptr) return;
+    if (came_ns_) time_s_ += between_runs_ ? pause_s(recorded.came_ns, *increment) : increment->dt_s;
+    between_runs_ = false;
+    came_ns_ = recorded.came_ns;
+    if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = time_s_;
+    sink_.sample(time_s_, *increment, out_);
+  }
+
+  void discontinuity() { chain_.discontinuity(); }
+  void missing() { missed_ = true; }
+
+  void file(const FlightHeader& header) {
+    const bool another_run = header.run != run_;
+    if (!another_run && header.settings == number_) return;
+    run_ = header.run;
+    number_ = header.settings;
+    OfflineSettings settings = settings_();
+    // What was said of the first sample.
+    if (another_run) settings.since_power_up_s.reset();
+    now_ = chain_settings(settings);
+    if (another_run) {
+      ++runs_;
+      between_runs_ = true;
+      missed_ = !begins_a_run(header);
+      chain_.begin(now_);
+    } else {
+      ++exchanges_;
+      chain_.exchange(now_);
+    }
+  }
+
+  OfflineResult finish() {
+    OfflineResult out = chain_.finish();
+    out.runs = runs_;
+    out.exchanges = exchanges_;
+    out.not_as_published_from_s = missed_at_s_;
+    return out;
+  }
+
+ private:
+  // Nobody knows it of an older recording.
+  static bool begins_a_run(const FlightHeader& header) {
+    return header.began == 0 || header.number == header.began;
+  }
+  ChainSettings chain_settings(const OfflineSettings& settings) {
+    ChainSettings out = recording_settings(settings, driver_, flight_.path());
+    if (!settings.since_power_up_s) out.powered_ns = flight_.header().powered_ns;
+    // By name: the settings may be others than those it was recorded with.
+    const std::vector<std::string>& names = flight_.header().channels;
+    recorded_at_.clear();
+    for (const ChannelConfig& channel : outside_channels(settings.sensor))
+      recorded_at_.push_back(
+          static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
+    return out;
+  }
+
+  // From one run to the next by when their samples came; a clock that was set back says nothing.
+  [[nodiscard]] double pause_s(std::int64_t came_ns, const Increment& increment) const {
+    return came_ns > *came_ns_ ? static_cast<double>(came_ns - *came_ns_) * 1e-9 : increment.dt_s;
+  }
+
+  FlightInput& flight_;
+  DriverInstance& driver_;
+  const std::function<OfflineSettings()>& settings_;
+  const OfflineSink& sink_;
+  std::vector<std::size_t> recorded_at_;
+  OfflineSettings first_;
+  ChainSettings now_;
+  ChainRun chain_;
+  std::uint64_t run_;
+  std::uint32_t number_;
+  std::size_t runs_ = 1, exchanges_ = 0;
+  Reading reading_;
+  ChainOutput out_;
+  double time_s_ = 0.0;
+  std::optional<std::int64_t> came_ns_;  // of the sample before
+  bool between_runs_ = false;
+  bool missed_;                        // something, before the next sample
+  std::optional<double> missed_at_s_;  // the first time
+};
+
+}  // namespace
+
+OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
+                             const std::function<OfflineSettings()>& settings, bool fixed,
+                             const OfflineSink& sink) {
+  FlightChain chain(flight, driver, settings, sink);
+  RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
+                          [&] { chain.discontinuity(); },
+                          [&] { chain.missing(); },
+                          {}};
+  if (!fixed) samples.file = [&](const FlightHeader& header) { chain.file(header); };
+  const RecordingCounts counts = flight.for_each_sample(driver, samples);
+  for (const std::string& loss : losses(counts))
+    warn("%s: %s\n", flight.header().sensor.c_str(), loss.c_str());
+  return chain.finish();
+}
+
+}  // namespace ifog::tools
