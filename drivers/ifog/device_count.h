@@ -175,12 +175,12 @@ class DeviceCount {
   }
 
   // Whole rounds of the counter in a time; 0 where no number of them fits it.
-  [[nodiscard]] double rounds_in(double spare_s, double elapsed_s, bool sure) const noexcept {
+  [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
     const double round_s = static_cast<double>(modulus_) * period_s();
     const double rounds = std::floor(spare_s / round_s + 0.5);
     if (rounds < 1.0 || rounds > 1e12) return 0.0;
     const double slack_s = kPrompt_s + rate_doubt() * elapsed_s;
-    return sure || std::abs(spare_s - rounds * round_s) <= slack_s ? rounds : 0.0;
+    return std::abs(spare_s - rounds * round_s) <= slack_s ? rounds : 0.0;
   }
 
   void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
@@ -195,7 +195,7 @@ class DeviceCount {
         late_s_ > 0.0 &&
         frame.elapsed_s >= kPace * period * static_cast<double>(std::max<std::uint64_t>(difference, 1));
     if (known && elapsed_s > 0.0 && (difference != 1 || frame.reopened || after_backlog || settles)) {
-      const double rounds = rounds_in(step.late_s, elapsed_s, frame.reopened);
+      const double rounds = rounds_in(step.late_s, elapsed_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
       step.clock_moved = rounds == 0.0 && settles && difference == 1 && step.late_s > kLate_s;
       if (rounds > 0.0 || settles) step.late_s = 0.0;

@@ -95,7 +95,8 @@ class Checks:
         holds(page("ifogd.8"), ["device gone", "SIGHUP", "buffer_bytes", "noise.toml"], "ifogd(8)")
 
     def check_the_configuration_has_every_key_that_is_read(self):
-        read = set(re.findall(r'\bin\.\w+\(\s*"([a-z_0-9]+)"', (SOURCE / "daemon/config/config.cpp").read_text()))
+        sources = "".join(path.read_text() for path in sorted((SOURCE / "daemon/config").glob("*.cpp")))
+        read = set(re.findall(r'\bin\.\w+\(\s*"([a-z_0-9]+)"', sources))
         read |= set(re.findall(r'FilterSetting\{\s*"(\w+)"', (SOURCE / "filters/settings/filter_table.cpp").read_text()))
         assert len(read) > 60, len(read)
         text = page("ifogd.toml.5")
