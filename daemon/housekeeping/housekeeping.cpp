@@ -187,6 +187,8 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (const std::string vain = sensor.report.nothing_of_it(); !vain.empty())
     sensor.log->warn("{}: are driver {} and its options those of the device? (ifog drivers {})", vain,
                      sensor.config.driver, sensor.config.driver);
+  if (const std::string wrong = sensor.report.wrong_rate(); !wrong.empty())
+    sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
   if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
   publish(sensor);
   keep_noise(sensor, false);

@@ -2,6 +2,8 @@
 #include "daemon/housekeeping/status_report.h"
 
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -12,8 +14,9 @@
 namespace ifog {
 namespace {
 
-constexpr int kInVain = 5;          // seconds of input without a frame that are worth a word
-constexpr double kSilence_s = 2.0;  // open, and nothing for this long: no data
+constexpr double kWrongRate = 0.01;  // no quartz is off by more
+constexpr int kInVain = 5;           // seconds of input without a frame that are worth a word
+constexpr double kSilence_s = 2.0;   // open, and nothing for this long: no data
 
 struct Named {
   const char* name;
@@ -71,7 +74,7 @@ std::string fault_of(const Reader& reader) {
 
 StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels,
                            const std::vector<std::string>& axes, double sample_rate_hz)
-    : before_(), now_(), watch_(axes.size(), sample_rate_hz) {
+    : before_(), now_(), watch_(axes.size(), sample_rate_hz), nominal_rate_hz_(sample_rate_hz) {
   now_.sensor = std::move(sensor);
   now_.version = IFOG_VERSION;
   now_.axes = static_cast<std::int8_t>(axes.size());
@@ -164,6 +167,8 @@ void StatusReport::take_counters(const ReaderCounters& reader, const FilterCount
   now_.imu_failures = as_signed(filter.imu_failures.value());
   now_.filter_resets = as_signed(filter.filter_resets.value());
   now_.clock_offset_ppm = reader.clock_offset_ppm.load(std::memory_order_relaxed);
+  interval_error_before_ =
+      std::exchange(interval_error_, reader.interval_error.load(std::memory_order_relaxed));
 }
 
 void StatusReport::take_health(const FilterSnapshot& snapshot) {
@@ -241,6 +246,18 @@ std::string StatusReport::came() const {
 std::string StatusReport::nothing_of_it() const {
   if (in_vain_ != kInVain) return "";
   return came() + " came and no frame of the sensor was in them";
+}
+
+std::string StatusReport::wrong_rate() const {
+  if (std::abs(interval_error_) < kWrongRate || std::abs(interval_error_before_) >= kWrongRate) return "";
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
+                "rate, are %.2g %% "
+                "too %s",
+                nominal_rate_hz_ / (1.0 + interval_error_), nominal_rate_hz_,
+                100.0 * std::abs(interval_error_), interval_error_ > 0.0 ? "small" : "large");
+  return text.data();
 }
 
 std::string StatusReport::moved() const {

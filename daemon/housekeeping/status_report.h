@@ -30,6 +30,10 @@ class StatusReport {
   // else. So are a wrong driver, wrong options, another baud rate seen, which counters alone do not say.
   [[nodiscard]] std::string nothing_of_it() const;
 
+  // Once, when a device that counts and has no clock sends at another rate than it should: by how much its
+  // intervals, and the angle of one that sends a rate, are wrong, in words; "" else.
+  [[nodiscard]] std::string wrong_rate() const;
+
   // What was noticed of the sensor with the last update() and was not before, in words; "" for nothing.
   [[nodiscard]] std::string newly_noticed() const;
   // What the sensor was, is learned anew.
@@ -50,7 +54,9 @@ class StatusReport {
 
   ifog::status_t before_, now_;
   SensorWatch watch_;
-  std::uint64_t decoded_ = 0;   // samples, at the last update()
+  std::uint64_t decoded_ = 0;  // samples, at the last update()
+  double nominal_rate_hz_;
+  double interval_error_ = 0.0, interval_error_before_ = 0.0;
   int in_vain_ = 0;             // updates in a row after which something had come, and never a good frame
   std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
 };

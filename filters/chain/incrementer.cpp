@@ -65,6 +65,11 @@ double Incrementer::clock_offset_ppm() const noexcept {
   return clock_.settled() ? (clock_.period_s() / period_s_ - 1.0) * 1e6 : 0.0;
 }
 
+double Incrementer::interval_error() const noexcept {
+  const bool nominal = facts_.sequence_modulus > 0 && last_.device_time_ns < 0;
+  return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
+}
+
 DeviceCount::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
   DeviceCount::Frame frame;
   frame.sequence = reading.sequence;

@@ -47,6 +47,10 @@ class Incrementer {
   [[nodiscard]] const IncrementerCounts& counts() const noexcept { return counts_; }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
+  // By which part of it the true interval is longer than the one that is used: of a device that counts and
+  // has no clock that is the nominal one, whatever it really sends at. 0 for all others, and until it is
+  // known.
+  [[nodiscard]] double interval_error() const noexcept;
 
  private:
   struct Step {
