@@ -2,9 +2,12 @@
 #include "filters/diagnosis/record/blocks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "filters/effects/meaning.h"
 
@@ -15,6 +18,7 @@ namespace {
 constexpr std::size_t kMostFine = 16;
 // A block counts when this share of its samples is there.
 constexpr double kLeastShare = 0.5;
+constexpr std::size_t kLeastBlocks = 32;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -25,6 +29,30 @@ double median(std::vector<double> values) {
 std::string too_few(std::size_t used) {
   return "a diagnosis needs at least 32 samples with a rate, and with a reference if there is one: " +
          std::to_string(used) + " found";
+}
+
+// Of a grid with too few blocks: that there are too few samples, or that holes take up nearly all of the
+// time.
+std::string too_few(const std::vector<Record>& records, const BlockGrid& grid) {
+  std::size_t samples = 0;
+  double hole_s = 0.0;
+  for (const Record& record : records) {
+    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+      if (i > 0) hole_s = std::max(hole_s, record.time_s[i] - record.time_s[i - 1]);
+      if (std::isfinite(record.rate_radps[i]) &&
+          (record.reference_radps.empty() || std::isfinite(record.reference_radps[i])))
+        ++samples;
+    }
+  }
+  if (samples < kLeastBlocks) return too_few(samples);
+  std::array<char, 256> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "%zu samples, but only %zu blocks of %.3g s have enough of them, as the longest hole is of %.6g s: "
+      "expected "
+      "at least %zu; each side of it by itself (--from, --to, or captures of their own) can be diagnosed",
+      samples, grid.used(), grid.block_s, hole_s, kLeastBlocks);
+  return text.data();
 }
 
 double median_period(const std::vector<Record>& records) {
@@ -239,7 +267,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   std::vector<std::vector<std::size_t>> starts;  // by record: the first samples of its steps
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
-  if (data.grid.used() < 32) throw std::invalid_argument(too_few(data.grid.used()));
+  if (data.grid.used() < kLeastBlocks) throw std::invalid_argument(too_few(records, data.grid));
 
   for (const RecordChannel& channel : records.front().channels) {
     const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };

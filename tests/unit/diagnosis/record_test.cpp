@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include "filters/diagnosis/record/blocks.h"
@@ -53,6 +55,24 @@ TEST(Blocks, AreMeansOverEqualTimes) {
   linear.reference = 25.0;
   const Eigen::VectorXd means = column(data, linear, 0);
   for (Eigen::Index b = 0; b < 100; ++b) EXPECT_NEAR(means[b], double(b) + 0.45, 1e-9);
+}
+
+// A day between two minutes: the samples are many, and what they are too few for is said.
+TEST(Blocks, AHoleThatIsNearlyAllOfTheTimeIsSaid) {
+  Arrays arrays(1000);
+  for (std::size_t i = 500; i < 1000; ++i) arrays.time[i] += 86400.0;
+  try {
+    static_cast<void>(cut_to_blocks({arrays.record()}, 100));
+    FAIL() << "was cut";
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    for (const char* part : {"1000 samples", "86400.1 s", "at least 32", "--from"})
+      EXPECT_NE(said.find(part), std::string::npos) << part << ": " << said;
+  }
+  arrays.time.resize(20);
+  arrays.rate.resize(20);
+  arrays.temperature.resize(20);
+  EXPECT_THROW(static_cast<void>(cut_to_blocks({arrays.record()}, 100)), std::invalid_argument);
 }
 
 TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
