@@ -15,6 +15,7 @@
 #include "drivers/transport/utc_now.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/model_file/model.h"
+#include "filters/rest/glitches.h"
 #include "filters/rest/noise_change.h"
 #include "filters/rest/rest.h"
 #include "filters/tune/candidate.h"
@@ -214,6 +215,10 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
       if (const std::string change = in_words(found.changes); !change.empty())
         notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + change);
       noise[capture.axes[a]] = std::move(found);
+      if (const std::string leaps =
+              in_words(find_glitches(rate, parts), [&](std::size_t i) { return capture.time_s[i]; });
+          !leaps.empty())
+        notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + leaps);
     } catch (const std::invalid_argument& error) {
       notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
                       error.what());

@@ -10,7 +10,7 @@ import re
 import sys
 
 import schema
-from run import RATE_HZ, SECONDS, columns, has, ifog, main_of, near, refused
+from run import RATE_HZ, SECONDS, columns, has, ifog, main_of, near, ran, refused
 
 N, K = 2.5e-7, 4e-8
 SCENARIO = f"""
@@ -58,6 +58,19 @@ class Noise:
             near(noise[key], allan[letter]["value"], allan[letter]["std_error"], f"{letter} of diagnose")
             has(noise["std_error"], key)
         assert not allan["B"]["present"] and noise.get("B_radps") is None
+
+    def check_a_glitch_is_said(self):
+        """One sample of a radian a second, which no gyro has turned."""
+        lines = self.capture.read_text().splitlines()
+        row = next(i for i, line in enumerate(lines) if line.startswith("100,") or line.startswith("100.0"))
+        lines[row] = lines[row].split(",")[0] + ",1.0"
+        glitch = self.folder / "glitch.csv"
+        glitch.write_text("\n".join(lines) + "\n")
+        for command in ("allan", "tune"):
+            for capture, said in ((glitch, True), (self.capture, False)):
+                result = ran(command, capture)
+                assert result.returncode == 0, result.stderr
+                assert ("leaps away and back" in result.stdout + result.stderr) == said, f"{command} {capture}: {result.stdout}{result.stderr}"
 
     def check_no_average_beyond_the_estimator(self):
         third = SECONDS / 3

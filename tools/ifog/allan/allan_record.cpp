@@ -12,6 +12,7 @@
 
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/rest/glitches.h"
 #include "filters/rest/rest.h"
 #include "tools/ifog/captures/usable_axes.h"
 
@@ -208,6 +209,11 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
     record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(parts.size()) +
                            " stretches; averages never reach across a hole, the longest stretch is " +
                            number(static_cast<double>(record.longest) * period) + " s");
+
+  if (const std::string leaps =
+          in_words(find_glitches(rate, parts), [&](std::size_t i) { return time_s.at(i); });
+      !leaps.empty())
+    record.notes.push_back(name + ": " + column + ": " + leaps);
 
   // A quarter of the longest stretch: beyond, a handful of differences decide.
   const std::vector<std::size_t> m =

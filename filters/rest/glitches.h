@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Single samples that leap away from those beside them and back, far beyond all noise: a fault of the logger
+// or of the line. They are no angle random walk, yet one of 1e5 times the noise makes N of a record a
+// thousand times too large.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "filters/allan/stretches.h"
+
+namespace ifog {
+
+struct Glitches {
+  std::size_t count = 0;
+  std::size_t first = 0;  // sample; meaningful when count > 0
+  double most_times =
+      0.0;  // the largest leap over the standard deviation of the noise, by the median of second differences
+};
+
+// parts: what is at rest and without holes. A sample between two that differ by less than half of its leap,
+// by more than 30 standard deviations: of Gaussian noise not one in 1e190.
+[[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts);
+
+// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..."; empty for none. time_s: of a
+// sample.
+[[nodiscard]] std::string in_words(const Glitches& glitches,
+                                   const std::function<double(std::size_t)>& time_s);
+
+}  // namespace ifog

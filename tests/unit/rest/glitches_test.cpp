@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/rest/glitches.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+std::vector<double> white(std::size_t n, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(7e-5, 1e-5);
+  std::vector<double> out(n);
+  for (double& value : out) value = normal(engine);
+  return out;
+}
+
+TEST(Glitches, ASampleThatLeapsAwayAndBackIsFound) {
+  std::vector<double> rate = white(20000, 1);
+  rate[12345] = 1.0;
+  rate[15000] = -2e-3;
+  const Glitches found = find_glitches(rate, std::vector<Stretch>{{0, 10000}, {10000, 20000}});
+  EXPECT_EQ(found.count, 2U);
+  EXPECT_EQ(found.first, 12345U);
+  EXPECT_NEAR(found.most_times, 1e5, 3e3);
+  const std::string said = in_words(found, [](std::size_t i) { return 0.01 * static_cast<double>(i); });
+  EXPECT_NE(said.find("2 samples leap away and back (the first at 123.45 s"), std::string::npos) << said;
+  EXPECT_EQ(find_glitches(rate, std::vector<Stretch>{{0, 12000}}).count, 0U);
+}
+
+// What stays where it has gone is a step, what takes several samples a blow: both are rates.
+TEST(Glitches, NoiseStepsAndBlowsAreNone) {
+  std::vector<double> rate = white(200000, 2);
+  const std::vector<Stretch> all{{0, rate.size()}};
+  EXPECT_EQ(find_glitches(rate, all).count, 0U);
+  for (std::size_t i = 50000; i < 100000; ++i) rate[i] += 1.0;
+  for (int k = 0; k < 40; ++k) rate[150000 + static_cast<std::size_t>(k)] += 0.01 * std::sin(0.3 * k);
+  EXPECT_EQ(find_glitches(rate, all).count, 0U);
+  EXPECT_EQ(find_glitches(std::vector<double>(1000, 1e-5), std::vector<Stretch>{{0, 1000}}).count, 0U);
+}
+
+}  // namespace
+}  // namespace ifog
