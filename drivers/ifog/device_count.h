@@ -3,10 +3,10 @@
 // where it has one, and by the times at which its frames came.
 //
 // The counter goes round. How often it did, the device's clock says; else the times of arrival, where whole
-// rounds fit the time to what those times and the rate are worth. A frame that comes late by more than
-// kLate_s and continues the count is either late, and then what follows was held up with it and comes at
-// once, or whole rounds were lost, and then what follows comes at its pace: that is decided when the next one
-// comes at its pace, and what was lost is counted there.
+// rounds fit the time to what those times and the rate are worth: behind a gap that shows, and behind a
+// silence of more than kLongSilence_s. What else comes late and continues the count is only late; so exactly
+// one round that is lost within that time cannot be told from a late delivery and is taken for one, and the
+// other way round a delay beyond it that is a whole number of rounds for a loss.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class DeviceCount {
     bool restarted = false;    // counter or clock jumped: it was switched off and on
     bool out_of_turn = false;  // came again, or after one that follows it; all else here says nothing
     bool clock_moved = false;  // the times of arrival have moved against the count, for good
-    double late_s = 0.0;       // so much later than the count, undecided
+    double late_s = 0.0;       // so much later than the count: held up on its way, as what follows will show
   };
 
   // modulus: the counter's, > 0. period_s > 0.
@@ -73,7 +73,7 @@ class DeviceCount {
       jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
     }
     last_ = frame;
-    late_s_ = step.late_s;
+    follow_lateness(elapsed, step);
   }
 
  private:
@@ -81,7 +81,10 @@ class DeviceCount {
   // turn.
   static constexpr double kPrompt_s = 0.05;
   static constexpr double kLate_s = 1.0;
-  static constexpr double kPace = 0.75;  // of the period, and frames are not held up any more
+  static constexpr double kLongSilence_s = 2.0;
+  static constexpr double kStands_s = 1.5;    // it has come to stand when for so long it has not become less
+  static constexpr double kShrinks_s = 0.03;  // by more than this
+  static constexpr double kLongest_s = 60.0;  // and what does not come to stand is left at that
   // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
   static constexpr double kRateDoubt = 0.05;
   static constexpr double kLeastDoubt = 2e-5;
@@ -162,16 +165,35 @@ class DeviceCount {
       return false;
     step.samples = static_cast<std::uint64_t>(claimed);
     step.dt_s = passed_s;
-    if (elapsed_s >= 0.0) lateness(frame, elapsed_s - passed_s, passed_s, step);
+    if (elapsed_s >= 0.0) lateness(frame, elapsed_s - passed_s, step);
     return true;
   }
 
-  // How far behind its clock a frame is that is held up; it is over when they come at their pace.
-  void lateness(const Timed& frame, double late_s, double passed_s, Step& step) const noexcept {
-    if (late_s_ > 0.0 && frame.elapsed_s >= kPace * passed_s)
+  // Whether lateness has come to stand: for some time of arrival it has not become less. What drains from a
+  // line that is but little faster than the sensor still becomes less.
+  [[nodiscard]] bool stands(const Timed& frame, double late_s) const noexcept {
+    return late_s_ > 0.0 && late_s >= window_late_s_ - kShrinks_s && window_s_ + frame.elapsed_s >= kStands_s;
+  }
+  // Nothing is to be told of it any more: it has drained, or will not stand.
+  [[nodiscard]] bool over(const Timed& frame, double late_s) const noexcept {
+    return late_s < kPrompt_s || episode_s_ + frame.elapsed_s >= kLongest_s;
+  }
+  // How far behind its clock a frame is that is held up.
+  void lateness(const Timed& frame, double late_s, Step& step) const noexcept {
+    if (stands(frame, late_s))
       step.clock_moved = late_s > kLate_s;
-    else if (late_s_ > 0.0 || late_s > kLate_s)
-      step.late_s = std::max(0.0, late_s);
+    else if (late_s_ > 0.0 ? !over(frame, late_s) : late_s > kLate_s)
+      step.late_s = late_s;
+  }
+  void follow_lateness(double elapsed_s, const Step& step) noexcept {
+    if (late_s_ == 0.0 || step.late_s < window_late_s_ - kShrinks_s) {
+      window_late_s_ = step.late_s;
+      window_s_ = 0.0;
+    } else {
+      window_s_ += std::max(0.0, elapsed_s);
+    }
+    episode_s_ = late_s_ == 0.0 ? 0.0 : episode_s_ + std::max(0.0, elapsed_s);
+    late_s_ = step.late_s;
   }
 
   // Whole rounds of the counter in a time; 0 where no number of them fits it.
@@ -191,16 +213,19 @@ class DeviceCount {
     step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_s_;
     // So do the times of arrival say it at the end of a backlog, whose own were not known.
     const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
-    const bool settles =
-        late_s_ > 0.0 &&
-        frame.elapsed_s >= kPace * period * static_cast<double>(std::max<std::uint64_t>(difference, 1));
-    if (known && elapsed_s > 0.0 && (difference != 1 || frame.reopened || after_backlog || settles)) {
+    if (known && elapsed_s > 0.0 &&
+        (frame.reopened || after_backlog ||
+         (late_s_ == 0.0 && (difference != 1 || frame.elapsed_s > kLongSilence_s)))) {
       const double rounds = rounds_in(step.late_s, elapsed_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
-      step.clock_moved = rounds == 0.0 && settles && difference == 1 && step.late_s > kLate_s;
-      if (rounds > 0.0 || settles) step.late_s = 0.0;
+      if (rounds > 0.0) step.late_s = 0.0;
     }
-    if (late_s_ == 0.0 && step.late_s < std::max(kLate_s, 3.0 * period)) step.late_s = 0.0;
+    if (stands(frame, step.late_s)) {
+      step.clock_moved = step.late_s > kLate_s;
+      step.late_s = 0.0;
+    } else if (late_s_ > 0.0 ? over(frame, step.late_s) : step.late_s < std::max(kLate_s, 3.0 * period)) {
+      step.late_s = 0.0;
+    }
     if (step.samples == 0) {
       step.late_s = late_s_;
       step.gap = true;
@@ -227,7 +252,9 @@ class DeviceCount {
   std::uint64_t had_ = 1;       // bit i: the sample i before the last one came
   std::int64_t known_ns_ = 0;   // latest arrival that is known; 0: none yet
   double since_known_s_ = 0.0;  // counted
-  double late_s_ = 0.0;         // the last frame, undecided
+  double window_late_s_ = 0.0, window_s_ = 0.0,
+         episode_s_ = 0.0;  // since lateness last became less; since it began
+  double late_s_ = 0.0;     // the last frame, undecided
   double took_s_ = 0.0,
          counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
   double jitter_s_ = 0.0;

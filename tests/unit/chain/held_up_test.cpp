@@ -91,12 +91,17 @@ Got run(const std::vector<Sent>& frames, Tells tells, std::uint32_t modulus = 12
   return got;
 }
 
+class Counting : public testing::TestWithParam<Tells> {};
+INSTANTIATE_TEST_SUITE_P(Devices, Counting, testing::Values(Tells::counter, Tells::counter_and_clock));
+
 class HeldUp : public testing::TestWithParam<Tells> {};
 INSTANTIATE_TEST_SUITE_P(Devices, HeldUp,
                          testing::Values(Tells::nothing, Tells::counter, Tells::counter_and_clock));
 
 TEST_P(HeldUp, WhatComesLateAndAtOnceIsNotMissing) {
   for (const double held_s : {0.3, 0.5, 1.28, 1.3, 2.5, 2.56, 3.0, 10.0}) {
+    if (GetParam() == Tells::counter && held_s == 2.56)
+      continue;  // two rounds of the counter, to the sample: may be lost
     std::vector<Sent> frames = on_time(3000);
     hold(frames, 7.0, 7.0 + held_s);
     const Got got = run(frames, GetParam());
@@ -109,8 +114,31 @@ TEST_P(HeldUp, WhatComesLateAndAtOnceIsNotMissing) {
   }
 }
 
+// A serial line carries little more than the sensor sends: what was held up comes a little faster than it was
+// taken.
+TEST_P(Counting, WhatDrainsSlowlyIsNotMissing) {
+  for (const double faster : {1.05, 1.3, 3.0}) {
+    for (const double held_s : {1.1, 1.28, 2.0, 2.5, 5.0}) {
+      std::vector<Sent> frames = on_time(20000);
+      double free_s = 0.0;  // of the line
+      for (Sent& frame : frames) {
+        const double from_s =
+            frame.arrives_s >= 70.0 ? std::max(frame.arrives_s, 70.0 + held_s) : frame.arrives_s;
+        free_s = std::max(from_s, free_s + kPeriod_s / faster);
+        // By an adapter that collects for 16 ms.
+        frame.arrives_s = std::ceil(free_s / 0.016) * 0.016;
+      }
+      const Got got = run(frames, GetParam());
+      EXPECT_EQ(got.counts.missing, 0U) << faster << ' ' << held_s;
+      EXPECT_NEAR(got.angle_rad, 20000 * kPeriod_s * kTurning, 1e-4 * kTurning);
+      EXPECT_EQ(got.clock_steps, 0U) << faster << ' ' << held_s;
+    }
+  }
+}
+
 TEST_P(HeldUp, WhatWasLostIsCounted) {
   for (const std::uint64_t lost : {50U, 127U, 128U, 129U, 200U, 256U, 1280U}) {
+    if (GetParam() == Tells::counter && lost == 128) continue;  // one round of the counter: may be late
     std::vector<Sent> frames = on_time(4000);
     lose(frames, 1000, lost);
     const Got got = run(frames, GetParam());
@@ -123,9 +151,6 @@ TEST_P(HeldUp, WhatWasLostIsCounted) {
     EXPECT_LT(got.worst_label_s, 2e-3) << lost;
   }
 }
-
-class Counting : public testing::TestWithParam<Tells> {};
-INSTANTIATE_TEST_SUITE_P(Devices, Counting, testing::Values(Tells::counter, Tells::counter_and_clock));
 
 // A device with neither counter nor clock cannot tell.
 TEST_P(Counting, WhatIsLostOfWhatWasHeldUpIsCounted) {
