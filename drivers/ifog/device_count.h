@@ -132,9 +132,13 @@ class DeviceCount {
   [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
     const std::uint64_t back = modulus_ - difference;
     if (frame.elapsed_s < 0.0 || frame.reopened || difference == 0 || back >= 64) return false;
-    if (frame.device_time_ns >= 0 && last_.device_time_ns >= 0 &&
-        frame.device_time_ns >= last_.device_time_ns)
-      return false;
+    // A clock that goes forward says otherwise, unless by so much that a driver has taken its step back for a
+    // round of it.
+    if (frame.device_time_ns >= 0 && last_.device_time_ns >= 0) {
+      const double passed_s = static_cast<double>(frame.device_time_ns - last_.device_time_ns) * 1e-9;
+      if (passed_s >= 0.0 && passed_s <= kRestartFactor * (frame.elapsed_s + late_s_) + kRestart_s)
+        return false;
+    }
     const double forward_s = static_cast<double>(difference) * nominal_s_;
     const bool had = (had_ >> back & 1U) != 0;
     return had ? forward_s > frame.elapsed_s + late_s_ + kPrompt_s
