@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a figure was measured on, and the network namespace of its own that a program which sends on LCM is measured in."""
+"""What a figure was measured on."""
 import os
 import platform
 import subprocess
-import sys
 
 
 def machine():
@@ -20,16 +19,6 @@ def commit():
     here = os.path.dirname(os.path.abspath(__file__))
     said = subprocess.run(["git", "-C", here, "describe", "--always", "--dirty"], capture_output=True, text=True)
     return said.stdout.strip() or "no commit"
-
-
-def private_network():
-    """This process again, in a network namespace where LCM may send."""
-    if os.environ.get("IFOG_BENCH_INSIDE") == "1":
-        subprocess.run("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, check=True)
-        return
-    flags = "-n" if os.geteuid() == 0 else "-rn"
-    os.environ["IFOG_BENCH_INSIDE"] = "1"
-    os.execvp("unshare", ["unshare", flags, sys.executable, *sys.argv])
 
 
 def real_time():

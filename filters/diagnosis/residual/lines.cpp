@@ -22,18 +22,6 @@ constexpr double kFirstBin = 16.0;  // below, slow noise and a line look alike
 constexpr double kBand = 0.15;      // noise is taken from +-15 % of the frequency, and at least
 constexpr std::size_t kLeastBins = 25;
 
-double mean_of(std::span<const double> values) {
-  double sum = 0.0;
-  std::size_t n = 0;
-  for (const double v : values) {
-    if (std::isfinite(v)) {
-      sum += v;
-      ++n;
-    }
-  }
-  return n ? sum / static_cast<double>(n) : 0.0;
-}
-
 // Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
 // frequencies.
 Samples noise_floor(std::span<const double> power) {
@@ -218,7 +206,7 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   std::sort(peaks.begin(), peaks.end(),
             [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
   const std::vector<std::size_t> apart = not_beside(peaks);
-  const Search in{error, mean_of(error), start_s, period_s, spectrum.length, tries, significance};
+  const Search in{error, mean_of_present(error), start_s, period_s, spectrum.length, tries, significance};
   Sums sums;
   for (std::size_t i = 0; i < apart.size() && lines.size() < most; ++i) {
     const std::size_t k = apart[i];

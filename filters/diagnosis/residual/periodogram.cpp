@@ -16,18 +16,6 @@ using Complex = std::complex<double>;
 // Columns, or rows, that are worked on together: of each row a page of the file.
 constexpr std::size_t kTogether = 256;
 
-double mean_of(std::span<const double> values) {
-  double sum = 0.0;
-  std::size_t n = 0;
-  for (const double v : values) {
-    if (std::isfinite(v)) {
-      sum += v;
-      ++n;
-    }
-  }
-  return n ? sum / static_cast<double>(n) : 0.0;
-}
-
 bool is_smooth(std::size_t length) {
   for (const std::size_t prime : {2U, 3U, 5U})
     while (length % prime == 0) length /= prime;
@@ -138,12 +126,24 @@ class PairedTransform {
 
 }  // namespace
 
+double mean_of_present(std::span<const double> values) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (const double v : values) {
+    if (std::isfinite(v)) {
+      sum += v;
+      ++n;
+    }
+  }
+  return n ? sum / static_cast<double>(n) : 0.0;
+}
+
 Periodogram periodogram(std::span<const double> error, std::size_t in_memory) {
   const bool pairs = error.size() > in_memory;
   Periodogram out;
   out.length = error.size();
   while (out.length > 16 && (!is_smooth(out.length) || (pairs && out.length % 2 != 0))) --out.length;
-  const double mean = mean_of(error);
+  const double mean = mean_of_present(error);
   const std::span<const double> used = error.first(out.length);
   out.power = pairs ? PairedTransform(used, mean).power() : power_in_memory(used, mean);
   return out;

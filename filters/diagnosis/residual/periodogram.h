@@ -18,6 +18,9 @@ struct Periodogram {
   std::size_t length = 0;  // of the series, cut to a product of small primes for the transform's sake
 };
 
+// Of the samples that are there; 0 for none.
+[[nodiscard]] double mean_of_present(std::span<const double> values);
+
 // Missing samples (NaN) count as the mean. At least 16 samples.
 Periodogram periodogram(std::span<const double> error, std::size_t in_memory = Periodogram::kMostInMemory);
 

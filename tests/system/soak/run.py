@@ -22,23 +22,14 @@ import threading
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, "..", "box"))
+sys.path[:0] = [os.path.join(HERE, "..", "box"), os.path.join(HERE, "..")]
 import frames  # noqa: E402
+import private_network  # noqa: E402
 
 BLOCK = 12800  # samples: a hundred rounds of the frame's counter, so that blocks follow each other
 LAST = 36 * 100  # bytes
 # What may come and go with the moment: a log line's buffer, a page of the allocator's.
 LEEWAY_KB = 1024
-
-
-def private_network():
-    """This process again, in a network namespace where LCM may send."""
-    if os.environ.get("IFOG_SOAK_INSIDE") == "1":
-        subprocess.run("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, check=True)
-        return
-    flags = "-n" if os.geteuid() == 0 else "-rn"
-    os.environ["IFOG_SOAK_INSIDE"] = "1"
-    os.execvp("unshare", ["unshare", flags, sys.executable, *sys.argv])
 
 
 def held(pid):
@@ -126,7 +117,7 @@ def main():
     parser.add_argument("--hours", type=float, default=24)
     parser.add_argument("--hertz", type=int, default=1000)
     given = parser.parse_args()
-    private_network()
+    private_network.enter()
     soak = Soak(given.build, given.hours, given.hertz)
     began, failed = time.monotonic(), 0
     try:

@@ -11,16 +11,13 @@
 
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/compensator.h"
-#include "filters/random/philox.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {
 namespace {
 
 double gaussian(std::uint32_t counter, std::uint32_t stream, std::uint32_t seed) {
-  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {seed, 5});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return gaussian_deviate(counter, stream, seed, 5);
 }
 
 struct Sensor {

@@ -13,7 +13,7 @@
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
-#include "filters/random/philox.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {
 namespace {
@@ -23,10 +23,7 @@ constexpr double kGravity = 9.80665;
 constexpr double kWhite = 1e-6;
 
 double gaussian(std::uint32_t counter, std::uint32_t stream) {
-  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {77, 6});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return gaussian_deviate(counter, stream, 77, 6);
 }
 
 // Half an hour at 5 Hz of white noise and a walk; columns are added by name.

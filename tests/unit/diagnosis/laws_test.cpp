@@ -12,7 +12,7 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/effects/form.h"
-#include "filters/random/philox.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {
 namespace {
@@ -22,10 +22,7 @@ constexpr std::uint32_t kSamples = 9000;
 constexpr double kStep_s = 0.2;
 
 double gaussian(std::uint32_t counter, std::uint32_t stream) {
-  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {13, 9});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return gaussian_deviate(counter, stream, 13, 9);
 }
 
 struct Capture {

@@ -7,7 +7,7 @@
 #include <complex>
 
 #include "filters/effects/compensator.h"
-#include "filters/random/philox.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {
 namespace {
@@ -16,12 +16,7 @@ constexpr double kPeriod = 32768.0;
 constexpr double kStep_s = 0.005;
 constexpr double kPerCount = 79.2e-9;  // rad/s of one count a sample
 
-double gaussian(std::uint32_t counter) {
-  const PhiloxBlock bits = philox({counter, 9, 0, 0}, {3, 1});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
-}
+double gaussian(std::uint32_t counter) { return gaussian_deviate(counter, 9, 3, 1); }
 
 double nonlinearity(double ramp) {
   const double x = ramp / kPeriod;

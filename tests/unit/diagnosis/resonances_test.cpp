@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Peaks of a structure are named, noise is not taken for one.
 #include "filters/diagnosis/residual/resonances.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filters/random/philox.h"
-
 namespace ifog {
 namespace {
 
 double gaussian(std::uint32_t counter, std::uint32_t stream) {
-  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {3, 9});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return gaussian_deviate(counter, stream, 3, 9);
 }
 
 TEST(Resonances, AStructureShakenByNoiseIsNamedByItsFrequency) {

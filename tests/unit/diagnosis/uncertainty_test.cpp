@@ -10,7 +10,7 @@
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/search/search.h"
-#include "filters/random/philox.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {
 namespace {
@@ -20,10 +20,7 @@ constexpr double kCoefficient = 0.5;
 constexpr double kLag = 60.0;
 
 double gaussian(std::uint32_t counter, std::uint32_t stream, std::uint32_t seed) {
-  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {seed, 17});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return gaussian_deviate(counter, stream, seed, 17);
 }
 
 // White noise of unit variance at 1 Hz, a walk that overtakes it after a minute, and a slow temperature that

@@ -7,7 +7,7 @@
 
 #include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/diagnosis/report/prediction.h"
-#include "filters/random/philox.h"
+#include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {
 namespace {
@@ -24,10 +24,7 @@ BlockGrid even_grid(std::size_t n) {
 }
 
 double gaussian(std::uint32_t counter, std::uint32_t stream) {
-  const PhiloxBlock bits = philox({counter, stream, 0, 0}, {7, 11});
-  const double u = (bits[0] + 0.5) / 4294967296.0;
-  const double v = (bits[1] + 0.5) / 4294967296.0;
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return gaussian_deviate(counter, stream, 7, 11);
 }
 
 // Covariance of walk plus white, whitened by its Cholesky factor: the second way to the same least squares.
