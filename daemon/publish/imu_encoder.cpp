@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/publish/imu_encoder.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <ifog/rate_t.hpp>
 #include <limits>
@@ -26,9 +27,10 @@ std::span<const std::uint8_t> ImuEncoder::encode(const Increment& in, const Chai
   message_.utime = in.utime_ns / 1000;
   message_.seq = static_cast<std::int64_t>(in.sequence);
   message_.sensor_time_ns = in.device_time_ns;
-  const auto samples = static_cast<std::int32_t>(in.samples);
   message_.dt = waits_ ? message_.dt + in.dt_s : in.dt_s;
-  message_.merged = waits_ ? message_.merged + samples : samples;
+  const std::int64_t waiting = waits_ ? message_.merged : 0;
+  message_.merged = static_cast<std::int32_t>(
+      std::min<std::int64_t>(waiting + in.samples, std::numeric_limits<std::int32_t>::max()));
   message_.flags = message_flags(in, out) | (waits_ ? message_.flags | rate_t::FLAG_MERGED : 0);
   message_.status = static_cast<std::int32_t>(in.status);
   add(out.delta_theta_rad, waits_, message_.delta_theta);

@@ -61,7 +61,9 @@ void Recorder::stop() {
   std::uint64_t unwritten = archive_.close(now_ns, wall_ns);
   // What the disk left no way off the tape for.
   FlightLoss left;
-  for (FlightEntryHead head; tape_.take(head, payload_); ++unwritten) {
+  for (FlightEntryHead head; tape_.take(head, payload_);) {
+    if (head.kind == FlightKind::settings) continue;  // no entry of the record
+    ++unwritten;
     const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can;
     if (came) left += {tape_.begins_delivery() ? 1U : 0U, payload_.size()};
   }

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/ifog/same_values.h"
+
 namespace ifog {
 namespace {
 
@@ -53,8 +55,7 @@ std::uint64_t CaptureBuilder::steps_to(const ifog_sample& sample) {
   const DeviceCount::Step step = counter_.look(frame);
   if (step.out_of_turn) return 0;
   // A device whose counter stands still yet measures is followed.
-  const bool same = std::equal(sample.value, sample.value + description_.axes, last_.value,
-                               [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+  const bool same = same_values({sample.value, description_.axes}, {last_.value, description_.axes});
   if (step.samples == 0 && same) return 0;
   counter_.take(frame, step);
   return std::max<std::uint64_t>(step.samples, 1);

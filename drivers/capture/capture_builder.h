@@ -37,8 +37,8 @@ class CaptureBuilder {
   // What comes next does not join what came: its clock and counter may have begun anew. The arrival times,
   // which must be known, say how much later it is.
   void discontinuity() { broken_ = true; }
-  // From here on a device whose clock jumps back has begun anew, and a sample that came twice is left out;
-  // else neither can be told from a wrong driver, and is refused.
+  // From here on a device whose clock jumps back has begun anew; else that cannot be told from a wrong
+  // driver, and is refused. A sample whose counter says that it came twice, or late, is left out either way.
   void allow_restarts() { restarts_ = true; }
 
   // The columns in the order of next_rows(): rates by axis, then channels.

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "drivers/ifog/arrivals.h"
+
 namespace ifog {
 
 class DeviceCount {
@@ -37,13 +39,13 @@ class DeviceCount {
   DeviceCount(std::uint64_t modulus, double period_s) noexcept : modulus_(modulus), nominal_s_(period_s) {}
 
   void first(const Frame& frame) noexcept {
-    known_ns_ = 0;
+    arrivals_.forget();
     begin(frame);
-    arrived(frame, 0.0);
+    arrivals_.came(frame.arrival_ns, 0.0);
   }
   // Of the next frame; changes nothing.
   [[nodiscard]] Step look(const Frame& next) const noexcept {
-    const Timed frame{next, elapsed_s(next)};
+    const Timed frame{next, arrivals_.elapsed_s(next.arrival_ns)};
     Step step;
     const std::uint64_t difference = (frame.sequence + modulus_ - last_.sequence % modulus_) % modulus_;
     if (out_of_turn(frame, difference)) {
@@ -56,8 +58,8 @@ class DeviceCount {
   }
   // Of a frame that is used.
   void take(const Frame& frame, const Step& step) noexcept {
-    const double elapsed = elapsed_s(frame);
-    arrived(frame, step.dt_s);
+    const double elapsed = arrivals_.elapsed_s(frame.arrival_ns);
+    arrivals_.came(frame.arrival_ns, step.dt_s);
     if (step.restarted) {
       begin(frame);
       return;
@@ -80,6 +82,8 @@ class DeviceCount {
   // A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
   // turn.
   static constexpr double kPrompt_s = 0.05;
+  static constexpr double kAdapter_s = 0.02;
+  static constexpr std::uint64_t kMostBack = 64;  // bits of `had_`
   static constexpr double kLate_s = 1.0;
   static constexpr double kLongSilence_s = 2.0;
   static constexpr double kStands_s = 1.5;    // it has come to stand when for so long it has not become less
@@ -88,12 +92,9 @@ class DeviceCount {
   // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
   static constexpr double kRateDoubt = 0.05;
   static constexpr double kLeastDoubt = 2e-5;
-  static constexpr double kEnough = 64;  // periods, and the rate is measured
+  static constexpr double kTells = 0.25;  // of a round: so well times are to be known that tell rounds
+  static constexpr double kEnough = 64;   // periods, and the rate is measured
   static constexpr double kForgets = 0.9998;
-  // A step of counter or clock that exceeds what the arrival times allow by this much is a restart of the
-  // device.
-  static constexpr double kRestart_s = 10.0;
-  static constexpr double kRestartFactor = 1.5;
   // Clock and counter of one device agree within this.
   static constexpr double kClockSamples = 2.0;
   static constexpr double kClockDoubt = 0.01;
@@ -101,17 +102,6 @@ class DeviceCount {
   struct Timed : Frame {
     double elapsed_s;  // since the frame before, by arrival; negative: not known
   };
-
-  // Where the arrival of the frame before is not known, from the latest that is, less what has been counted
-  // since.
-  [[nodiscard]] double elapsed_s(const Frame& frame) const noexcept {
-    if (frame.arrival_ns <= 0 || known_ns_ <= 0) return -1.0;
-    return std::max(0.0, static_cast<double>(frame.arrival_ns - known_ns_) * 1e-9 - since_known_s_);
-  }
-  void arrived(const Frame& frame, double dt_s) noexcept {
-    if (frame.arrival_ns > 0) known_ns_ = frame.arrival_ns;
-    since_known_s_ = frame.arrival_ns > 0 ? 0.0 : since_known_s_ + dt_s;
-  }
 
   void begin(const Frame& frame) noexcept {
     had_ = 1;
@@ -128,16 +118,17 @@ class DeviceCount {
   }
 
   // Came again, or after one that follows it: the count goes back by little, and on from there to here there
-  // was no time.
+  // was no time. By little of a round, too: several frames of one read come with no time between them, and
+  // one step on of a counter of two bits is three back.
   [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
     const std::uint64_t back = modulus_ - difference;
-    if (frame.elapsed_s < 0.0 || frame.reopened || difference == 0 || back >= 64) return false;
+    if (frame.elapsed_s < 0.0 || frame.reopened || difference == 0) return false;
+    if (back >= std::min(kMostBack, modulus_ / 4)) return false;
     // A clock that goes forward says otherwise, unless by so much that a driver has taken its step back for a
     // round of it.
     if (frame.device_time_ns >= 0 && last_.device_time_ns >= 0) {
       const double passed_s = static_cast<double>(frame.device_time_ns - last_.device_time_ns) * 1e-9;
-      if (passed_s >= 0.0 && passed_s <= kRestartFactor * (frame.elapsed_s + late_s_) + kRestart_s)
-        return false;
+      if (passed_s >= 0.0 && !ifog::restarted(passed_s, frame.elapsed_s + late_s_)) return false;
     }
     const double forward_s = static_cast<double>(difference) * nominal_s_;
     const bool had = (had_ >> back & 1U) != 0;
@@ -155,7 +146,7 @@ class DeviceCount {
     const double rounds = std::max(0.0, std::round((samples - counted) / static_cast<double>(modulus_)));
     const double claimed = counted + rounds * static_cast<double>(modulus_);
     const bool agrees = std::abs(claimed - samples) <= kClockSamples + kClockDoubt * std::abs(samples);
-    const bool possible = elapsed_s < 0.0 || passed_s <= kRestartFactor * elapsed_s + kRestart_s;
+    const bool possible = elapsed_s < 0.0 || !ifog::restarted(passed_s, elapsed_s);
     if (passed_s <= 0.0 || (!possible && difference != 1)) {
       step.restarted = difference != 0 || passed_s < 0.0;
       if (!step.restarted) return false;  // the same frame again
@@ -200,13 +191,17 @@ class DeviceCount {
     late_s_ = step.late_s;
   }
 
-  // Whole rounds of the counter in a time; 0 where no number of them fits it.
+  // Whole rounds of the counter in a time; 0 where no number of them fits it. Rounds that are hardly longer
+  // than what times of arrival scatter by fit any time: of those only one that no delivery takes, a second
+  // and more, says that samples are lost, and how many to a round.
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
     const double round_s = static_cast<double>(modulus_) * period_s();
     const double rounds = std::floor(spare_s / round_s + 0.5);
     if (rounds < 1.0 || rounds > 1e12) return 0.0;
-    const double slack_s = kPrompt_s + rate_doubt() * elapsed_s;
-    return std::abs(spare_s - rounds * round_s) <= slack_s ? rounds : 0.0;
+    const double slack_s = kPrompt_s + rate_doubt() * elapsed_s, tells_s = kTells * round_s;
+    if (slack_s >= tells_s && spare_s >= kLate_s) return rounds;
+    if (std::max(kAdapter_s, jitter_s_) > tells_s) return 0.0;
+    return std::abs(spare_s - rounds * round_s) <= std::min(slack_s, tells_s) ? rounds : 0.0;
   }
 
   void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
@@ -237,8 +232,8 @@ class DeviceCount {
       return;
     }
     const double claimed_s = static_cast<double>(step.samples) * nominal_s_;
-    const bool backwards = known_ns_ <= 0 && difference > modulus_ / 2;  // no arrival times to ask, ever
-    if (step.samples > 1 && ((known && claimed_s > kRestartFactor * elapsed_s + kRestart_s) || backwards)) {
+    const bool backwards = !arrivals_.known() && difference > modulus_ / 2;  // no arrival times to ask, ever
+    if (step.samples > 1 && ((known && ifog::restarted(claimed_s, elapsed_s)) || backwards)) {
       step.samples = known && elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
       step.restarted = true;
       step.late_s = 0.0;
@@ -246,16 +241,11 @@ class DeviceCount {
     step.dt_s = static_cast<double>(step.samples) * nominal_s_;
   }
 
-  static std::uint64_t at_least_one(double samples) noexcept {
-    return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18))) : 1;
-  }
-
   std::uint64_t modulus_;
   double nominal_s_;
   Frame last_;
-  std::uint64_t had_ = 1;       // bit i: the sample i before the last one came
-  std::int64_t known_ns_ = 0;   // latest arrival that is known; 0: none yet
-  double since_known_s_ = 0.0;  // counted
+  std::uint64_t had_ = 1;  // bit i: the sample i before the last one came
+  Arrivals arrivals_;
   double window_late_s_ = 0.0, window_s_ = 0.0,
          episode_s_ = 0.0;  // since lateness last became less; since it began
   double late_s_ = 0.0;     // the last frame, undecided

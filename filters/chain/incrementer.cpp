@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/ifog/same_values.h"
+
 namespace ifog {
 namespace {
 
@@ -12,21 +14,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
 constexpr double kPace = 0.75;      // of the period, and samples are not held up any more
 constexpr double kSetBack_s = 1.0;  // of the times of arrival: more than any order of delivery
-// A step of the device's clock that exceeds what the arrival times allow by this much is a restart of the
-// device.
-constexpr double kRestart_s = 10.0;
-constexpr double kRestartFactor = 1.5;
 
 int clock_memory(double rate_hz) {
   return static_cast<int>(std::clamp(kClockMemory_s * rate_hz, 64.0, 100000.0));
 }
-
-std::uint64_t at_least_one(double samples) {
-  return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(samples)) : 1;
-}
-
-// Also of axes that are marked not usable, whose value is no number.
-bool same(double a, double b) noexcept { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 }  // namespace
 
@@ -87,11 +78,8 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading,
   if (step.samples == 0 && !step.repeated) {
     // The same counter again, too soon for a full round. CAN may deliver a frame twice; a device whose
     // counter stands still yet measures is followed.
-    step.repeated = true;
-    for (int i = 0; i < facts_.axes; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
-      if (!same(reading.value[axis], last_.value[axis])) step.repeated = false;
-    }
+    const auto axes = static_cast<std::size_t>(facts_.axes);
+    step.repeated = same_values({reading.value.data(), axes}, {last_.value.data(), axes});
     step.samples = 1;
   }
   return step;
@@ -100,7 +88,7 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading,
 Incrementer::Step Incrementer::step_by_clock(const Reading& reading, double elapsed_s) const noexcept {
   Step step;
   step.dt_s = static_cast<double>(reading.device_time_ns - last_.device_time_ns) * 1e-9;
-  if (step.dt_s <= 0.0 || (elapsed_s >= 0.0 && step.dt_s > kRestartFactor * elapsed_s + kRestart_s)) {
+  if (step.dt_s <= 0.0 || (elapsed_s >= 0.0 && restarted(step.dt_s, elapsed_s))) {
     step.restarted = true;
     step.gap = true;
     step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / period_s_) : 1;
@@ -130,15 +118,8 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double el
   return step;
 }
 
-// Since the sample before, by arrival; negative: not known. Where the arrival of that one is not known, time
-// is taken from the latest one that is, less what has been counted since.
-double Incrementer::elapsed_s(const Reading& reading) const noexcept {
-  if (reading.arrival_ns <= 0 || known_arrival_ns_ <= 0) return -1.0;
-  return std::max(0.0, static_cast<double>(reading.arrival_ns - known_arrival_ns_) * 1e-9 - counted_s_);
-}
-
 Incrementer::Step Incrementer::step(const Reading& reading) noexcept {
-  const double elapsed = elapsed_s(reading);
+  const double elapsed = arrivals_.elapsed_s(reading.arrival_ns);
   Step step;
   if (reading.has_sequence && facts_.sequence_modulus > 0) {
     const DeviceCount::Frame frame = frame_of(reading);
@@ -153,7 +134,7 @@ Incrementer::Step Incrementer::step(const Reading& reading) noexcept {
   }
   // A clock that was set back says nothing of what has passed.
   if (reading.arrival_ns > 0 &&
-      static_cast<double>(known_arrival_ns_ - reading.arrival_ns) * 1e-9 > kSetBack_s)
+      static_cast<double>(arrivals_.latest_ns() - reading.arrival_ns) * 1e-9 > kSetBack_s)
     step.clock_moved = true;
   if (reopened_) step.gap = true;
   return step;
@@ -282,12 +263,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   // What is held up on its way says nothing of the clock.
   out.utime_ns =
       clock_.advance(now.samples, now.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
-  if (reading.arrival_ns > 0) {
-    known_arrival_ns_ = reading.arrival_ns;
-    counted_s_ = 0.0;
-  } else {
-    counted_s_ += now.dt_s;
-  }
+  arrivals_.came(reading.arrival_ns, now.dt_s);
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 
+#include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/device_count.h"
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
@@ -62,7 +63,6 @@ class Incrementer {
     bool clock_moved = false;  // the times of arrival have moved against the count, for good
     double late_s = 0.0;       // later than the count, and nothing decided yet
   };
-  [[nodiscard]] double elapsed_s(const Reading& reading) const noexcept;
   [[nodiscard]] Step step(const Reading& reading) noexcept;
   [[nodiscard]] DeviceCount::Frame frame_of(const Reading& reading) const noexcept;
   [[nodiscard]] Step step_by_counter(const Reading& reading, const DeviceCount::Frame& frame) const noexcept;
@@ -85,9 +85,8 @@ class Incrementer {
     Axes value{};
   };
   Last last_;
-  std::int64_t known_arrival_ns_ = 0;  // latest arrival time that is known; 0: none yet
-  double counted_s_ = 0.0;             // steps since then
-  double late_s_ = 0.0;                // of the last sample, undecided; of a device that does not count
+  Arrivals arrivals_;
+  double late_s_ = 0.0;  // of the last sample, undecided; of a device that does not count
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/dbc/codec.h"
+#include "drivers/ifog/same_values.h"
 
 namespace ifog::dbc {
 namespace {
@@ -16,8 +17,6 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNsPerSecond = 1e9;
 
 constexpr std::uint32_t bit(std::size_t i) { return 1U << i; }
-
-bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 }  // namespace
 
@@ -80,7 +79,7 @@ void Decoder::begin_sample() noexcept {
 bool Decoder::repeats_last() const noexcept {
   if (!last_counted_ || !counted_ || !counter_moved_ || sample_.sequence != last_sequence_) return false;
   for (std::size_t i = 0; i < last_value_.size(); ++i)
-    if ((present_ & bit(i)) != 0 && !same(sample_.value[i], last_value_[i])) return false;
+    if ((present_ & bit(i)) != 0 && !same_value(sample_.value[i], last_value_[i])) return false;
   return true;
 }
 
@@ -160,7 +159,7 @@ bool Decoder::repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
   for (const Entry& entry : wanted.entries) {
     if (entry.role != Role::kAxis || !selected(*entry.message, *entry.signal, data)) continue;
     const double value = physical(*entry.signal, raw_bits(*entry.signal, data)) * entry.si_per_unit;
-    if (!same(value, known[entry.index])) return false;
+    if (!same_value(value, known[entry.index])) return false;
   }
   return true;
 }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <string>
 #include <vector>
 
 #include "filters/chain/incrementer.h"
@@ -217,6 +217,113 @@ TEST(Rate, ADeviceThatSendsAtAnotherRateThanItShouldIsFound) {
       const double expected = tells == Tells::counter ? kRate_hz / rate_hz - 1.0 : 0.0;
       EXPECT_NEAR(incrementer.interval_error(), expected, 1e-4) << rate_hz;
       EXPECT_EQ(incrementer.counts().missing, 0U) << rate_hz;
+    }
+  }
+}
+
+// What a host's read brings: so many frames at once, at the time of the last one.
+struct Reads {
+  std::uint32_t modulus;
+  double rate_hz;
+  std::uint64_t at_once;
+};
+class ShortRounds : public testing::TestWithParam<Reads> {};
+
+IncrementerCounts read_all(const Reads& reads, std::uint64_t samples, std::uint64_t lost_every) {
+  SensorFacts facts;
+  facts.nominal_rate_hz = reads.rate_hz;
+  facts.sequence_modulus = reads.modulus;
+  Incrementer incrementer(facts);
+  Increment increment;
+  for (std::uint64_t n = 0; n < samples; ++n) {
+    if (lost_every != 0 && n % lost_every == lost_every / 2) continue;
+    const std::uint64_t read = (n / reads.at_once + 1) * reads.at_once - 1;
+    Reading reading;
+    reading.arrival_ns = kStart_ns + std::llround(static_cast<double>(read) / reads.rate_hz * 1e9);
+    reading.valid_axes = 1;
+    reading.value[0] = static_cast<double>(n);
+    reading.has_sequence = true;
+    reading.sequence = static_cast<std::uint32_t>(n % reads.modulus);
+    incrementer.next(reading, increment);
+  }
+  return incrementer.counts();
+}
+
+TEST_P(ShortRounds, WhatIsReadSeveralAtOnceIsAllThere) {
+  const IncrementerCounts counts = read_all(GetParam(), 5000, 0);
+  EXPECT_EQ(counts.samples, 5000U);
+  EXPECT_EQ(counts.missing, 0U);
+  EXPECT_EQ(counts.repeated, 0U);
+}
+
+TEST_P(ShortRounds, SinglesThatAreLostAreCountedAsThat) {
+  const IncrementerCounts counts = read_all(GetParam(), 5000, 501);
+  EXPECT_EQ(counts.samples, 4990U);
+  EXPECT_EQ(counts.missing, 10U);
+  EXPECT_EQ(counts.repeated, 0U);
+}
+
+std::vector<Reads> short_rounds() {
+  std::vector<Reads> out;
+  for (const std::uint32_t modulus : {4U, 16U, 32U, 64U, 128U, 256U, 65536U})
+    for (const double rate_hz : {125.0, 250.0, 500.0, 1000.0, 5000.0})
+      for (const std::uint64_t at_once : {1U, 2U, 4U, 16U}) out.push_back({modulus, rate_hz, at_once});
+  return out;
+}
+INSTANTIATE_TEST_SUITE_P(Devices, ShortRounds, testing::ValuesIn(short_rounds()),
+                         [](const testing::TestParamInfo<Reads>& reads) {
+                           return "modulus_" + std::to_string(reads.param.modulus) + "_at_" +
+                                  std::to_string(static_cast<int>(reads.param.rate_hz)) + "_Hz_by_" +
+                                  std::to_string(reads.param.at_once);
+                         });
+
+// One frame lost, and then a hold-up shorter than any that counts as a silence.
+TEST(Rounds, AreNotMadeOfTimesThatFitAnyNumberOfThem) {
+  for (const double held_s : {0.02, 0.04, 0.08, 0.19, 0.3}) {
+    SensorFacts facts;
+    facts.nominal_rate_hz = 1000.0;
+    facts.sequence_modulus = 128;
+    Incrementer incrementer(facts);
+    Increment increment;
+    for (std::uint64_t n = 0; n < 5000; ++n) {
+      if (n == 3000) continue;
+      const double taken_s = static_cast<double>(n) * 1e-3;
+      Reading reading;
+      const double held_until_s = 3.0 + held_s;
+      const double arrives_s = n > 3000 ? std::max(taken_s, held_until_s) : taken_s;
+      reading.arrival_ns = kStart_ns + std::llround(arrives_s * 1e9);
+      reading.valid_axes = 1;
+      reading.value[0] = static_cast<double>(n);
+      reading.has_sequence = true;
+      reading.sequence = static_cast<std::uint32_t>(n % 128);
+      incrementer.next(reading, increment);
+    }
+    EXPECT_EQ(incrementer.counts().missing, 1U) << held_s;
+    EXPECT_EQ(incrementer.counts().samples, 4999U) << held_s;
+  }
+}
+
+// A cable that is out for a while: the counter alone would tell of less than a round.
+TEST(Rounds, OfASilenceAreCountedHoweverShortTheyAre) {
+  for (const double rate_hz : {1000.0, 5000.0}) {
+    for (const double out_s : {1.5, 4.0}) {
+      SensorFacts facts;
+      facts.nominal_rate_hz = rate_hz;
+      facts.sequence_modulus = 128;
+      Incrementer incrementer(facts);
+      Increment increment;
+      const auto lost = static_cast<std::uint64_t>(out_s * rate_hz);
+      for (std::uint64_t n = 0; n < 20'000; ++n) {
+        const std::uint64_t number = n < 10'000 ? n : n + lost;
+        Reading reading;
+        reading.arrival_ns = kStart_ns + std::llround(static_cast<double>(number) / rate_hz * 1e9);
+        reading.valid_axes = 1;
+        reading.value[0] = static_cast<double>(n);
+        reading.has_sequence = true;
+        reading.sequence = static_cast<std::uint32_t>(number % 128);
+        incrementer.next(reading, increment);
+      }
+      EXPECT_EQ(incrementer.counts().missing, lost) << rate_hz << ' ' << out_s;
     }
   }
 }

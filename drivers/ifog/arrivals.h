@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the times of arrival say of the time that a device counts: how much has passed, and whether what it
+// claims can be.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace ifog {
+
+class Arrivals {
+ public:
+  void forget() noexcept { known_ns_ = 0; }
+  [[nodiscard]] bool known() const noexcept { return known_ns_ > 0; }
+  [[nodiscard]] std::int64_t latest_ns() const noexcept { return known_ns_; }
+  // From the sample before to one that arrives then; negative: not known. Where the arrival of the one before
+  // is not known, from the latest that is, less what has been counted since.
+  [[nodiscard]] double elapsed_s(std::int64_t arrival_ns) const noexcept {
+    if (arrival_ns <= 0 || !known()) return -1.0;
+    return std::max(0.0, static_cast<double>(arrival_ns - known_ns_) * 1e-9 - counted_s_);
+  }
+  // 0: not known when. step_s: counted since the sample before.
+  void came(std::int64_t arrival_ns, double step_s) noexcept {
+    if (arrival_ns > 0) known_ns_ = arrival_ns;
+    counted_s_ = arrival_ns > 0 ? 0.0 : counted_s_ + step_s;
+  }
+
+ private:
+  std::int64_t known_ns_ = 0;  // latest that is known; 0: none yet
+  double counted_s_ = 0.0;     // steps since then
+};
+
+// A step of counter or clock that exceeds the time by arrival by so much is a restart of the device.
+inline bool restarted(double claimed_s, double elapsed_s) noexcept {
+  return claimed_s > 1.5 * elapsed_s + 10.0;
+}
+
+// Of a sample that came: it has taken a period at least.
+inline std::uint64_t at_least_one(double samples) noexcept {
+  return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18))) : 1;
+}
+
+}  // namespace ifog
