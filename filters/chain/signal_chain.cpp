@@ -185,6 +185,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
       filter_.process_noise = within_reach(noise.process_noise, filter_.measurement_noise, period_s_);
   }
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+  estimator_->expect_walk(noise.walk_share);
   estimator_->owe(owed_);
 } catch (const std::exception&) {
   // Data that no noise can be learned from: the next seconds may be better. Until then it is unknown, and

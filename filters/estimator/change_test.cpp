@@ -198,23 +198,39 @@ double ChangeTest::coloured(const TrackerBank& trackers, std::size_t axis, doubl
   return at_zero > 0.0 ? 2.0 / at_zero : 1.0;
 }
 
-// Of white noise the sums over the longest of those horizons, which hold a walk that is other than was
-// believed and a motion the filter lags behind.
-double ChangeTest::lagging(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept {
-  std::size_t longest = 1;
-  while (longest + 1 < trackers.size() && horizon(trackers.memory(longest + 1)) <= kWideLags * lag) ++longest;
-  return longest > 1 ? believed(contests_[longest].sums[axis]) : 1.0;
+// Of the horizons that say what the filter lags behind with; 1: none does.
+std::size_t ChangeTest::longest(const TrackerBank& trackers, double lag) const noexcept {
+  std::size_t found = 1;
+  while (found + 1 < trackers.size() && horizon(trackers.memory(found + 1)) <= kWideLags * lag) ++found;
+  return found;
 }
 
-double ChangeTest::believed(const Sum& sum) noexcept {
-  return (kHorizonsBelieved + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
+// In white noise of variance 1 behind a gain K the innovations' sums, that forget with b, have of the noise
+// b / (K + b) and of a walk of psi K^2 a sample psi K / (K + b). By what they are wider than that of the walk
+// that is expected, it is more than that: nearly so where it is most of them, and less where the noise is,
+// which outliers and slow motions widen, too.
+double ChangeTest::walk(const TrackerBank& trackers, std::size_t axis, double lag,
+                        double expected) const noexcept {
+  const std::size_t j = longest(trackers, lag);
+  if (j <= 1) return expected;
+  const double gain = 1.0 / (1.0 + lag), b = 1.0 / horizon(trackers.memory(j));
+  const double before = (b + gain * expected) / (gain + b);
+  return expected * believed(contests_[j].sums[axis], before) / before;
 }
 
-double ChangeTest::widening(const TrackerBank& trackers, std::size_t axis, double lag,
-                            const NoiseScale& noise, double share) const noexcept {
-  // What a model knows of colour is in its variance, and of its gain the above does not hold.
-  if (!rate_alone_) return std::max(1.0, lagging(trackers, axis, lag));
-  return noise.white() ? lagging(trackers, axis, lag) : coloured(trackers, axis, lag, share);
+double ChangeTest::believed(const Sum& sum, double before) noexcept {
+  return (kHorizonsBelieved * before + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
+}
+
+Wider ChangeTest::wider(const TrackerBank& trackers, std::size_t axis, double lag, const NoiseScale& noise,
+                        const Wider& expected) const noexcept {
+  // What a model knows of colour is in its variance, and of its gain the rest does not hold.
+  if (!rate_alone_) {
+    const std::size_t j = longest(trackers, lag);
+    return {j > 1 ? std::max(1.0, believed(contests_[j].sums[axis])) : 1.0, expected.walk};
+  }
+  if (noise.white()) return {1.0, walk(trackers, axis, lag, expected.walk)};
+  return {coloured(trackers, axis, lag, expected.noise * expected.walk), expected.walk};
 }
 
 }  // namespace ifog

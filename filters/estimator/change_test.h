@@ -33,6 +33,12 @@ struct Surprise {
   double rest_factor = 1.0;  // innovation variance of the filter at rest over that
 };
 
+// Of the error of the filter at rest, of which half is taken for noise and half for what it lags behind: by
+// how much each is really more.
+struct Wider {
+  double noise = 1.0, walk = 1.0;
+};
+
 class ChangeTest {
  public:
   // e^-18 is 1.5e-8: on white noise not one false change in 3e6 samples.
@@ -53,11 +59,11 @@ class ChangeTest {
   [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[axis]; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
-  // By which the noise in the filter's rate is louder than white noise as loud as its innovations would leave
-  // there, and what it lags behind with it. share: of the innovations' variance that the filter takes for
-  // noise and walk.
-  [[nodiscard]] double widening(const TrackerBank& trackers, std::size_t axis, double lag,
-                                const NoiseScale& noise, double share) const noexcept;
+  // Over white noise as loud as an axis' innovations, and the walk that their variance and the gain go with.
+  // expected: of the innovations' variance the part that the filter takes for noise and walk; of the walk
+  // what is believed of it before the innovations say more.
+  [[nodiscard]] Wider wider(const TrackerBank& trackers, std::size_t axis, double lag,
+                            const NoiseScale& noise, const Wider& expected) const noexcept;
   // Sum of the innovations an axis has had over the tracker's horizon, by the time each stands for, rad: what
   // was owed before is not this change's.
   [[nodiscard]] double fallen_short(std::size_t tracker, std::size_t axis) const noexcept {
@@ -94,8 +100,10 @@ class ChangeTest {
   double widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
   [[nodiscard]] double unseen(const Sum& sum, double wide) const noexcept;
-  [[nodiscard]] static double believed(const Sum& sum) noexcept;
-  [[nodiscard]] double lagging(const TrackerBank& trackers, std::size_t axis, double lag) const noexcept;
+  [[nodiscard]] static double believed(const Sum& sum, double before = 1.0) noexcept;
+  [[nodiscard]] std::size_t longest(const TrackerBank& trackers, double lag) const noexcept;
+  [[nodiscard]] double walk(const TrackerBank& trackers, std::size_t axis, double lag,
+                            double expected) const noexcept;
   [[nodiscard]] double coloured(const TrackerBank& trackers, std::size_t axis, double lag,
                                 double share) const noexcept;
 

@@ -148,7 +148,7 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   const bool doubtful = learn || (rest_->rate_alone() && since_moved_ > kSettledLags * lag_samples());
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a) || !(rest_->covariance() > 0.0)) continue;
-    const double normalised = m.innovation[a] / std::sqrt(rest_->covariance());
+    const double normalised = m.innovation[a] / std::sqrt(innovation_variance(a));
     if (doubtful) doubt(a, normalised);
     if (learn) grade(a, normalised);
   }
@@ -219,6 +219,8 @@ void Engine::learn_noise(const Measurement& m) noexcept {
   if (knowledge_ != Knowledge::heard) steady_->begin(rest / axes, kRestMemory);
   knowledge_ = Knowledge::heard;
   steady_->limit(greatest / axes);
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(m.valid, a) && rest > 0.0) loudness_[a] = noise_[a].rest() * axes / rest;
 }
 
 void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
@@ -279,19 +281,21 @@ bool Engine::rests(const Measurement& m) const noexcept {
 }
 
 // At rest the variance is the filter's own where the noise is white. Half of it is noise; where neighbours
-// have something in common that is more by as much as their mean over a long time varies more. Where a change
-// of rate may have begun, it is what the filter may be off by.
+// have something in common that is more by as much as their mean over a long time varies more. Half is the
+// walk's, and an axis' own share of that. Where a change of rate may have begun, it is what the filter may be
+// off by.
 void Engine::publish_rest() noexcept {
   published_.gain = rest_->gain();
   // Of an innovation, as the filter believes it to be.
   const double believed = rest_variance_ + rest_->rule().measurement_noise();
   for (std::size_t a = 0; a < axes_; ++a) {
     published_.rate[a] = rest_->rate(a);
-    published_.variance[a] = rest_->variance();
+    published_.variance[a] = rest_variance(a);
     if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
-    const double wider = change_.widening(trackers_, a, lag_samples(), noise_[a],
-                                          believed / std::max(noise_[a].rest(), believed));
-    published_.variance[a] *= 0.5 * (1.0 + wider * std::max(1.0, noise_[a].rest() / believed));
+    const double louder = std::max(1.0, noise_[a].rest() / (loudness_[a] * believed));
+    const Wider wider =
+        change_.wider(trackers_, a, lag_samples(), noise_[a], {1.0 / louder, walk_share_[a] / loudness_[a]});
+    published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
     published_.variance[a] += noise_[a].rounding();
     published_.variance[a] += change_.unseen(a);
   }
@@ -303,7 +307,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     double variance = published_.variance[a];
     if (conserve_angle_) {
       const double dt_s = m.covered_s(a);
-      const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_->variance(), dt_s);
+      const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);
       rate += paid.rate();
       variance += paid.rate() * paid.rate();
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
@@ -329,8 +333,8 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     out.denoised_radps[a] = rate;
     out.variance_rad2ps2[a] = variance;
     out.gain[a] = published_.gain;
-    out.innovation_variance[a] = rest_->covariance();
-    health_.measurement_noise[a] = rest_->rule().measurement_noise();
+    out.innovation_variance[a] = innovation_variance(a);
+    health_.measurement_noise[a] = loudness_[a] * rest_->rule().measurement_noise();
     health_.colour[a] = noise_[a].colour();
   }
   health_.floor_hits = rest_->rule().floor_hits();

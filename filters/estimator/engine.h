@@ -35,6 +35,7 @@ class Engine {
   void restart() noexcept;
   void retune(double process_noise) noexcept { rest_->retune(process_noise); }
   void recall_colour(const Axes& colour) noexcept;
+  void expect_walk(const Axes& share) noexcept { walk_share_ = share; }
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
@@ -96,6 +97,14 @@ class Engine {
   [[nodiscard]] bool hardly_tested(std::size_t axis) const noexcept;
   void refresh_lag() noexcept;
   [[nodiscard]] double lag_samples() const noexcept;
+  // The filter's own figures are for the mean of all axes. Those of one, whose gain is the same, are as much
+  // larger as its noise is louder.
+  [[nodiscard]] double rest_variance(std::size_t axis) const noexcept {
+    return loudness_[axis] * rest_->variance();
+  }
+  [[nodiscard]] double innovation_variance(std::size_t axis) const noexcept {
+    return loudness_[axis] * rest_->covariance();
+  }
 
   bool follow_manoeuvres_, conserve_angle_, guard_;
   std::size_t axes_;
@@ -122,16 +131,18 @@ class Engine {
   std::uint32_t started_ = 0;  // axes that have a state
   Knowledge knowledge_ = Knowledge::nothing;
   Motion motion_ = Motion::at_rest;
-  bool lost_ = false;           // was found so, and has not been well since: guard()
-  Axes tested_for_{};           // measurements since the noise was known
-  Axes untested_{};             // angle fallen short of while the noise was not known, or the test blunt
-  Axes kept_out_{};             // angle of the measurements kept out in a row
-  Axes waiting_rate_{};         // that measurement
-  Axes surprised_{};            // running mean of the least normalised square in the manoeuvre
-  double rest_variance_ = 0.0;  // of the predicted rate at rest, averaged
-  double at_rest_for_ = 0.0;    // measurements since the end of the last manoeuvre
-  double since_moved_ = 0.0;    // measurements since the filter at rest was last moved
-  double heard_scale_ = 1.0;    // Measurement::noise_scale of the last one
+  bool lost_ = false;               // was found so, and has not been well since: guard()
+  Axes tested_for_{};               // measurements since the noise was known
+  Axes untested_{};                 // angle fallen short of while the noise was not known, or the test blunt
+  Axes kept_out_{};                 // angle of the measurements kept out in a row
+  Axes waiting_rate_{};             // that measurement
+  Axes surprised_{};                // running mean of the least normalised square in the manoeuvre
+  double rest_variance_ = 0.0;      // of the predicted rate at rest, averaged
+  double at_rest_for_ = 0.0;        // measurements since the end of the last manoeuvre
+  double since_moved_ = 0.0;        // measurements since the filter at rest was last moved
+  Axes loudness_{1.0, 1.0, 1.0};    // variance of an axis' noise over the mean of all
+  Axes walk_share_{1.0, 1.0, 1.0};  // its driving noise over the settings'
+  double heard_scale_ = 1.0;        // Measurement::noise_scale of the last one
   double lag_s_ = 0.0;
   double longest_lag_ = 0.0;  // samples
   static constexpr std::uint64_t kNoTurn = ~std::uint64_t{0};

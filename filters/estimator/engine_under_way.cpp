@@ -54,7 +54,7 @@ void Engine::jump(EstimatorOutput& out) noexcept {
   published_.gain = 1.0 / count;
   for (std::size_t a = 0; a < axes_; ++a) {
     published_.rate[a] = rest_->rate(a);
-    published_.variance[a] = rest_->variance();
+    published_.variance[a] = rest_variance(a);
   }
 }
 
@@ -176,8 +176,8 @@ void Engine::judge_manoeuvre() noexcept {
 void Engine::publish_mix(const Surprise& now) noexcept {
   published_.gain = mix_.gain(trackers_, rest_->gain());
   for (std::size_t a = 0; a < axes_; ++a) {
-    const double rest = rest_->rate(a), variance = rest_->variance();
-    const double scale = now.scale[a] > 0.0 ? now.scale[a] : rest_->rule().measurement_noise();
+    const double rest = rest_->rate(a), variance = rest_variance(a);
+    const double scale = now.scale[a] > 0.0 ? now.scale[a] : health_.measurement_noise[a];
     published_.rate[a] = mix_.rate(trackers_, a, rest);
     published_.variance[a] = mix_.variance(trackers_, a, rest, variance, scale);
   }

@@ -67,6 +67,10 @@ std::vector<Octave> octaves(std::span<const double> rate) {
   return all;
 }
 
+[[nodiscard]] bool constant(const std::vector<Octave>& octaves) {
+  return std::none_of(octaves.begin(), octaves.end(), [](const Octave& o) { return o.variance > 0.0; });
+}
+
 // Adds an axis to what the ones before it gave: octaves that one of them lacks are dropped.
 void add(std::vector<Octave>& all, const std::vector<Octave>& axis, int before) {
   if (before == 0) {
@@ -80,36 +84,13 @@ void add(std::vector<Octave>& all, const std::vector<Octave>& axis, int before) 
   }
 }
 
-}  // namespace
+struct Fit {
+  double ratio = 0.0;  // of a walk's driving noise a sample over the white noise: the quickest that fits
+  OctaveFit octaves;
+};
 
-NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s) {
-  const std::size_t length = rates.size() / static_cast<std::size_t>(axes);
-  std::vector<Octave> all;
-  std::size_t most = 0;
-  double greatest = 0.0;
-  int taken = 0;
-  for (int axis = 0; axis < axes; ++axis) {
-    const auto rate = rates.subspan(static_cast<std::size_t>(axis) * length, length);
-    const auto present = static_cast<std::size_t>(
-        std::count_if(rate.begin(), rate.end(), [](double r) { return std::isfinite(r); }));
-    most = std::max(most, present);
-    if (present < kLeast) continue;
-    for (const double r : rate)
-      if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
-    add(all, octaves(rate), taken++);
-  }
-  if (taken == 0) {
-    throw std::invalid_argument("start-up data: " + std::to_string(most) +
-                                " measurements, expected at least " + std::to_string(kLeast));
-  }
-  const auto n = static_cast<double>(most);
-  const double last_digit = std::max(greatest * std::numeric_limits<float>::epsilon(), 1e-12);
-  double spread = 0.0;
-  for (const Octave& o : all) spread += o.variance;
-  if (all.empty() || !(spread > 0.0)) {
-    const double noise = last_digit * last_digit;
-    return {noise / (n * n * dt_s), noise};
-  }
+// n: measurements, which could have shown a walk so slow.
+Fit fit(const std::vector<Octave>& all, double n) {
   const double lowest = std::log(1.0 / (n * n));
   const double highest = std::log(100.0);
   constexpr int kGrid = 400;
@@ -118,18 +99,55 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
     squares.push_back(o.variance * o.count);
     counts.push_back(o.count);
   }
-  double quickest = 0.0, least = std::numeric_limits<double>::infinity();
-  OctaveFit taken_fit;
+  Fit taken;
+  double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kGrid; ++i) {
     const double ratio = std::exp(lowest + (highest - lowest) * i / kGrid);
     const OctaveFit here = fit_octaves(squares, counts, ratio);
     least = std::min(least, here.misfit);
-    if (here.misfit > least + kNearlyAsWell) continue;
-    taken_fit = here;
-    quickest = ratio;
+    if (here.misfit <= least + kNearlyAsWell) taken = {ratio, here};
   }
-  const double noise = std::max(taken_fit.noise, last_digit * last_digit);
-  return {quickest * std::max(taken_fit.low_noise, last_digit * last_digit) / dt_s, noise};
+  return taken;
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s) {
+  const std::size_t length = rates.size() / static_cast<std::size_t>(axes);
+  std::vector<Octave> all;
+  Axes walk{};
+  std::size_t most = 0;
+  double greatest = 0.0;
+  int measured = 0, taken = 0;
+  for (int axis = 0; axis < axes; ++axis) {
+    const auto rate = rates.subspan(static_cast<std::size_t>(axis) * length, length);
+    const auto present = static_cast<std::size_t>(
+        std::count_if(rate.begin(), rate.end(), [](double r) { return std::isfinite(r); }));
+    most = std::max(most, present);
+    if (present < kLeast) continue;
+    ++measured;
+    for (const double r : rate)
+      if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
+    const std::vector<Octave> own = octaves(rate);
+    if (constant(own)) continue;
+    const Fit of_axis = fit(own, static_cast<double>(present));
+    walk[static_cast<std::size_t>(axis)] = of_axis.ratio * of_axis.octaves.low_noise / dt_s;
+    add(all, own, taken++);
+  }
+  if (measured == 0) {
+    throw std::invalid_argument("start-up data: " + std::to_string(most) +
+                                " measurements, expected at least " + std::to_string(kLeast));
+  }
+  const auto n = static_cast<double>(most);
+  const double last_digit = std::max(greatest * std::numeric_limits<float>::epsilon(), 1e-12);
+  const double least_noise = last_digit * last_digit;
+  if (taken == 0 || constant(all)) return {least_noise / (n * n * dt_s), least_noise};
+  const Fit together = fit(all, n);
+  NoiseEstimate out{together.ratio * std::max(together.octaves.low_noise, least_noise) / dt_s,
+                    std::max(together.octaves.noise, least_noise)};
+  for (std::size_t a = 0; taken > 1 && a < kMaxAxes; ++a)
+    if (walk[a] > 0.0) out.walk_share[a] = walk[a] / out.process_noise;
+  return out;
 }
 
 }  // namespace ifog

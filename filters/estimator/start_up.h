@@ -4,16 +4,19 @@
 
 #include <span>
 
+#include "filters/settings/axes.h"
+
 namespace ifog {
 
 struct NoiseEstimate {
   double process_noise = 0.0;      // of a random walk, (rad/s)^2/s
   double measurement_noise = 0.0;  // per sample, (rad/s)^2
+  Axes walk_share{1.0, 1.0, 1.0};  // of an axis: its own driving noise over process_noise
 };
 
 // From a record of one or more axes, one after the other in `rates` (axes x n values, rad/s, at dt_s, NaN
 // where missing). Axes share one gain, so their variances are averaged; one with fewer than 32 measurements
-// is left out.
+// is left out, and one that repeats one value where another does not.
 //
 // Second differences of block means over octaves of block length do not see a constant or a ramp; of each
 // octave the median is taken, so motion in a part of the record counts little (in a fifth of it, q comes out

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Axes that are not alike and share one gain: what is said of each is its own, whichever it is.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "filters/estimator/start_up.h"
+#include "tests/unit/estimator/drive.h"
+
+namespace ifog {
+namespace {
+
+using test::kPeriod;
+
+constexpr std::size_t kAxes = 3;
+constexpr Axes kLoud{1.0, 3.0, 10.0};  // standard deviations
+constexpr int kStartUp = 5000, kSettled = 20'000, kEnd = 80'000;
+
+struct Said {
+  Axes squares{};  // mean of error^2 over the published variance
+  Axes errors{};   // mean square
+  EstimatorHealth health;
+};
+
+// walk: of each axis over the white noise of the first, a sample.
+Said filter(std::uint64_t seed, const Axes& walk) {
+  std::array<test::Record, kAxes> axes;
+  std::vector<double> start;
+  for (std::size_t a = 0; a < kAxes; ++a) {
+    axes[a] = test::record(100 * seed + a, kEnd, walk[a] / (kLoud[a] * kLoud[a]));
+    for (double& rate : axes[a].measured) rate *= kLoud[a];
+    for (double& rate : axes[a].truth) rate *= kLoud[a];
+    start.insert(start.end(), axes[a].measured.begin(), axes[a].measured.begin() + kStartUp);
+  }
+  const NoiseEstimate noise = estimate_noise(start, kAxes, kPeriod);
+  FilterSettings settings;
+  settings.process_noise = noise.process_noise;
+  settings.measurement_noise = noise.measurement_noise;
+  Estimator estimator(settings, kAxes, kPeriod);
+  estimator.expect_walk(noise.walk_share);
+  EstimatorInput in;
+  EstimatorOutput out;
+  in.dt_s = kPeriod;
+  in.valid_axes = 7;
+  Said said;
+  for (std::size_t i = kStartUp; i < kEnd; ++i) {
+    in.sequence = i;
+    for (std::size_t a = 0; a < kAxes; ++a) in.rate_radps[a] = axes[a].measured[i];
+    estimator.step(in, out);
+    for (std::size_t a = 0; i >= kSettled && a < kAxes; ++a) {
+      const double square = std::pow(out.denoised_radps[a] - axes[a].truth[i], 2) / (kEnd - kSettled);
+      said.errors[a] += square;
+      said.squares[a] += square / out.variance_rad2ps2[a];
+    }
+  }
+  said.health = estimator.health();
+  return said;
+}
+
+// The filters of the three axes differ in nothing but their scale, or the walks are the same, and the loud
+// axis' gain is far too small for the quiet one.
+TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
+  for (const Axes& walk : {Axes{1e-4, 9e-4, 1e-2}, Axes{1e-4, 1e-4, 1e-4}, Axes{1e-2, 1e-3, 1e-4}}) {
+    constexpr int kSeeds = 6;
+    Axes squares{};
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const Said said = filter(seed, walk);
+      for (std::size_t a = 0; a < kAxes; ++a) {
+        squares[a] += said.squares[a] / kSeeds;
+        // What the gain is too small for is in the innovations, and no noise.
+        EXPECT_GT(said.health.nis_mean[a], 0.7) << "axis " << a << ", seed " << seed;
+        EXPECT_LT(said.health.nis_mean[a], 1.6) << "axis " << a << ", seed " << seed;
+        EXPECT_NEAR(said.health.measurement_noise[a] / (kLoud[a] * kLoud[a]), 1.0, 0.3) << "axis " << a;
+      }
+    }
+    for (std::size_t a = 0; a < kAxes; ++a) {
+      EXPECT_GT(squares[a], 0.5) << "axis " << a << ", walks " << walk[0] << ' ' << walk[2];
+      EXPECT_LT(squares[a], 1.6) << "axis " << a << ", walks " << walk[0] << ' ' << walk[2];
+    }
+  }
+}
+
+TEST(UnlikeAxes, OneThatRepeatsOneValueHasNoPartInTheNoiseOfTheOthers) {
+  std::vector<double> both = test::record(1, kStartUp, 1e-3).measured;
+  for (const double rate : test::record(2, kStartUp, 1e-3).measured) both.push_back(2.0 * rate);
+  const NoiseEstimate of_two = estimate_noise(both, 2, kPeriod);
+  std::vector<double> three(kStartUp, 0.25);
+  three.insert(three.end(), both.begin(), both.end());
+  const NoiseEstimate of_three = estimate_noise(three, 3, kPeriod);
+  EXPECT_EQ(of_three.measurement_noise, of_two.measurement_noise);
+  EXPECT_EQ(of_three.process_noise, of_two.process_noise);
+  EXPECT_EQ(of_three.walk_share[1], of_two.walk_share[0]);
+  EXPECT_EQ(of_three.walk_share[2], of_two.walk_share[1]);
+}
+
+}  // namespace
+}  // namespace ifog
