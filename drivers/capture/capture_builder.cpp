@@ -7,9 +7,12 @@
 #include <utility>
 
 #include "drivers/ifog/same_values.h"
+#include "drivers/ifog/turn.h"
 
 namespace ifog {
 namespace {
+
+constexpr double kGap = 1.5;  // periods from one sample to the next
 
 bool never_known(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
@@ -113,7 +116,10 @@ void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double
       } else if ((last_.valid_axes & 1U << i) != 0) {
         const double turned = sample.value[i] - last_.value[i];
         const double wrap = description_.angle_wrap_rad;
-        rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
+        const std::vector<double>& before = capture_.rate_radps[i];
+        const double rate_before = before.empty() || std::isnan(before.back()) ? 0.0 : before.back();
+        if (elapsed <= kGap * period || turn_is_known(rate_before, elapsed, wrap))
+          rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
       }
     }
     capture_.rate_radps[i].push_back(rate);

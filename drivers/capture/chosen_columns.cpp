@@ -10,6 +10,7 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/turn.h"
 
 namespace ifog {
 namespace {
@@ -21,7 +22,7 @@ std::string_view unit_of(const std::string& name) {
 
 // Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
 // is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
-// than half a turn.
+// than half a turn, or behind a gap by nobody knows what.
 void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
   const auto known = [](double value) { return !std::isnan(value); };
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -32,12 +33,18 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   }
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const bool wraps = most - least <= kTurn * (1.0 + 1e-9);
-  double before = kMissing, since_s = 0.0;
+  constexpr double kGap = 1.5;  // of the shortest step
+  double before = kMissing, since_s = 0.0, rate_before = 0.0,
+         shortest_s = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < angle_rad.size(); ++i) {
     const double angle = angle_rad[i];
     const double turned = wraps ? std::remainder(angle - before, kTurn) : angle - before;
-    angle_rad[i] = turned / (time_s[i] - since_s);
+    const double step_s = time_s[i] - since_s;
+    if (known(before)) shortest_s = std::min(shortest_s, step_s);
+    const bool told = !wraps || step_s <= kGap * shortest_s || turn_is_known(rate_before, step_s, kTurn);
+    angle_rad[i] = told ? turned / step_s : kMissing;
     if (!known(angle)) continue;
+    rate_before = known(angle_rad[i]) ? angle_rad[i] : 0.0;
     before = angle;
     since_s = time_s[i];
   }

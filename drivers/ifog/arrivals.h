@@ -31,6 +31,25 @@ class Arrivals {
   double counted_s_ = 0.0;     // steps since then
 };
 
+// Of what goes round, a counter or a clock: whole rounds in a time by arrival that it does not account for; 0
+// where no number of them fits it. slack_s: to what the times are known. Rounds that are hardly longer than
+// what times of arrival scatter by fit any time: of those only one that no delivery takes says that there
+// were some, and how many to a round.
+inline double whole_rounds(double spare_s, double round_s, double slack_s, double scatter_s) noexcept {
+  constexpr double kTells = 0.25;  // of a round: so well times are to be known that tell rounds
+  constexpr double kNoDelivery_s = 1.0;
+  const double rounds = std::floor(spare_s / round_s + 0.5), tells_s = kTells * round_s;
+  if (!(rounds >= 1.0 && rounds <= 1e12)) return 0.0;
+  if (slack_s >= tells_s && spare_s >= kNoDelivery_s) return rounds;
+  if (scatter_s > tells_s) return 0.0;
+  return std::abs(spare_s - rounds * round_s) <= std::min(slack_s, tells_s) ? rounds : 0.0;
+}
+
+// A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
+// turn.
+inline constexpr double kPrompt_s = 0.05;
+inline constexpr double kAdapter_s = 0.02;
+
 // A step of counter or clock that exceeds the time by arrival by so much is a restart of the device.
 inline bool restarted(double claimed_s, double elapsed_s) noexcept {
   return claimed_s > 1.5 * elapsed_s + 10.0;

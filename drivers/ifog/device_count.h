@@ -4,9 +4,10 @@
 //
 // The counter goes round. How often it did, the device's clock says; else the times of arrival, where whole
 // rounds fit the time to what those times and the rate are worth: behind a gap that shows, and behind a
-// silence of more than kLongSilence_s. What else comes late and continues the count is only late; so exactly
-// one round that is lost within that time cannot be told from a late delivery and is taken for one, and the
-// other way round a delay beyond it that is a whole number of rounds for a loss.
+// silence of more than kLongSilence_s. What else comes late and continues the count is only late, until it
+// has not drained for kStands_s: then whole rounds that fit were lost, and are told with the frame that shows
+// it. The other way round a delay that is a whole number of rounds and stays, or lasts beyond kLongSilence_s,
+// is taken for a loss.
 #pragma once
 
 #include <algorithm>
@@ -60,6 +61,7 @@ class DeviceCount {
   void take(const Frame& frame, const Step& step) noexcept {
     const double elapsed = arrivals_.elapsed_s(frame.arrival_ns);
     arrivals_.came(frame.arrival_ns, step.dt_s);
+    if (elapsed >= 0.0) scatter(std::abs(elapsed - static_cast<double>(step.samples) * nominal_s_));
     if (step.restarted) {
       begin(frame);
       return;
@@ -79,10 +81,6 @@ class DeviceCount {
   }
 
  private:
-  // A sample that is read as it comes is read within this: an adapter collects for 16 ms, a thread waits its
-  // turn.
-  static constexpr double kPrompt_s = 0.05;
-  static constexpr double kAdapter_s = 0.02;
   static constexpr std::uint64_t kMostBack = 64;  // bits of `had_`
   static constexpr double kLate_s = 1.0;
   static constexpr double kLongSilence_s = 2.0;
@@ -92,8 +90,7 @@ class DeviceCount {
   // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
   static constexpr double kRateDoubt = 0.05;
   static constexpr double kLeastDoubt = 2e-5;
-  static constexpr double kTells = 0.25;  // of a round: so well times are to be known that tell rounds
-  static constexpr double kEnough = 64;   // periods, and the rate is measured
+  static constexpr double kEnough = 64;  // periods, and the rate is measured
   static constexpr double kForgets = 0.9998;
   // Clock and counter of one device agree within this.
   static constexpr double kClockSamples = 2.0;
@@ -102,6 +99,13 @@ class DeviceCount {
   struct Timed : Frame {
     double elapsed_s;  // since the frame before, by arrival; negative: not known
   };
+
+  // What arrival times scatter by: all but one in thirty of them by less. One that is far off makes it hardly
+  // more.
+  void scatter(double apart_s) noexcept {
+    constexpr double kRare = 1.0 / 30.0, kUp = 1.0 + 0.3 * (1.0 - kRare), kDown = 1.0 - 0.3 * kRare;
+    scatter_s_ = std::clamp(scatter_s_ * (apart_s > scatter_s_ ? kUp : kDown), 1e-4, kLate_s);
+  }
 
   void begin(const Frame& frame) noexcept {
     had_ = 1;
@@ -191,17 +195,10 @@ class DeviceCount {
     late_s_ = step.late_s;
   }
 
-  // Whole rounds of the counter in a time; 0 where no number of them fits it. Rounds that are hardly longer
-  // than what times of arrival scatter by fit any time: of those only one that no delivery takes, a second
-  // and more, says that samples are lost, and how many to a round.
+  // Whole rounds of the counter in a time that it does not account for.
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
-    const double round_s = static_cast<double>(modulus_) * period_s();
-    const double rounds = std::floor(spare_s / round_s + 0.5);
-    if (rounds < 1.0 || rounds > 1e12) return 0.0;
-    const double slack_s = kPrompt_s + rate_doubt() * elapsed_s, tells_s = kTells * round_s;
-    if (slack_s >= tells_s && spare_s >= kLate_s) return rounds;
-    if (std::max(kAdapter_s, jitter_s_) > tells_s) return 0.0;
-    return std::abs(spare_s - rounds * round_s) <= std::min(slack_s, tells_s) ? rounds : 0.0;
+    return whole_rounds(spare_s, static_cast<double>(modulus_) * period_s(),
+                        kPrompt_s + rate_doubt() * elapsed_s, std::max(kAdapter_s, scatter_s_));
   }
 
   void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
@@ -220,9 +217,15 @@ class DeviceCount {
       if (rounds > 0.0) step.late_s = 0.0;
     }
     if (stands(frame, step.late_s)) {
-      step.clock_moved = step.late_s > kLate_s;
+      // What does not drain was no delivery. That a line takes longer from now on by just a round is the less
+      // likely.
+      const double rounds = rounds_in(step.late_s, elapsed_s);
+      step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
+      step.clock_moved = rounds < 1.0 && step.late_s > kLate_s;
       step.late_s = 0.0;
-    } else if (late_s_ > 0.0 ? over(frame, step.late_s) : step.late_s < std::max(kLate_s, 3.0 * period)) {
+    } else if (late_s_ > 0.0 ? over(frame, step.late_s)
+                             : step.late_s < std::max(kLate_s, 3.0 * period) &&
+                                   rounds_in(step.late_s, elapsed_s) < 1.0) {
       step.late_s = 0.0;
     }
     if (step.samples == 0) {
@@ -251,7 +254,7 @@ class DeviceCount {
   double late_s_ = 0.0;     // the last frame, undecided
   double took_s_ = 0.0,
          counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
-  double jitter_s_ = 0.0;
+  double jitter_s_ = 0.0, scatter_s_ = 1e-3;
 };
 
 }  // namespace ifog

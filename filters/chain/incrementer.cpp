@@ -237,6 +237,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   if (started_ && now.gap) {
     out.flags |= kGapBefore;
     for (PlausibleRate& rate : rate_) rate.forget();
+    for (PlausibleAngle& angle : angle_) angle.miss();
     for (PlausibleValue& channel : frame_channel_) channel.forget();
     ++counts_.gaps;
     counts_.missing += now.samples - 1;
@@ -263,12 +264,15 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   // What is held up on its way says nothing of the clock.
   out.utime_ns =
       clock_.advance(now.samples, now.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
+  // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
+  // fro by as much as arrival times scatter.
+  if (started_ && (out.flags & kClockStep) == 0) out.utime_ns = std::max(out.utime_ns, last_.utime_ns + 1000);
   arrivals_.came(reading.arrival_ns, now.dt_s);
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.arrival_ns, reading.wall_shift_ns, reading.device_time_ns, reading.sequence,
-           reading.value};
+  last_ = {reading.arrival_ns, reading.wall_shift_ns, reading.device_time_ns,
+           out.utime_ns,       reading.sequence,      reading.value};
   started_ = true;
   reopened_ = false;
   return true;

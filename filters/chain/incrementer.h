@@ -80,7 +80,7 @@ class Incrementer {
   bool reopened_ = false;
   // Of the reading before; its channels are kept below.
   struct Last {
-    std::int64_t arrival_ns = 0, wall_shift_ns = 0, device_time_ns = -1;
+    std::int64_t arrival_ns = 0, wall_shift_ns = 0, device_time_ns = -1, utime_ns = 0;
     std::uint32_t sequence = 0;
     Axes value{};
   };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "drivers/ifog/turn.h"
 #include "filters/chain/reading.h"
 
 namespace ifog {
@@ -90,11 +91,18 @@ class PlausibleAngle {
       settle(angle_rad);
       return Verdict::plausible;
     }
+    // Which way round it went in a gap nobody knows.
+    if (missed_ && !turn_is_known(rate_radps_, since_s_, wrap_rad)) {
+      settle(angle_rad);
+      rate_radps_ = 0.0;
+      return Verdict::plausible;
+    }
     Verdict verdict = judge(angle_rad - angle_rad_, since_s_, wrap_rad, rate, out);
     if (verdict != Verdict::plausible && suspected_ &&
         judge(angle_rad - suspect_rad_, suspect_since_s_, wrap_rad, rate, out) == Verdict::plausible)
       verdict = Verdict::plausible;
     if (verdict == Verdict::plausible) {
+      rate_radps_ = out.angle_rad / out.covered_s;
       settle(angle_rad);
       return verdict;
     }
@@ -106,6 +114,8 @@ class PlausibleAngle {
   }
   // The device started anew: its angle counts from another origin.
   void forget() noexcept { known_ = suspected_ = false; }
+  // Samples are missing before the next one.
+  void miss() noexcept { missed_ = true; }
 
  private:
   static Verdict judge(double turned, double time_s, double wrap_rad, PlausibleRate& rate,
@@ -118,12 +128,13 @@ class PlausibleAngle {
     angle_rad_ = angle_rad;
     since_s_ = 0.0;
     known_ = true;
-    suspected_ = false;
+    suspected_ = missed_ = false;
   }
 
   double angle_rad_ = 0.0, since_s_ = 0.0;
+  double rate_radps_ = 0.0;  // over the last two that are good
   double suspect_rad_ = 0.0, suspect_since_s_ = 0.0;
-  bool known_ = false, suspected_ = false;
+  bool known_ = false, suspected_ = false, missed_ = false;
 };
 
 }  // namespace ifog

@@ -96,6 +96,7 @@ void Decoder::reset() noexcept {
   last_counted_ = false;
   sample_.environment_fresh = 0;
   time_started_ = false;
+  arrivals_.forget();
 }
 
 void Decoder::decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept {
@@ -145,6 +146,7 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
       return;
     }
   }
+  arrival_ns_ = frame.arrival_ns;
   for (const Entry& entry : wanted.entries)
     if (selected(*entry.message, *entry.signal, data) && (entry.role != Role::kCounter || brings != 0))
       set(entry, raw_bits(*entry.signal, data));
@@ -203,9 +205,23 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
   }
 }
 
+// How often the clock went round beside the once that its step shows: behind a silence, or where that step
+// shows a gap, as many times as the times of arrival tell. What is only late is not behind a gap.
+double Decoder::wraps_behind(double step_s) const noexcept {
+  constexpr double kSilence_s = 2.0, kGap = 1.5, kClocksApart = 1e-3;
+  const double elapsed_s = arrivals_.elapsed_s(arrival_ns_);
+  const bool gap = picks_.rate_hz > 0.0 && step_s > kGap / picks_.rate_hz;
+  if (elapsed_s <= kSilence_s && !gap) return 0.0;
+  return whole_rounds(elapsed_s - step_s, time_wrap_s_, kPrompt_s + kClocksApart * elapsed_s, kAdapter_s);
+}
+
 std::int64_t Decoder::unwrapped_ns(double seconds) noexcept {
   double step = time_started_ ? seconds - last_time_s_ : seconds;
-  if (time_started_ && step < 0.0 && time_wrap_s_ > 0.0) step += time_wrap_s_;
+  if (time_started_ && time_wrap_s_ > 0.0) {
+    if (step < 0.0) step += time_wrap_s_;
+    step += time_wrap_s_ * wraps_behind(step);
+  }
+  arrivals_.came(arrival_ns_, time_started_ ? step : 0.0);
   last_time_s_ = seconds;
   // A float that holds anything may hold what no int64 of nanoseconds can.
   constexpr double kLongest = 1e9;

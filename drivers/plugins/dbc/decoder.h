@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "drivers/ifog/arrivals.h"
 #include "drivers/plugins/dbc/picks.h"
 
 namespace ifog::dbc {
@@ -60,6 +61,7 @@ class Decoder {
   void begin_sample() noexcept;
   void give_up() noexcept;
   void complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept;
+  [[nodiscard]] double wraps_behind(double step_s) const noexcept;
   std::int64_t unwrapped_ns(double seconds) noexcept;
 
   const Picks& picks_;
@@ -79,6 +81,8 @@ class Decoder {
   double time_wrap_s_ = 0.0;  // the device's clock starts again at this; 0: it is a float and does not
   double last_time_s_ = 0.0;
   std::int64_t time_ns_ = 0;
+  std::int64_t arrival_ns_ = 0;  // of the frame at hand
+  Arrivals arrivals_;
   bool time_started_ = false;
   ifog_driver_counters counters_{};
 };

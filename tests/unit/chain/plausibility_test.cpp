@@ -187,5 +187,34 @@ TEST(Plausibility, ACorrectionThatIsNoRateIsRefused) {
   EXPECT_NEAR(out.angle_rad[0], (1.0 - 1e-6) * kPeriod_s, 1e-15);
 }
 
+// A device that turns at 2300 °/s for longer than half a turn, unheard; and one that rests through a gap.
+TEST(PlausibleAngle, OverAGapInWhichItMayHaveGoneRoundNoTurnIsMadeUp) {
+  const double round = 2.0 * std::numbers::pi;
+  for (const double rate_radps : {40.0, -40.0, 0.0}) {
+    for (const double gap_s : {0.02, 0.2, 10.0}) {
+      PlausibleRate rate({}, 0.0);
+      PlausibleAngle angle;
+      Turn turn;
+      double now_s = 0.0, sum = 0.0;
+      const auto step = [&](double step_s) {
+        now_s += step_s;
+        angle.pass(step_s);
+        EXPECT_EQ(angle.take(std::remainder(rate_radps * now_s, round), round, rate, turn),
+                  Verdict::plausible);
+        sum += turn.angle_rad;
+      };
+      for (int i = 0; i <= 100; ++i) step(1e-3);
+      const double before = sum;
+      angle.miss();
+      step(gap_s);
+      const bool known = gap_s < (rate_radps == 0.0 ? 2.0 : 0.03);
+      EXPECT_EQ(turn.covered_s, known ? gap_s : 0.0) << rate_radps << ' ' << gap_s;
+      EXPECT_NEAR(sum - before, known ? rate_radps * gap_s : 0.0, 1e-9) << rate_radps << ' ' << gap_s;
+      step(1e-3);
+      EXPECT_NEAR(turn.angle_rad, rate_radps * 1e-3, 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ifog

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
@@ -249,6 +250,27 @@ TEST_F(DbcText, UnitsCountersAndClocks) {
   ASSERT_EQ(t.size(), 2U);
   EXPECT_EQ(t[1].device_time_ns - t[0].device_time_ns, 512'000);
   EXPECT_DOUBLE_EQ(t[1].value[0], 0.01 * std::numbers::pi / 180.0 / 3600.0);
+}
+
+// Eight bits of a millisecond each, at 125 Hz: the clock goes round within 32 samples.
+TEST_F(DbcText, HowOftenAClockWentRoundInAGapTheTimesOfArrivalSay) {
+  const std::string text =
+      "BO_ 2 B: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"deg/s\" X\n SG_ T : 16|8@1+ (1,0) [0|0] \"ms\" X\n";
+  ifog::DriverInstance b = driver(text, {{"signal", "B.R"}, {"time", "T"}, {"rate_hz", "125"}});
+  std::int64_t taken = 0, last_ns = 0;
+  const auto step_ns = [&](std::int64_t samples, std::int64_t late_ns = 0) {
+    taken += samples;
+    ifog_can_frame sent = frame(2, {1, 0, static_cast<std::uint8_t>(taken * 8), 0, 0, 0, 0, 0});
+    sent.arrival_ns = 1'000'000'000 + taken * 8'000'000 + late_ns;
+    const std::vector<ifog_sample> got = decode(b, {sent});
+    EXPECT_EQ(got.size(), 1U);
+    return got.front().device_time_ns - std::exchange(last_ns, got.front().device_time_ns);
+  };
+  step_ns(1);
+  for (const std::int64_t samples : {1, 21, 1, 41, 1, 1, 301, 1, 34, 2})
+    EXPECT_EQ(step_ns(samples), samples * 8'000'000);
+  // Late, and nothing is lost.
+  for (int held = 31; held >= 0; --held) EXPECT_EQ(step_ns(1, held * 8'000'000), 8'000'000);
 }
 
 TEST_F(DbcText, AnIntegerAngleWrapsAtItsRange) {

@@ -209,6 +209,40 @@ TEST_F(LcmLog, ADeviceWhoseClockBeginsAnewGoesOnByTheFittedTime) {
   EXPECT_EQ(read("").time_s, (std::vector<double>{0.0, 0.001, 0.011, 0.012}));
 }
 
+// What a daemon of before has written: labels that stood still or went back by microseconds.
+TEST_F(LcmLog, ALabelThatDoesNotGoOnIsNoEndOfTheRecording) {
+  for (int n = 0; n < 5; ++n) {
+    rate_t message = sample(n, 1);
+    message.seq = n;
+    if (n == 2) message.utime -= 1011;
+    add("IFOG_NOSE", message);
+  }
+  finish();
+  const std::vector<double> time_s = read("").time_s;
+  ASSERT_EQ(time_s.size(), 5U);
+  for (std::size_t n = 1; n < 5; ++n) EXPECT_NEAR(time_s[n] - time_s[n - 1], 1e-3, 1.1e-3) << n;
+  EXPECT_NEAR(time_s[4], 4e-3, 1.1e-3);
+}
+
+TEST_F(LcmLog, AWallClockThatWasSetMovesNoTime) {
+  for (const std::int64_t set_us : {-5'000'000, 5'000'000}) {
+    TearDown();
+    SetUp();
+    for (int n = 0; n < 10; ++n) {
+      rate_t message = sample(n, 1);
+      message.seq = n;
+      if (n >= 4) message.utime += set_us;
+      if (n == 4) message.flags = rate_t::FLAG_CLOCK_STEP;
+      add("IFOG_NOSE", message);
+    }
+    finish();
+    const std::vector<double> time_s = read("").time_s;
+    ASSERT_EQ(time_s.size(), 10U) << set_us;
+    for (std::size_t n = 0; n < 10; ++n)
+      EXPECT_NEAR(time_s[n], 1e-3 * static_cast<double>(n), 1e-9) << set_us;
+  }
+}
+
 TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
   for (int n = 0; n < 4; ++n) add("IFOG_NOSE", sample(n, 1));
   finish();
