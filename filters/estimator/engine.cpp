@@ -47,7 +47,9 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
                 in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0,
                 {},
                 0};
+  const double before = rest_->variance();
   rest_->predict(m.dt_s);
+  const double grown = std::max(0.0, rest_->variance() - before);
   begin_axes(in.rate_radps, m.valid);
   for (std::size_t a = 0; a < axes_; ++a) {
     if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->measurement(a);
@@ -64,7 +66,29 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   }
   if (guard_) guard(m, out);
   if (rests(m)) out.flags |= kAtRest;
+  know_unmeasured(m, grown);
   publish(m, out);
+}
+
+// The filter's gain and variance are of the axes that are measured.
+void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
+  Axes variance = published_.variance;
+  for (std::size_t a = 0; !in_manoeuvre() && a < axes_; ++a) variance[a] = rest_variance(a);
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const double walked = grown * walk_share_[a];
+    if (has(m.valid, a))
+      unmeasured_.measure(a, published_.gain, variance[a]);
+    else if (m.valid == 0 && !in_manoeuvre())  // the filter is not measured either
+      unmeasured_.miss_with_all(a, walked);
+    else if (has(started_, a))
+      unmeasured_.miss(a, walked, published_.rate, variance);
+  }
+}
+
+// All is begun with these measurements.
+void Engine::forget_unmeasured(std::uint32_t valid) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(valid, a)) unmeasured_.forget(a);
 }
 
 void Engine::restart() noexcept {
@@ -229,6 +253,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
   if (now.valid != 0 && outliers_.jump()) {
     hear(m);
     jump(out);
+    forget_unmeasured(m.valid);
     return;
   }
   hear(m);
@@ -304,7 +329,7 @@ void Engine::publish_rest() noexcept {
 void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     double rate = published_.rate[a];
-    double variance = published_.variance[a];
+    double variance = unmeasured_.variance(a, published_.variance[a]);
     if (conserve_angle_) {
       const double dt_s = m.covered_s(a);
       const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);

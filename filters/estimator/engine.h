@@ -17,6 +17,7 @@
 #include "filters/estimator/sensor_check.h"
 #include "filters/estimator/steady_gain.h"
 #include "filters/estimator/tracker_bank.h"
+#include "filters/estimator/unmeasured.h"
 
 namespace ifog {
 
@@ -79,6 +80,8 @@ class Engine {
   void follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void follow_manoeuvre(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool unforeseen(const Measurement& m, const Surprise& now, Axes& least) noexcept;
+  void know_unmeasured(const Measurement& m, double grown) noexcept;
+  void forget_unmeasured(std::uint32_t valid) noexcept;
   void hear(const Measurement& m) noexcept;
   void learn_noise(const Measurement& m) noexcept;
   void jump(EstimatorOutput& out) noexcept;
@@ -119,6 +122,7 @@ class Engine {
   OutlierRun outliers_;
   MotionMix mix_;
   AngleLedger ledger_;
+  Unmeasured unmeasured_;
   EstimatorHealth health_;
 
   struct Grade {

@@ -75,6 +75,7 @@ void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, Estimato
   for (std::size_t a = 0; a < axes_; ++a) scale = std::max(scale, noise_[a].now());
   move_rest(rate, trackers_.output_factor(tracker) * scale);
   motion_ = Motion::manoeuvre;
+  forget_unmeasured(m.valid);
   update_rest(m, false);
   outliers_.clear();
   surprised_ = {};
@@ -103,6 +104,7 @@ bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) 
 void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
   const std::array<Axes, 2> both{waiting_rate_, m.in.rate_radps};
   trackers_.begin(both);
+  forget_unmeasured(m.valid);
   double scale = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) {
     surprised_[a] = std::max(surprised_[a], least[a]);

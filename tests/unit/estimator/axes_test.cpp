@@ -83,6 +83,39 @@ TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
   }
 }
 
+// One of three that is not measured for a while, or repeats a value: as a walk it is known less by its
+// driving noise times the time, whatever the others are known by.
+TEST(UnlikeAxes, OneThatIsNotMeasuredIsKnownEverLess) {
+  constexpr double kWalk = 1e-4;
+  for (const bool stuck : {false, true}) {
+    for (const int axes : {1, 3}) {
+      Estimator estimator(test::told(kWalk), axes, kPeriod);
+      const auto last = static_cast<std::size_t>(axes - 1);
+      std::array<test::Record, kAxes> records;
+      for (std::size_t a = 0; a < kAxes; ++a) records[a] = test::record(a + 1, 30'000, kWalk);
+      EstimatorInput in;
+      EstimatorOutput out;
+      in.dt_s = kPeriod;
+      double early = 0.0;
+      for (std::size_t i = 0; i < 30'000; ++i) {
+        const bool lost = i >= 10'000 && i < 20'000;
+        in.sequence = i;
+        in.valid_axes = (1U << axes) - 1U - (lost && !stuck ? 1U << last : 0U);
+        for (std::size_t a = 0; a <= last; ++a) in.rate_radps[a] = records[a].measured[i];
+        if (lost && stuck) in.rate_radps[last] = records[last].measured[9'999];
+        estimator.step(in, out);
+        if (i == 12'000) early = out.variance_rad2ps2[last];
+        if (i == 10'500 && !stuck) {
+          EXPECT_NEAR(out.variance_rad2ps2[last], 0.01 + 500 * kWalk, 0.015) << axes;
+        }
+        if (i != 19'999) continue;
+        EXPECT_NEAR(out.variance_rad2ps2[last] - early, 7999 * kWalk, 0.1) << axes << stuck;
+      }
+      EXPECT_LT(out.variance_rad2ps2[last], 0.02) << axes << stuck;
+    }
+  }
+}
+
 TEST(UnlikeAxes, OneThatRepeatsOneValueHasNoPartInTheNoiseOfTheOthers) {
   std::vector<double> both = test::record(1, kStartUp, 1e-3).measured;
   for (const double rate : test::record(2, kStartUp, 1e-3).measured) both.push_back(2.0 * rate);
