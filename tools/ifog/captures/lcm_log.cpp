@@ -2,7 +2,6 @@
 #include "tools/ifog/captures/lcm_log.h"
 
 #include <ifog/decode.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -19,6 +19,7 @@
 
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/unnamed_file.h"
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
@@ -33,27 +34,16 @@ bool carries_rates(const std::string& channel) {
 }
 
 // LCM reads a log by its name and from any place in it. One that comes packed, through a pipe or as a flight
-// recording is kept in memory, under a name that only this process knows.
+// recording is kept in a file without one, under a name that only this process knows.
 class NamedLog {
  public:
   explicit NamedLog(InputFile& file) : name_(file.path()) {
     const bool recorded = recorded_messages(file);
     if (file.reopens() && !recorded) return;
-    fd_ = memfd_create("lcm log", MFD_CLOEXEC);
-    if (fd_ < 0) throw std::runtime_error(name_ + ": no memory to unpack it");
-    name_ = "/proc/self/fd/" + std::to_string(fd_);
-    try {
-      recorded ? unpack_messages(file) : unpack(file);
-    } catch (...) {
-      ::close(fd_);
-      throw;
-    }
+    unpacked_.emplace();
+    name_ = "/proc/self/fd/" + std::to_string(unpacked_->descriptor());
+    recorded ? unpack_messages(file) : unpack(file);
   }
-  ~NamedLog() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  NamedLog(const NamedLog&) = delete;
-  NamedLog& operator=(const NamedLog&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -62,8 +52,8 @@ class NamedLog {
     std::vector<char> block(1U << 20U);
     while (const std::size_t n = file.read(block.data(), block.size()))
       for (std::size_t done = 0; done < n;) {
-        const ssize_t wrote = ::write(fd_, block.data() + done, n - done);
-        if (wrote < 0 && errno != EINTR) throw std::runtime_error(file.path() + ": no memory to unpack it");
+        const ssize_t wrote = ::write(unpacked_->descriptor(), block.data() + done, n - done);
+        if (wrote < 0 && errno != EINTR) UnnamedFile::fail("cannot write");
         done += static_cast<std::size_t>(std::max<ssize_t>(wrote, 0));
       }
   }
@@ -78,12 +68,12 @@ class NamedLog {
       event.channel.assign(reinterpret_cast<const char*>(entry.payload.data()), entry.head.index);
       event.datalen = static_cast<int>(data.size());
       event.data = data.data();
-      if (log.writeEvent(&event) != 0) throw std::runtime_error(file.path() + ": no memory to unpack it");
+      if (log.writeEvent(&event) != 0) UnnamedFile::fail("cannot write");
     });
   }
 
   std::string name_;
-  int fd_ = -1;
+  std::optional<UnnamedFile> unpacked_;
 };
 
 std::string chosen_channel(const std::string& path, const NamedLog& source) {
@@ -151,6 +141,10 @@ std::size_t bytes_of(lcm::LogFile& log) {
   return static_cast<std::size_t>(std::max(0L, bytes));
 }
 
+std::span<const std::uint8_t> content_of(const lcm::LogEvent& event) {
+  return {static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen)};
+}
+
 using RateSink = std::function<void(const rate_t&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
@@ -168,9 +162,7 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     end = std::ftell(log.getFilePtr());
     progress.at(static_cast<std::size_t>(end));
     if (event->channel != wanted) {
-      if (others)
-        others(event->channel,
-               {static_cast<const std::uint8_t*>(event->data), static_cast<std::size_t>(event->datalen)});
+      if (others) others(event->channel, content_of(*event));
       continue;
     }
     const auto refuse = [&](const std::string& why) {
@@ -194,6 +186,68 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     warn("%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
 }
 
+LcmChannelRows channels_of(const ChosenLog& chosen) {
+  LcmChannelNames names(chosen.rates);
+  lcm::LogFile log(chosen.source.name(), "r");
+  Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(),
+                    bytes_of(log));
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    progress.at(static_cast<std::size_t>(std::ftell(log.getFilePtr())));
+    if (event->channel == chosen.rates)
+      names.end_row();
+    else
+      names.take(event->channel, content_of(*event));
+  }
+  return {chosen.rates, names.of_status()};
+}
+
+// Rates and channels on their way to a sink, some thousand rows at a time.
+class LcmRows {
+ public:
+  LcmRows(LcmChannelRows channels, RowSink& sink)
+      : channels_(std::move(channels)), names_(channels_.names()), sink_(sink), values_(names_.size()) {}
+
+  void take(const std::string& channel, std::span<const std::uint8_t> message) {
+    channels_.take(channel, message);
+  }
+  void add(const rate_t& message, double time_s) {
+    if (rows_.columns.empty()) begin(message.raw.size());
+    rows_.time_s.push_back(time_s);
+    channels_.end_row(values_);
+    auto column = rows_.columns.begin();
+    for (const double rate : message.raw) (column++)->push_back(rate);
+    for (const double value : values_) (column++)->push_back(value);
+    if (rows_.size() == kRows) hand_on();
+  }
+  void finish() {
+    if (rows_.size() > 0) hand_on();
+  }
+
+ private:
+  static constexpr std::size_t kRows = std::size_t{1} << 14U;
+  void begin(std::size_t axes) {
+    std::vector<std::string> names;
+    for (const std::string& axis : axis_names(axes))
+      names.push_back(axis.empty() ? "rate_radps" : "rate_" + axis + "_radps");
+    names.insert(names.end(), names_.begin(), names_.end());
+    rows_.columns.resize(names.size());
+    sink_.begin(names);
+  }
+  void hand_on() {
+    const std::size_t columns = rows_.columns.size();
+    sink_.take(rows_);
+    rows_.time_s.clear();
+    rows_.columns.resize(columns);
+    for (std::vector<double>& column : rows_.columns) column.clear();
+  }
+
+  LcmChannelRows channels_;
+  std::vector<std::string> names_;
+  RowSink& sink_;
+  std::vector<double> values_;
+  RowBlock rows_;
+};
+
 }  // namespace
 
 bool recorded_messages(const InputFile& file) {
@@ -202,28 +256,13 @@ bool recorded_messages(const InputFile& file) {
          file.head().find("\ncarries=messages\n") != std::string_view::npos;
 }
 
-Capture read_lcm_log(InputFile& file, const std::string& channel) {
-  Capture capture;
-  const auto take_rate = [&capture](const rate_t& message, double time_s) {
-    if (capture.time_s.empty()) {
-      capture.axes = axis_names(message.raw.size());
-      capture.rate_radps.resize(capture.axes.size());
-      capture.reference_rate_radps.resize(capture.axes.size());
-    }
-    capture.time_s.push_back(time_s);
-    for (std::size_t i = 0; i < capture.axes.size(); ++i) capture.rate_radps[i].push_back(message.raw[i]);
-  };
+void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   const ChosenLog chosen(file, channel);
-  LcmChannels channels(chosen.rates);
+  LcmRows rows(channels_of(chosen), sink);
   for_each_rate(
-      chosen,
-      [&](const rate_t& message, double time_s) {
-        take_rate(message, time_s);
-        channels.end_row();
-      },
-      [&](const std::string& name, std::span<const std::uint8_t> message) { channels.take(name, message); });
-  capture.channels = channels.columns();
-  return capture;
+      chosen, [&](const rate_t& message, double time_s) { rows.add(message, time_s); },
+      [&](const std::string& name, std::span<const std::uint8_t> message) { rows.take(name, message); });
+  rows.finish();
 }
 
 Table read_published(InputFile& file, const std::string& channel) {
