@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -76,28 +77,27 @@ class NamedLog {
   std::optional<UnnamedFile> unpacked_;
 };
 
-std::string chosen_channel(const std::string& path, const NamedLog& source) {
+// "": there is none.
+std::string first_channel(const NamedLog& source) {
   lcm::LogFile log(source.name(), "r");
-  std::set<std::string> found;
   while (const lcm::LogEvent* event = log.readNextEvent())
-    if (carries_rates(event->channel)) found.insert(event->channel);
-  if (found.size() == 1) return *found.begin();
-  std::string list;
-  for (const std::string& each : found) list += (list.empty() ? "" : ", ") + printable(each);
-  throw std::runtime_error(path + (found.empty()
-                                       ? ": has no channel IFOG_<NAME>"
-                                       : ": has several channels, expected --channel with one of " + list));
+    if (carries_rates(event->channel)) return event->channel;
+  return "";
 }
 
-// A log, and the channel of it that carries the rates.
+// A log, and the channel of it that carries the rates: the one that was asked for, or else the first, which
+// has to be the only one (look_through).
 struct ChosenLog {
-  ChosenLog(InputFile& file, const std::string& channel) : path(file.path()), source(file) {
+  ChosenLog(InputFile& file, const std::string& channel)
+      : path(file.path()), source(file), asked_for(!channel.empty()) {
     if (!lcm::LogFile(source.name(), "r").good())
       throw std::runtime_error(path + ": cannot open as an LCM log");
-    rates = channel.empty() ? chosen_channel(path, source) : channel;
+    rates = asked_for ? channel : first_channel(source);
+    if (rates.empty()) throw std::runtime_error(path + ": has no channel IFOG_<NAME>");
   }
   std::string path;
   NamedLog source;
+  bool asked_for;
   std::string rates;
 };
 
@@ -186,19 +186,28 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     warn("%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
 }
 
-LcmChannelRows channels_of(const ChosenLog& chosen) {
+// The first look at a log: which columns its channels make. Throws std::runtime_error with one line where
+// nobody said which of several channels with rates it is.
+std::map<std::string, bool> look_through(const ChosenLog& chosen) {
   LcmChannelNames names(chosen.rates);
+  std::set<std::string> with_rates;
   lcm::LogFile log(chosen.source.name(), "r");
   Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(),
                     bytes_of(log));
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     progress.at(static_cast<std::size_t>(std::ftell(log.getFilePtr())));
-    if (event->channel == chosen.rates)
+    if (event->channel == chosen.rates) {
       names.end_row();
-    else
-      names.take(event->channel, content_of(*event));
+      continue;
+    }
+    if (!chosen.asked_for && carries_rates(event->channel)) with_rates.insert(event->channel);
+    names.take(event->channel, content_of(*event));
   }
-  return {chosen.rates, names.of_status()};
+  if (with_rates.empty()) return names.of_status();
+  with_rates.insert(chosen.rates);
+  std::string list;
+  for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
+  throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
 }
 
 // Rates and channels on their way to a sink, some thousand rows at a time.
@@ -258,7 +267,7 @@ bool recorded_messages(const InputFile& file) {
 
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   const ChosenLog chosen(file, channel);
-  LcmRows rows(channels_of(chosen), sink);
+  LcmRows rows({chosen.rates, look_through(chosen)}, sink);
   for_each_rate(
       chosen, [&](const rate_t& message, double time_s) { rows.add(message, time_s); },
       [&](const std::string& name, std::span<const std::uint8_t> message) { rows.take(name, message); });
@@ -284,7 +293,9 @@ Table read_published(InputFile& file, const std::string& channel) {
            {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
         (column++)->values.push_back(value);
   };
-  for_each_rate(ChosenLog(file, channel), take, {});
+  const ChosenLog chosen(file, channel);
+  if (!chosen.asked_for) look_through(chosen);
+  for_each_rate(chosen, take, {});
   return table;
 }
 
