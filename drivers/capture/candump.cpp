@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/capture/text_lines.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -253,31 +257,105 @@ bool next_line(std::string_view& rest, std::string_view& line, bool& ended) {
 }
 
 // Times of candump -t d, told from those of -t z by the whole log.
-bool are_differences(std::string_view text) {
-  std::string_view line;
-  bool ended = false, all_same = true;
-  std::int64_t before = 0;
-  std::size_t n = 0;
-  while (next_line(text, line, ended)) {
+class ShortTimes {
+ public:
+  // Whether they are differences, once a line tells.
+  std::optional<bool> look(std::string_view line) {
     CandumpEntry entry;
     const CandumpLine kind = parse_candump_line(line, entry);
-    if (kind == CandumpLine::blank || kind == CandumpLine::malformed) continue;
+    if (kind == CandumpLine::blank || kind == CandumpLine::malformed) return std::nullopt;
     if (entry.stamp != CandumpStamp::since) return false;
-    if (n > 0 && entry.frame.arrival_ns < before) return true;
-    if (n > 1 && entry.frame.arrival_ns != before) all_same = false;
-    before = entry.frame.arrival_ns;
-    ++n;
+    if (n_ > 0 && entry.frame.arrival_ns < before_) return true;
+    if (n_ > 1 && entry.frame.arrival_ns != before_) all_same_ = false;
+    before_ = entry.frame.arrival_ns;
+    ++n_;
+    return std::nullopt;
   }
-  return n > 2 && all_same && before > 0;
+  // Of a log in which none did.
+  [[nodiscard]] bool at_end() const { return n_ > 2 && all_same_ && before_ > 0; }
+
+ private:
+  bool all_same_ = true;
+  std::int64_t before_ = 0;
+  std::size_t n_ = 0;
+};
+
+bool are_differences(std::string_view text) {
+  ShortTimes times;
+  std::string_view line;
+  for (bool ended = false; next_line(text, line, ended);)
+    if (const auto told = times.look(line)) return *told;
+  return times.at_end();
 }
 
-// Without its end a line may have lost bytes and still read as a frame.
-bool shortened(const ifog_can_frame& last, const std::vector<ifog_can_frame>& frames) {
-  const auto same = std::find_if(frames.rbegin(), frames.rend(), [&](const ifog_can_frame& frame) {
-    return frame.id == last.id && frame.flags == last.flags;
-  });
-  return same != frames.rend() && last.length < same->length;
+bool are_differences(InputFile& file) {
+  ShortTimes times;
+  TextLines lines(file);
+  std::string_view line;
+  for (bool ended = false; lines.next(line, ended);)
+    if (const auto told = times.look(line)) return *told;
+  return times.at_end();
 }
+
+// What the first lines tell already.
+std::optional<bool> told_by(std::string_view head) {
+  ShortTimes times;
+  std::string_view line;
+  std::optional<bool> told;
+  for (bool ended = false; !told && next_line(head, line, ended);) told = times.look(line);
+  return told;
+}
+
+// A log's lines, one after the other.
+class Frames {
+ public:
+  Frames(std::string path, std::string_view interface, bool differences)
+      : path_(std::move(path)), interface_(interface) {
+    if (differences) clock_.assume_differences();
+  }
+
+  enum class Is { frame, nothing, end };
+  Is take(std::string_view line, bool ended) {
+    ++number_;
+    const CandumpLine kind = parse_candump_line(line, entry_);
+    if (kind == CandumpLine::malformed && (ended || !any_))
+      throw std::runtime_error(path_ + ":" + std::to_string(number_) + ": " + in_quotes(line) + ", " +
+                               kCandumpExpected);
+    if (kind == CandumpLine::malformed || (kind == CandumpLine::frame && !ended && shortened())) {
+      losses_.cut_off = true;
+      return Is::end;
+    }
+    if (kind == CandumpLine::blank) return Is::nothing;
+    any_ = true;
+    // Every line's time counts: a difference is to the frame before, whatever its interface.
+    entry_.frame.arrival_ns = clock_.time_ns(entry_);
+    if (!interface_.empty() && entry_.interface != interface_) return Is::nothing;
+    if (kind == CandumpLine::remote) ++losses_.remote;
+    if (kind == CandumpLine::error) ++losses_.error;
+    if (kind != CandumpLine::frame) return Is::nothing;
+    lengths_[{entry_.frame.id, entry_.frame.flags}] = entry_.frame.length;
+    return Is::frame;
+  }
+
+  [[nodiscard]] const CandumpEntry& entry() const { return entry_; }
+  [[nodiscard]] const CandumpLosses& losses() const { return losses_; }
+
+ private:
+  // Without its end a line may have lost bytes and still read as a frame.
+  [[nodiscard]] bool shortened() const {
+    const auto same = lengths_.find({entry_.frame.id, entry_.frame.flags});
+    return same != lengths_.end() && entry_.frame.length < same->second;
+  }
+
+  std::string path_;
+  std::string_view interface_;
+  CandumpClock clock_;
+  CandumpEntry entry_;
+  CandumpLosses losses_;
+  std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint8_t> lengths_;  // of the last frame of an id
+  std::size_t number_ = 0;
+  bool any_ = false;
+};
 
 }  // namespace
 
@@ -287,33 +365,40 @@ Candump read_candump(const std::string& path, std::string_view interface) {
 
 Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface) {
   Candump log;
-  CandumpClock clock;
-  if (are_differences(text)) clock.assume_differences();
-  std::string_view rest = text, line;
-  bool ended = false, any = false;
-  for (std::size_t number = 1; next_line(rest, line, ended); ++number) {
-    CandumpEntry entry;
-    const CandumpLine kind = parse_candump_line(line, entry);
-    if (kind == CandumpLine::malformed && (ended || !any))
-      throw std::runtime_error(path + ":" + std::to_string(number) + ": " + in_quotes(line) + ", " +
-                               kCandumpExpected);
-    if (kind == CandumpLine::malformed ||
-        (kind == CandumpLine::frame && !ended && shortened(entry.frame, log.frames))) {
-      log.cut_off = true;
-      break;
-    }
-    if (kind == CandumpLine::blank) continue;
-    any = true;
-    // Every line's time counts: a difference is to the frame before, whatever its interface.
-    entry.frame.arrival_ns = clock.time_ns(entry);
-    if (!interface.empty() && entry.interface != interface) continue;
-    if (kind == CandumpLine::remote) ++log.remote;
-    if (kind == CandumpLine::error) ++log.error;
-    if (kind != CandumpLine::frame) continue;
-    if (log.frames.empty()) log.interface = entry.interface;
-    log.frames.push_back(entry.frame);
+  Frames frames(path, interface, are_differences(text));
+  std::string_view line;
+  for (bool ended = false; next_line(text, line, ended);) {
+    const Frames::Is is = frames.take(line, ended);
+    if (is == Frames::Is::end) break;
+    if (is == Frames::Is::nothing) continue;
+    if (log.frames.empty()) log.interface = frames.entry().interface;
+    log.frames.push_back(frames.entry().frame);
   }
+  static_cast<CandumpLosses&>(log) = frames.losses();
   return log;
+}
+
+CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface,
+                                     const std::function<void(const ifog_can_frame&)>& sink) {
+  std::optional<bool> differences = told_by(file.head());
+  if (!differences && !file.reopens()) {
+    const Candump log = parse_candump(file.text(), file.path(), interface);
+    for (const ifog_can_frame& frame : log.frames) sink(frame);
+    return log;
+  }
+  if (!differences) {
+    InputFile first(file.path());
+    differences = are_differences(first);
+  }
+  Frames frames(file.path(), interface, *differences);
+  TextLines lines(file);
+  std::string_view line;
+  for (bool ended = false; lines.next(line, ended);) {
+    const Frames::Is is = frames.take(line, ended);
+    if (is == Frames::Is::end) break;
+    if (is == Frames::Is::frame) sink(frames.entry().frame);
+  }
+  return frames.losses();
 }
 
 }  // namespace ifog

@@ -13,10 +13,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "drivers/capture/input_file.h"
 #include "drivers/ifog/driver.h"
 
 namespace ifog {
@@ -63,11 +65,15 @@ class CandumpClock {
   std::int64_t now_ns_ = 0;
 };
 
-struct Candump {
+// What of a log was no frame of data.
+struct CandumpLosses {
+  std::size_t remote = 0, error = 0;  // frames passed over
+  bool cut_off = false;               // the last line has no end and is no whole frame: it was left out
+};
+
+struct Candump : CandumpLosses {
   std::vector<ifog_can_frame> frames;  // data frames, as in the log; arrival_ns 0 where lines have no time
   std::string interface;               // of the first of them
-  std::size_t remote = 0, error = 0;   // frames passed over
-  bool cut_off = false;                // the last line has no end and is no whole frame: it was left out
 };
 
 // Reads a whole log, plain or gzip, frames of one interface only unless `interface` is empty. Short times are
@@ -76,5 +82,10 @@ struct Candump {
 Candump read_candump(const std::string& path, std::string_view interface = {});
 // The same of a text already at hand; `path` stands for the file in messages.
 Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface = {});
+
+// The same of a log of any length, frame by frame, none of it kept; a log with short times is read twice, or
+// held in memory where it cannot be opened again. What is thrown may come behind frames that were handed on.
+CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface,
+                                     const std::function<void(const ifog_can_frame&)>& sink);
 
 }  // namespace ifog

@@ -125,10 +125,4 @@ bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& lay
   return true;
 }
 
-void refuse_long_line(const std::string& path, std::size_t line, std::string_view begins) {
-  fail_at(path, line,
-          "a line of more than " + std::to_string(kLongestLine) + " bytes, begins " +
-              in_quotes(begins.substr(0, kLongestQuote)));
-}
-
 }  // namespace ifog

@@ -48,9 +48,6 @@ struct CsvHeader {
   std::size_t line = 0, time_place = 0;  // its number; which cell is the time
 };
 
-// Throws std::runtime_error for a line that nobody has written. `begins`: its first bytes.
-[[noreturn]] void refuse_long_line(const std::string& path, std::size_t line, std::string_view begins);
-
 // The first line that is neither empty nor a comment; `lines` goes on behind it. False where there is none in
 // this text. Throws std::runtime_error with one line: no time, a name twice, a column that is not there.
 bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& layout, CsvHeader& header);

@@ -72,14 +72,18 @@ class LineLength {
  private:
   [[noreturn]] void refuse(const std::string& path, std::string_view text) const {
     const auto number = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(line_), '\n') + 1;
-    throw std::runtime_error(path + ":" + std::to_string(number) + ": a line of more than " +
-                             std::to_string(kLongestLine) + " bytes, begins " +
-                             in_quotes(text.substr(line_, kLongestQuote)));
+    refuse_long_line(path, static_cast<std::size_t>(number), text.substr(line_));
   }
   std::size_t line_ = 0;
 };
 
 }  // namespace
+
+void refuse_long_line(const std::string& path, std::size_t number, std::string_view line) {
+  throw std::runtime_error(path + ":" + std::to_string(number) + ": a line of more than " +
+                           std::to_string(kLongestLine) + " bytes, begins " +
+                           in_quotes(line.substr(0, kLongestQuote)));
+}
 
 void InputFile::Close::operator()(gzFile_s* file) const { gzclose(file); }
 
@@ -187,7 +191,14 @@ std::string InputFile::bytes() {
     n = unpack(all.data() + before, kBlock);
     all.resize(before + n);
   }
+  if (heard_) heard_(all);
   return all;
+}
+
+void InputFile::read_to_the_end() {
+  std::vector<char> block(1U << 18U);
+  while (read(block.data(), block.size()) > 0) {
+  }
 }
 
 std::string InputFile::text() {

@@ -18,6 +18,8 @@ namespace ifog {
 
 // No line of a text that people or instruments write comes near it.
 inline constexpr std::size_t kLongestLine = 1U << 20U;
+// The one refusal of a longer line. Throws std::runtime_error.
+[[noreturn]] void refuse_long_line(const std::string& path, std::size_t number, std::string_view line);
 
 class InputFile {
  public:
@@ -43,6 +45,8 @@ class InputFile {
   // So many of the bytes read were rows of numbers, whose reader keeps no text of them: of columns that stay
   // as they are a thousand times a packed file's size, and not held against it.
   void were_rows(std::size_t bytes) { rows_ += bytes; }
+  // Reads on to the end, for who hears: a library that reads by the name leaves all of it.
+  void read_to_the_end();
   // All of the rest. Of a text a line longer than kLongestLine is refused with its number.
   std::string bytes();
   std::string text();
@@ -56,7 +60,7 @@ class InputFile {
     if (told_) told_(done, total);
   }
 
-  // From here on `heard` hears all that read() gives, as it is given.
+  // From here on `heard` hears all that is read, as it is given.
   using Heard = std::function<void(std::string_view bytes)>;
   void hear(Heard heard) { heard_ = std::move(heard); }
 

@@ -70,11 +70,11 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     sink(sample);
   };
   if (driver.takes_can()) {
-    const Candump log = parse_candump(file.text(), file.path(), interface);
-    counts.remote_frames = log.remote;
-    counts.error_frames = log.error;
-    counts.cut_off = log.cut_off;
-    for (const ifog_can_frame& frame : log.frames) driver.decode_can(frame, take);
+    const CandumpLosses lost = for_each_candump_frame(
+        file, interface, [&](const ifog_can_frame& frame) { driver.decode_can(frame, take); });
+    counts.remote_frames = lost.remote;
+    counts.error_frames = lost.error;
+    counts.cut_off = lost.cut_off;
   } else {
     std::vector<char> bytes(kPiece);
     while (const std::size_t n = file.read(bytes.data(), bytes.size()))

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,9 @@ struct RowNotes {
   std::string comments;         // without the '#', each with a line's end behind it
   std::size_t header_line = 0;  // 0: not read from a text
   std::vector<Skipped> skipped;
-  std::vector<std::string> notices;  // of the reading: what may be meant otherwise
-  std::vector<std::string> faults;   // cells taken for missing, one line a column
+  std::vector<std::string> notices;        // of the reading: what may be meant otherwise
+  std::vector<std::string> faults;         // cells taken for missing, one line a column
+  std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
 
   // The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;

@@ -22,21 +22,21 @@ constexpr int kLongestLag = 2000;            // samples
 constexpr std::size_t kLeastAtRest = 40;     // what whiteness() asks for
 
 struct Series {
-  std::vector<std::vector<double>> denoised;
+  std::vector<Samples> denoised;
   // Missing in manoeuvres and where a measurement was kept out.
-  std::vector<std::vector<double>> innovation, nis;
+  std::vector<Samples> innovation, nis;
   std::size_t at_rest = 0;  // samples
 };
 
 struct Steps {
-  std::vector<double> dt_s;       // between samples; the first is the nominal period
-  std::vector<double> covered_s;  // the sample's own share of it: a gap's time is not its
+  Samples dt_s;       // between samples; the first is the nominal period
+  Samples covered_s;  // the sample's own share of it: a gap's time is not its
 };
 
 Steps step_times(const ComparisonInput& in) {
-  const std::vector<double> nominal(in.time_s.size(), in.period_s);
-  Steps steps{nominal, nominal};
-  for (std::size_t k = 1; k < nominal.size(); ++k) {
+  const std::size_t n = in.time_s.size();
+  Steps steps{Samples(n, in.period_s), Samples(n, in.period_s)};
+  for (std::size_t k = 1; k < n; ++k) {
     const double dt = in.time_s[k] - in.time_s[k - 1];
     steps.dt_s[k] = dt;
     steps.covered_s[k] = dt / std::max(1.0, std::round(dt / in.period_s));
@@ -62,8 +62,7 @@ Series run(const ComparisonInput& in, const Steps& steps, const FilterSettings& 
   const std::size_t axes = in.rate.size();
   const std::size_t n = in.time_s.size();
   Series out;
-  for (auto* series : {&out.denoised, &out.innovation, &out.nis})
-    series->assign(axes, std::vector<double>(n));
+  for (auto* series : {&out.denoised, &out.innovation, &out.nis}) series->assign(axes, Samples(n));
   Estimator estimator(settings, static_cast<int>(axes), in.period_s);
   EstimatorOutput step;
   for (std::size_t k = 0; k < n; ++k) {
@@ -140,7 +139,7 @@ void add_series_figures(ComparisonRow& row, const ComparisonInput& in, std::span
   }
 }
 
-void add_innovation_figures(ComparisonRow& row, std::span<const double> innovation, std::vector<double> nis) {
+void add_innovation_figures(ComparisonRow& row, std::span<const double> innovation, Samples nis) {
   std::erase_if(nis, [](double v) { return !std::isfinite(v); });
   if (nis.size() < kLeastAtRest) return;
   const Whiteness white = whiteness(innovation);
@@ -187,7 +186,7 @@ Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& opt
       row.step = {step_response(in, steps, settings, a, 20.0), step_response(in, steps, settings, a, 5.0)};
       result.rows.push_back(std::move(row));
     }
-    result.denoised.push_back(std::move(series.denoised));
+    if (options.keep_denoised) result.denoised.push_back(std::move(series.denoised));
     if (options.progress) options.progress(++done, options.rules.size());
   }
   return result;

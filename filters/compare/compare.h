@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All adaptation rules on one record, with the same settings: what each does at rest, in motion, to the
 // heading, and after a change of rate. The figures are of the causal Estimator the daemon runs, not of a
-// copy.
+// copy. What is kept of a sample is in files where the record is long.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "filters/estimator/estimator.h"
+#include "filters/series/samples.h"
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
@@ -58,15 +59,15 @@ struct ComparisonRow {
 struct ComparisonOptions {
   FilterSettings settings;  // the rule's name is replaced by each of `rules`
   std::vector<std::string> rules;
+  bool keep_denoised = false;
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-// Rows in the order of `rules`, "raw" first, by axis within a rule. Also returns the denoised series of each
-// rule.
+// Rows in the order of `rules`, "raw" first, by axis within a rule.
 struct Comparison {
   std::vector<ComparisonRow> rows;
-  // by rule (without raw), then axis
-  std::vector<std::vector<std::vector<double>>> denoised;
+  // by rule (without raw), then axis; empty unless they are to be kept
+  std::vector<std::vector<Samples>> denoised;
 };
 
 // Throws std::invalid_argument: a setting the estimator refuses, columns of unequal length.

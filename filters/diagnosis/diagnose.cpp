@@ -194,10 +194,12 @@ class Run {
   // peak that slow noise or an effect made is no line once both are in the fit. Lines that follow the
   // rotation are the closed loop's own: reported, with the channel to log, and not put into the model.
   void separate_lines() {
-    if (!data_.grid.dwells) lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines);
+    if (!data_.grid.dwells)
+      lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines, periodograms_);
     leave_out_periodic(data_, lines_);
     if (ramps_.empty())
-      moving_ = line_of_the_rotation(records_, errors_, data_.grid.sample_s, options_.significance);
+      moving_ =
+          line_of_the_rotation(records_, errors_, data_.grid.sample_s, options_.significance, periodograms_);
     if (moving_) leave_out_harmonics(*moving_, lines_);
     take_out(lines_.fast, data_.grid.sample_s, errors_);
     while (!lines_.slow.empty()) {
@@ -270,7 +272,7 @@ class Run {
   std::optional<std::size_t> what_makes_it_worse() {
     if (holds(reconstructed_, found_, errors_, &EvenError::written) &&
         holds(reconstructed_, found_, errors_, &EvenError::held_out)) {
-      write_before_and_after(errors_, data_.grid.sample_s, result_);
+      write_before_and_after(errors_, data_.grid.sample_s, figures_, result_);
       if (!grows_over_many(result_, errors_)) return std::nullopt;
     }
     if (const auto harmful =
@@ -296,9 +298,9 @@ class Run {
   }
 
   void report_figures() {
-    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_);
+    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_, periodograms_);
     if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
-    write_before_and_after(errors_, data_.grid.sample_s, result_);
+    write_before_and_after(errors_, data_.grid.sample_s, figures_, result_);
     write_noise(records_, errors_, data_.grid, found_.noise, result_);
     add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, result_.series);
     result_.heading = predict_like_longest(result_, records_);
@@ -306,7 +308,8 @@ class Run {
 
   void report_rest() {
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
+    result_.unexplained =
+        describe_rest(errors_, found_.noise, data_.grid, options_.significance, periodograms_);
     report_changes_of_size();
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
@@ -343,6 +346,8 @@ class Run {
   BlockData data_;           // without the ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
+  KnownPeriodograms periodograms_;
+  KnownFigures figures_{64};
   std::optional<FoundZone> zone_;
   Lines lines_;
   std::optional<MovingLine> moving_;

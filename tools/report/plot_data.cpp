@@ -13,11 +13,11 @@ namespace ifog::report {
 
 static_assert(std::endian::native == std::endian::little, "a page's script reads them as they lie in memory");
 
-Thinned thinned(const std::vector<double>& x, const std::vector<double>& y) {
+Thinned thinned(std::span<const double> x, std::span<const double> y) {
   constexpr std::size_t kMost = 5000,
                         kStretches = 1500;  // twice as many as a screen has pixels, less than a page minds
   const std::size_t size = std::min(x.size(), y.size());
-  if (size <= kMost) return {x, y};
+  if (size <= kMost) return {{x.begin(), x.end()}, {y.begin(), y.end()}};
   Thinned out;
   for (std::size_t k = 0; k < kStretches; ++k) {
     const std::size_t from = size * k / kStretches, to = size * (k + 1) / kStretches;

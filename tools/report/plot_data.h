@@ -12,7 +12,7 @@ namespace ifog::report {
 struct Thinned {
   std::vector<double> x, y;
 };
-Thinned thinned(const std::vector<double>& x, const std::vector<double>& y);
+Thinned thinned(std::span<const double> x, std::span<const double> y);
 
 // As float32, little-endian, in base64: seven digits are more than a screen shows.
 std::string packed(std::span<const double> values);

@@ -35,16 +35,24 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
   return scale.asDiagonal() * c;
 }
 
-// Linear between the middles of a record's blocks; `at` counts from the first of them.
-double between(const Eigen::VectorXd& values, const BlockRange& record, double at) {
-  const auto first = static_cast<double>(record.first);
-  const auto last = static_cast<double>(record.end - 1);
-  const double place = std::clamp(first + at, first, last);
-  const auto low = static_cast<Eigen::Index>(std::floor(place));
-  const auto high = std::min(low + 1, static_cast<Eigen::Index>(last));
-  const double share = place - std::floor(place);
-  return values[low] + share * (values[high] - values[low]);
-}
+// Between the middles of a record's blocks, for what is linear there.
+struct Place {
+  Eigen::Index low, high;
+  double share;
+
+  // at: counted in blocks from the first of them.
+  Place(const BlockRange& record, double at) {
+    const auto first = static_cast<double>(record.first);
+    const auto last = static_cast<double>(record.end - 1);
+    const double place = std::clamp(first + at, first, last);
+    low = static_cast<Eigen::Index>(place);
+    high = std::min(low + 1, static_cast<Eigen::Index>(last));
+    share = place - static_cast<double>(low);
+  }
+  [[nodiscard]] double of(const Eigen::VectorXd& values) const {
+    return values[low] + share * (values[high] - values[low]);
+  }
+};
 
 // By block, each from the coefficients of the others' folds; a step or a line helps to fit them and is then
 // left where it is, as online. Each fold's fit has a constant of its own: without it a channel far from zero
@@ -103,11 +111,13 @@ void subtract_effects(const BlockData& data, const std::vector<Candidate>& effec
     EvenError& error = errors[r];
     error.after = error.rest;
     error.held_out = error.rest_held_out;
+    if (p == 0) continue;
     for (std::size_t i = 0; i < error.after.size(); ++i) {
       const double at =
           static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
-      error.after[i] -= between(all, grid.records[r], at);
-      error.held_out[i] -= between(held_out, grid.records[r], at);
+      const Place place(grid.records[r], at);
+      error.after[i] -= place.of(all);
+      error.held_out[i] -= place.of(held_out);
     }
   }
 }

@@ -54,11 +54,10 @@ Usual usual_of(std::span<const double> values) {
   std::vector<double> some, moves, changes;
   const std::size_t stride = std::max<std::size_t>(1, values.size() / kLookedAt);
   for (std::size_t i = 0; i < values.size(); i += stride) some.push_back(values[i]);
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double move = std::abs(values[i] - values[i - 1]);
-    if (i % stride == 0) moves.push_back(move);
-    if (move > 0.0 && changes.size() < 4 * kLookedAt) changes.push_back(move);
-  }
+  for (std::size_t i = stride; i < values.size(); i += stride)
+    moves.push_back(std::abs(values[i] - values[i - 1]));
+  for (std::size_t i = 1; i < values.size() && changes.size() < 4 * kLookedAt; ++i)
+    if (const double move = std::abs(values[i] - values[i - 1]); move > 0.0) changes.push_back(move);
   if (some.size() < 100 || changes.empty()) return usual;
   leave_out_placeholders(some);
   usual.low = quantile(some, 0.01);

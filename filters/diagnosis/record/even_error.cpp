@@ -15,11 +15,14 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
     error.start_s = records[r].time_s.front();
     Samples held_out = error_of(records[r]);
     error.before = on_even_grid(records[r], sample_s, held_out);
-    error.rest = on_even_grid(records[r], sample_s, error_of(without.records[r]));
-    for (const RampFit& ramp : without.ramps) {
-      for (std::size_t i = 0; i < held_out.size(); ++i) held_out[i] -= ramp.held_out[r][i];
+    if (without.ramps.empty()) {
+      error.rest = error.rest_held_out = error.before;
+    } else {
+      error.rest = on_even_grid(records[r], sample_s, error_of(without.records[r]));
+      for (const RampFit& ramp : without.ramps)
+        for (std::size_t i = 0; i < held_out.size(); ++i) held_out[i] -= ramp.held_out[r][i];
+      error.rest_held_out = on_even_grid(records[r], sample_s, held_out);
     }
-    error.rest_held_out = on_even_grid(records[r], sample_s, held_out);
     errors.push_back(std::move(error));
   }
   return errors;
@@ -33,9 +36,11 @@ const EvenError& longest_of(const std::vector<EvenError>& errors) {
 
 void refuse_constant(const std::vector<Record>& records) {
   for (const Record& record : records) {
-    const Samples error = error_of(record);
-    const double first = error.empty() ? 0.0 : error.front();
-    if (!std::all_of(error.begin(), error.end(), [&](double value) { return value == first; })) return;
+    const auto error = [&](std::size_t i) {
+      return record.rate_radps[i] - (record.reference_radps.empty() ? 0.0 : record.reference_radps[i]);
+    };
+    for (std::size_t i = 0; i < record.rate_radps.size(); ++i)
+      if (!(error(i) == error(0))) return;
   }
   throw std::invalid_argument(
       "the rate, less the reference if there is one, never changes; expected measurements");

@@ -7,17 +7,21 @@
 
 namespace ifog {
 
-void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, Diagnosis& diagnosis) {
+void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, KnownFigures& known,
+                            Diagnosis& diagnosis) {
+  const auto figures_of = [&](const Samples& error) {
+    return known.of(error, [&](std::span<const double> series) { return error_figures(series, sample_s); });
+  };
   std::vector<std::map<std::string, double>> before;
   std::vector<std::map<std::string, double>> written;
   std::vector<std::map<std::string, double>> held_out;
   std::vector<std::map<std::string, double>> logged;
   std::vector<double> weight;
   for (const EvenError& error : errors) {
-    before.push_back(error_figures(error.before, sample_s));
-    written.push_back(error_figures(error.written, sample_s));
-    held_out.push_back(error_figures(error.held_out, sample_s));
-    if (!error.logged.empty()) logged.push_back(error_figures(error.logged, sample_s));
+    before.push_back(figures_of(error.before));
+    written.push_back(figures_of(error.written));
+    held_out.push_back(figures_of(error.held_out));
+    if (!error.logged.empty()) logged.push_back(figures_of(error.logged));
     weight.push_back(static_cast<double>(error.before.size()));
   }
   diagnosis.before = pooled(before, weight);

@@ -8,7 +8,6 @@
 #include "filters/allan/confidence.h"
 #include "filters/allan/gapped_deviation.h"
 #include "filters/allan/stretches.h"
-#include "filters/diagnosis/residual/lines.h"
 
 namespace ifog {
 namespace {
@@ -33,7 +32,7 @@ double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::
 
 DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
-                          const std::vector<Eigen::VectorXd>& parts) {
+                          const std::vector<Eigen::VectorXd>& parts, KnownPeriodograms& known) {
   DiagnosisSeries series;
   const BlockGrid& grid = data.grid;
   const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
@@ -61,8 +60,8 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     offset = series.time_s.back();
   }
   const EvenError& first = errors.front();
-  const Spectrum before = averaged_spectrum(first.before, grid.sample_s);
-  const Spectrum after = averaged_spectrum(first.written, grid.sample_s);
+  const Spectrum before = averaged_spectrum(first.before, grid.sample_s, known);
+  const Spectrum after = averaged_spectrum(first.written, grid.sample_s, known);
   series.frequency_hz = before.frequency_hz;
   for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
   for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));
@@ -75,7 +74,9 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     counts.push_back(count);
   }
   series.before_adev_radps = gapped_deviation(first.before, counts);
-  series.after_adev_radps = gapped_deviation(first.written, counts);
+  series.after_adev_radps = mark_of(first.written) == mark_of(first.before)
+                                ? series.before_adev_radps
+                                : gapped_deviation(first.written, counts);
   return series;
 }
 

@@ -46,7 +46,9 @@ void run_written_model(const std::vector<Record>& records, const Diagnosis& diag
   Model model;
   add_to_model(diagnosis, "", model);
   for (std::size_t r = 0; r < records.size(); ++r)
-    errors[r].written = on_even_grid(records[r], sample_s, compensated_error(records[r], model));
+    errors[r].written = model.effects.empty()
+                            ? errors[r].before
+                            : on_even_grid(records[r], sample_s, compensated_error(records[r], model));
 }
 
 void run_as_logged(const std::vector<Record>& records, const std::vector<Record>& logged,

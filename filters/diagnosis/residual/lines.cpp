@@ -23,36 +23,47 @@ constexpr double kBand = 0.15;      // noise is taken from +-15 % of the frequen
 constexpr std::size_t kLeastBins = 25;
 
 // Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
-// frequencies.
-Samples noise_floor(std::span<const double> power) {
-  Samples floor(power.size(), 0.0);
-  std::vector<std::size_t> at;
-  std::vector<double> value;
-  std::size_t k = 1;
-  std::vector<double> window;
-  while (k < power.size()) {
-    const std::size_t half = std::max(kLeastBins, static_cast<std::size_t>(kBand * static_cast<double>(k)));
-    const std::size_t low = k > half ? k - half : 1;
-    const std::size_t high = std::min(power.size(), k + half + 1);
-    const std::size_t stride = std::max<std::size_t>(1, (high - low) / 2000);
-    window.clear();
-    for (std::size_t i = low; i < high; i += stride) window.push_back(power[i]);
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-    std::nth_element(window.begin(), middle, window.end());
-    at.push_back(k);
-    value.push_back(*middle / std::numbers::ln2);
-    k += std::max<std::size_t>(1, k / 50);
+// frequencies, and between them in proportion.
+class NoiseFloor {
+ public:
+  explicit NoiseFloor(std::span<const double> power) {
+    std::vector<double> window;
+    for (std::size_t k = 1; k < power.size(); k += std::max<std::size_t>(1, k / 50)) {
+      const std::size_t half = std::max(kLeastBins, static_cast<std::size_t>(kBand * static_cast<double>(k)));
+      const std::size_t low = k > half ? k - half : 1;
+      const std::size_t high = std::min(power.size(), k + half + 1);
+      const std::size_t stride = std::max<std::size_t>(1, (high - low) / 2000);
+      window.clear();
+      for (std::size_t i = low; i < high; i += stride) window.push_back(power[i]);
+      const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
+      std::nth_element(window.begin(), middle, window.end());
+      at_.push_back(k);
+      value_.push_back(*middle / std::numbers::ln2);
+    }
   }
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < power.size(); ++i) {
-    while (j + 1 < at.size() && at[j + 1] <= i) ++j;
-    const double next = j + 1 < at.size() ? value[j + 1] : value[j];
-    const double span = j + 1 < at.size() ? static_cast<double>(at[j + 1] - at[j]) : 1.0;
-    const double share = i > at[j] ? std::min(1.0, static_cast<double>(i - at[j]) / span) : 0.0;
-    floor[i] = std::max(value[j] + share * (next - value[j]), 1e-300);
+
+  [[nodiscard]] double operator[](std::size_t bin) const {
+    const auto above = std::upper_bound(at_.begin() + 1, at_.end(), bin);
+    return between(static_cast<std::size_t>(above - at_.begin()) - 1, bin);
   }
-  return floor;
-}
+  // The same for bins in order; j: where the one before was found, 0 at first.
+  [[nodiscard]] double following(std::size_t bin, std::size_t& j) const {
+    while (j + 1 < at_.size() && at_[j + 1] <= bin) ++j;
+    return between(j, bin);
+  }
+
+ private:
+  [[nodiscard]] double between(std::size_t j, std::size_t bin) const {
+    const bool inside = j + 1 < at_.size();
+    const double next = inside ? value_[j + 1] : value_[j];
+    const double span = inside ? static_cast<double>(at_[j + 1] - at_[j]) : 1.0;
+    const double share = bin > at_[j] ? std::min(1.0, static_cast<double>(bin - at_[j]) / span) : 0.0;
+    return std::max(value_[j] + share * (next - value_[j]), 1e-300);
+  }
+
+  std::vector<std::size_t> at_;
+  std::vector<double> value_;
+};
 
 // Noise power right beside a peak. On a resonance it is far above the noise of the wider band, and every
 // ripple of the resonance would pass for a line against that.
@@ -177,6 +188,10 @@ SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex
 // Bins in which a peak has no other beside it.
 std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
 
+const Periodogram& periodogram_of(std::span<const double> error, KnownPeriodograms& known) {
+  return known.of(error, [](std::span<const double> series) { return periodogram(series); });
+}
+
 // peaks: strongest first.
 std::vector<std::size_t> not_beside(const std::vector<std::size_t>& peaks) {
   std::vector<std::size_t> taken;
@@ -191,17 +206,24 @@ std::vector<std::size_t> not_beside(const std::vector<std::size_t>& peaks) {
 
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most) {
+  KnownPeriodograms none;
+  return find_lines(error, start_s, period_s, significance, none, most);
+}
+
+std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
+                                     double significance, KnownPeriodograms& known, std::size_t most) {
   std::vector<SpectralLine> lines;
   if (error.size() < 128) return lines;
-  const Periodogram spectrum = periodogram(error);
+  const Periodogram& spectrum = periodogram_of(error, known);
   const Samples& power = spectrum.power;
-  const Samples floor = noise_floor(power);
+  const NoiseFloor floor(power);
   const auto tries = static_cast<double>(power.size());
   const double least = std::log(tries / significance);
   std::vector<std::size_t> peaks;
+  std::size_t near = 0;
   for (std::size_t k = static_cast<std::size_t>(kFirstBin); k + 1 < power.size(); ++k) {
-    const double ratio = power[k] / floor[k];
-    if (ratio > 0.6 * least && power[k] >= power[k - 1] && power[k] >= power[k + 1]) peaks.push_back(k);
+    if (!(power[k] >= power[k - 1] && power[k] >= power[k + 1])) continue;
+    if (power[k] / floor.following(k, near) > 0.6 * least) peaks.push_back(k);
   }
   std::sort(peaks.begin(), peaks.end(),
             [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
@@ -232,9 +254,15 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
 }
 
 Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points) {
+  KnownPeriodograms none;
+  return averaged_spectrum(error, period_s, none, points);
+}
+
+Spectrum averaged_spectrum(std::span<const double> error, double period_s, KnownPeriodograms& known,
+                           std::size_t points) {
   Spectrum spectrum;
   if (error.size() < 64) return spectrum;
-  const auto& [power, length] = periodogram(error);
+  const auto& [power, length] = periodogram_of(error, known);
   const double scale = 2.0 * period_s / static_cast<double>(length);
   const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
   for (std::size_t k = 1; k < power.size();) {

@@ -8,6 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "filters/diagnosis/record/known_series.h"
+#include "filters/diagnosis/residual/periodogram.h"
+
 namespace ifog {
 
 struct SpectralLine {
@@ -29,12 +32,22 @@ struct Spectrum {
   std::vector<double> density;  // one-sided, unit^2/Hz
 };
 
+// Periodograms of the errors that were looked at last.
+class KnownPeriodograms : public KnownOfSeries<Periodogram> {
+ public:
+  KnownPeriodograms() : KnownOfSeries(3) {}
+};
+
 // Missing samples (NaN) count as the mean. Peaks above what noise makes once in 1 / significance records,
 // strongest first. error: at even steps of period_s, starting at start_s.
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most = 12);
+std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
+                                     double significance, KnownPeriodograms& known, std::size_t most = 12);
 
 // Averaged in logarithmic bands for drawing, at most `points`.
 Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points = 600);
+Spectrum averaged_spectrum(std::span<const double> error, double period_s, KnownPeriodograms& known,
+                           std::size_t points = 600);
 
 }  // namespace ifog

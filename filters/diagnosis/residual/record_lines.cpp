@@ -86,11 +86,12 @@ void leave_out_periodic(const BlockData& data, Lines& lines) {
   }
 }
 
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance) {
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
+                     KnownPeriodograms& known) {
   Lines found;
   for (std::size_t r = 0; r < errors.size(); ++r) {
     for (const SpectralLine& line :
-         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance)) {
+         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance, known)) {
       if (line.coherence < kCoherent) continue;
       if (is_slow(line.frequency_hz, grid)) {
         if (found.slow.size() >= kMostSlowLines) continue;
@@ -109,10 +110,10 @@ Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid
 
 std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
                                                const std::vector<EvenError>& errors, double sample_s,
-                                               double significance) {
+                                               double significance, KnownPeriodograms& known) {
   for (std::size_t r = 0; r < errors.size(); ++r) {
     const std::vector<SpectralLine> peaks =
-        find_lines(errors[r].after, errors[r].start_s, sample_s, significance);
+        find_lines(errors[r].after, errors[r].start_s, sample_s, significance, known);
     if (peaks.empty()) continue;
     const Samples even = on_even_grid(rates[r], sample_s, rates[r].rate_radps);
     if (auto moving = find_moving_line(errors[r].after, even, sample_s, peaks)) return moving;

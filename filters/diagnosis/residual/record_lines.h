@@ -28,12 +28,13 @@ struct Lines {
 void leave_out_periodic(const BlockData& data, Lines& lines);
 
 // Of what is left of each record's error.
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance);
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
+                     KnownPeriodograms& known);
 
 // The first record's line that follows the rotation: the closed loop's own. rates: as measured.
 std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
                                                const std::vector<EvenError>& errors, double sample_s,
-                                               double significance);
+                                               double significance, KnownPeriodograms& known);
 
 // Fixed lines cannot stand for one that moves, nor for its harmonics.
 void leave_out_harmonics(const MovingLine& moving, Lines& lines);

@@ -23,7 +23,10 @@ constexpr double kFar = 1.6;
 // Hann windows that overlap by half (Welch 1967). Not scaled.
 std::vector<double> averaged_power(std::span<const double> error, std::size_t piece) {
   std::vector<double> power(piece / 2 + 1, 0.0);
-  std::vector<double> values(piece);
+  std::vector<double> values(piece), window(piece);
+  for (std::size_t i = 0; i < piece; ++i)
+    window[i] =
+        0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(piece));
   std::vector<std::complex<double>> bins;
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
@@ -36,11 +39,8 @@ std::vector<double> averaged_power(std::span<const double> error, std::size_t pi
       n += 1.0;
     }
     mean = n > 0.0 ? mean / n : 0.0;
-    for (std::size_t i = 0; i < piece; ++i) {
-      const double window =
-          0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(piece));
-      values[i] = std::isfinite(error[from + i]) ? window * (error[from + i] - mean) : 0.0;
-    }
+    for (std::size_t i = 0; i < piece; ++i)
+      values[i] = std::isfinite(error[from + i]) ? window[i] * (error[from + i] - mean) : 0.0;
     fft.fwd(bins, values);
     for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(bins[k]);
   }

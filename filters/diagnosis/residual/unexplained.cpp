@@ -235,10 +235,10 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
 }
 
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance) {
+                          double significance, KnownPeriodograms& known) {
   const EvenError& longest = longest_of(errors);
   std::vector<SpectralLine> peaks;
-  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
+  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance, known);
   return describe_unexplained(longest.before, longest.after, longest.start_s, grid.sample_s, noise, grid,
                               peaks);
 }

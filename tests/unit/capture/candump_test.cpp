@@ -210,6 +210,61 @@ TEST_F(CandumpScreen, TimesOfEachKindGoOn) {
   EXPECT_EQ(untimed.frames[1].arrival_ns, 0);
 }
 
+// Frame by frame as all at once, of every kind of time, from a file and from what cannot be opened again.
+TEST_F(CandumpScreen, AFileOfAnyLengthGivesTheSameFramesOneByOne) {
+  const auto line = [](const char* form, std::size_t n, unsigned a, unsigned b) {
+    char text[96];
+    std::snprintf(text, sizeof text, form, a, b, n % 2 == 0 ? "can0" : "can1",
+                  static_cast<unsigned>(n & 0xFFU));
+    return std::string(text);
+  };
+  constexpr std::size_t kLines = 30000;  // several pieces of a file
+  std::string stamped, since, differences;
+  for (std::size_t n = 0; n < kLines; ++n) {
+    const auto a = static_cast<unsigned>(n / 1000), b = static_cast<unsigned>(n % 1000 * 1000);
+    stamped += line("(1436509%03u.%06u) %s 123#11%02X\n", n, a, b);
+    since += line(" (%03u.%06u)  %s  123   [2]  11 %02X\n", n, a, b);
+    // Each later than the last for the first 20000, so that only the whole log tells.
+    differences +=
+        line(" (%03u.%06u)  %s  123   [2]  11 %02X\n", n, 0, n < 20000 ? static_cast<unsigned>(n) : 7);
+  }
+  for (const std::string& text : {stamped, since, differences, std::string("  can0  123   [1]  11\n"),
+                                  std::string("(1.0) can0 123#1122\n(1.1) can0 123#11")}) {
+    for (const std::string interface : {"", "can1"}) {
+      const ifog::Candump whole = read(text, interface);
+      ifog::InputFile file(path_), at_hand("a.log", text);
+      for (ifog::InputFile* each : {&file, &at_hand}) {
+        std::vector<ifog_can_frame> frames;
+        const ifog::CandumpLosses lost = ifog::for_each_candump_frame(
+            *each, interface, [&](const ifog_can_frame& frame) { frames.push_back(frame); });
+        ASSERT_EQ(frames.size(), whole.frames.size());
+        EXPECT_EQ(lost.cut_off, whole.cut_off);
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+          ASSERT_EQ(frames[i].arrival_ns, whole.frames[i].arrival_ns) << i;
+          ASSERT_EQ(frames[i].data[1], whole.frames[i].data[1]) << i;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(CandumpScreen, OfAFaultyLineAndOneTooLongTheNumberIsSaid) {
+  const auto said = [&](const std::string& text) {
+    std::ofstream(path_) << text;
+    try {
+      ifog::InputFile file(path_);
+      ifog::for_each_candump_frame(file, {}, [](const ifog_can_frame&) {});
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what()).substr(path_.string().size());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(said("(1.0) can0 123#11\n(1.1) can0 1\n").substr(0, 22), ":2: '(1.1) can0 1', ex");
+  const std::string begins = ":2: a line of more than 1048576 bytes, begins 'xxxx";
+  for (const char* end : {"", "\n(1.2) can0 123#11\n"})
+    EXPECT_EQ(said("(1.0) can0 123#11\n" + std::string(1200000, 'x') + end).substr(0, begins.size()), begins);
+}
+
 // As candump writes them lines have an end; one without it may have lost bytes and still read as a frame.
 TEST_F(CandumpScreen, ALogThatIsCutOffKeepsItsFrames) {
   const std::string whole = "(1.0) can0 123#1122334455667788\n(1.1) can0 123#1122334455667788";

@@ -84,7 +84,8 @@ TEST(BeforeAndAfter, AreTheFiguresOfTheErrorAndTheLargerOfTheWrittenAndTheHeldOu
       errors[0].after.push_back(0.0);
     }
     Diagnosis diagnosis;
-    write_before_and_after(errors, 1.0, diagnosis);
+    KnownFigures known(4);
+    write_before_and_after(errors, 1.0, known, diagnosis);
     EXPECT_DOUBLE_EQ(diagnosis.before.at("residual_rms_radps"), 3.0);
     EXPECT_DOUBLE_EQ(diagnosis.after.at("residual_rms_radps"), std::max(1.0, written));
   }
@@ -214,7 +215,8 @@ TEST(Series, HasAPointABlockAndTheDeviationsOfTheError) {
   EvenError error;
   for (int i = 0; i < 400; ++i) error.before.push_back(i % 2 ? 1.0 : -1.0);
   error.written = std::vector<double>(400, 0.5);
-  const DiagnosisSeries series = series_of(data, {error}, {}, {}, {});
+  KnownPeriodograms known;
+  const DiagnosisSeries series = series_of(data, {error}, {}, {}, {}, known);
   ASSERT_EQ(series.time_s.size(), 400U);
   EXPECT_EQ(series.before_radps[7], 1.0);
   EXPECT_EQ(series.after_radps[7], 0.5);

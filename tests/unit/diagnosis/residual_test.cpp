@@ -184,7 +184,8 @@ TEST(Unexplained, OfTheLongestRecordAndALoopTakesThePlace) {
   grid.sample_s = kPeriod;
   NoiseFit noise;
   noise.white_variance = kPeriod;
-  Unexplained found = describe_rest(errors, noise, grid, 0.01);
+  KnownPeriodograms known;
+  Unexplained found = describe_rest(errors, noise, grid, 0.01, known);
   EXPECT_EQ(found.kind, "changing_variance");
   Hysteresis loop;
   loop.channel = "temperature_degC";

@@ -55,9 +55,16 @@ class LcmLog : public testing::Test {
     return out;
   }
   void finish() { writer_.reset(); }
+  static Capture read(InputFile& file, const std::string& channel) {
+    return capture_of(table_of([&](RowSink& sink) {
+                        read_lcm_log(file, channel, sink);
+                        return RowNotes{};
+                      }),
+                      file.path());
+  }
   Capture read(const std::string& channel) const {
     InputFile file(path_);
-    return read_lcm_log(file, channel);
+    return read(file, channel);
   }
   Table published(const std::string& channel) const {
     InputFile file(path_);
@@ -262,17 +269,52 @@ TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+// Rows that are handed on are gone.
+TEST_F(LcmLog, OfALongLogAFewThousandRowsAreHeldAtATime) {
+  constexpr int kRows = 40000;
+  channel_t hull{};
+  hull.name = "hull_degC";
+  for (int n = 0; n < kRows; ++n) {
+    hull.value = n;
+    if (n % 10000 == 5000) add("HULL", hull);
+    add("IFOG_NOSE", sample(n, 2));
+  }
+  finish();
+  struct Counting final : RowSink {
+    void begin(const std::vector<std::string>& all) override { names = all; }
+    void take(RowBlock& block) override {
+      most = std::max(most, block.size());
+      for (std::size_t i = 0; i < block.size(); ++i, ++rows) {
+        const auto n = static_cast<double>(rows);
+        wrong += std::abs(block.time_s[i] - 0.001 * n) > 1e-9 || block.columns[0][i] != 100.0 * n ||
+                 block.columns[1][i] != 100.0 * n + 1.0;
+        const double expected = rows % 10000 == 5000 ? n : std::nan("");
+        wrong +=
+            !(block.columns[2][i] == expected || (std::isnan(expected) && std::isnan(block.columns[2][i])));
+      }
+    }
+    std::vector<std::string> names;
+    std::size_t most = 0, rows = 0, wrong = 0;
+  } sink;
+  InputFile file(path_);
+  read_lcm_log(file, "", sink);
+  EXPECT_EQ(sink.names, (std::vector<std::string>{"rate_x_radps", "rate_y_radps", "hull_degC"}));
+  EXPECT_EQ(sink.rows, static_cast<std::size_t>(kRows));
+  EXPECT_EQ(sink.wrong, 0U);
+  EXPECT_LE(sink.most, 20000U);
+}
+
 // LCM's reader wants a name; a log that came packed or through a pipe has none that it could use.
 TEST_F(LcmLog, ReadsAPackedLogAndATextAtHand) {
   for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 1));
   finish();
   const std::string text = InputFile(path_).bytes();
   InputFile at_hand("-", text);
-  EXPECT_EQ(read_lcm_log(at_hand, "").time_s, read("").time_s);
+  EXPECT_EQ(read(at_hand, "").time_s, read("").time_s);
   const std::string packed = path_ + ".gz";
   write_text_file(packed, text);
   InputFile file(packed);
-  EXPECT_EQ(read_lcm_log(file, "").rate_radps, read("").rate_radps);
+  EXPECT_EQ(read(file, "").rate_radps, read("").rate_radps);
   fs::remove(packed);
 }
 

@@ -14,7 +14,6 @@
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/reading_progress.h"
-#include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 
@@ -132,18 +131,6 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
                            (why.empty() ? "" : " (" + why + ")"));
 }
 
-Capture CaptureInput::read(const std::string& path) const {
-  InputFile file(path);
-  return read(file);
-}
-
-Capture CaptureInput::read_flight(InputFile& file) const {
-  if (recorded_messages(file)) return read_lcm_log(file, channel);
-  FlightInput flight(file);
-  DriverInstance instance = flight.make_driver(driver_name(), settings());
-  return flight.capture(instance);
-}
-
 void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
                          const std::function<void()>& added) const {
   const std::string& path = file.path();
@@ -181,18 +168,6 @@ FileKind CaptureInput::readable(const InputFile& file) const {
   return found;
 }
 
-Capture CaptureInput::read(InputFile& file) const {
-  const FileKind found = readable(file);
-  const ReadingProgress progress(file);
-  if (found == FileKind::capture) return read_columns(file);
-  if (found == FileKind::lcm_log) return read_lcm_log(file, channel);
-  if (found == FileKind::flight) return read_flight(file);
-  DriverInstance instance = make_driver();
-  CaptureBuilder builder(instance.description());
-  build(file, instance, builder, [] {});
-  return builder.finish();
-}
-
 RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
   const bool hdf5 = is_hdf5(file);
   if (hdf5 && !separator.empty())
@@ -213,37 +188,18 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
   return table;
 }
 
-LongCapture CaptureInput::read_long_capture(const std::string& path, std::string* sha256,
-                                            const LongTableSink::Wanted& wanted) const {
-  InputFile file(path);
-  const bool passes = readable(file) == FileKind::capture && (sha256 == nullptr || !is_hdf5(file));
-  if (!passes) {
-    if (sha256 == nullptr) return LongCapture(read(file));
-    std::string text = file.bytes();
-    *sha256 = sha256_hex(text);
-    InputFile at_hand(path, std::move(text));
-    return LongCapture(read(at_hand));
-  }
-  LongTable table;
-  LongTableSink sink(table, wanted);
-  Sha256 hash;
-  if (sha256) file.hear([&hash](std::string_view bytes) { hash.add(bytes); });
-  static_cast<RowNotes&>(table) = column_rows(file, sink);
-  if (sha256) *sha256 = hash.hex();
-  return {std::move(table), path};
-}
-
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   const FileKind found = readable(file);
   const ReadingProgress progress(file);
   if (found == FileKind::capture) return column_rows(file, sink);
-  if (found == FileKind::lcm_log || (found == FileKind::flight && recorded_messages(file)))
-    return hand_on(read_lcm_log(file, channel), sink);
+  if (found == FileKind::lcm_log || (found == FileKind::flight && recorded_messages(file))) {
+    read_lcm_log(file, channel, sink);
+    return {};
+  }
   if (found == FileKind::flight) {
     FlightInput flight(file);
     DriverInstance instance = flight.make_driver(driver_name(), settings());
-    flight.rows(instance, sink);
-    return {};
+    return flight.rows(instance, sink);
   }
   DriverInstance instance = make_driver();
   CaptureBuilder builder(instance.description());
@@ -263,6 +219,19 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   // A driver says what its device may send, not what it sent.
   if (!whole) table.leave_out_unknown(file.path());
   return table;
+}
+
+LongCapture CaptureInput::read_long_capture(const std::string& path, std::string* sha256,
+                                            const LongTableSink::Wanted& wanted) const {
+  InputFile file(path);
+  Sha256 hash;
+  if (sha256) file.hear([&hash](std::string_view bytes) { hash.add(bytes); });
+  LongTable table = read_long(file, wanted);
+  if (sha256) {
+    file.read_to_the_end();
+    *sha256 = hash.hex();
+  }
+  return {std::move(table), path};
 }
 
 }  // namespace ifog::tools

@@ -76,20 +76,14 @@ struct CaptureInput {
   RecordingCounts for_each_sample(InputFile& file, DriverInstance& instance,
                                   const std::function<void(const ifog_sample&)>& sink) const;
 
-  // Any kind as columns. What the driver could not use is told on standard error, one line a counter that
-  // moved. Throws std::runtime_error with one line.
-  [[nodiscard]] Capture read(InputFile& file) const;
-  [[nodiscard]] Capture read(const std::string& path) const;
-  // The same of any length. `sha256`, where it is wanted: of the file as it was unpacked. CSV passes through
-  // and HDF5 where no hash is wanted; others are read as a whole first. wanted: of the columns; empty: all.
-  [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
-                                              const LongTableSink::Wanted& wanted = {}) const;
-
-  // Any kind in pieces, likewise; the one place that tells formats apart for it. CSV, HDF5, raw bytes and
-  // flight recordings pass through; candump and LCM logs are read as a whole first.
+  // Any kind in pieces; the one place that tells formats apart. What the driver could not use is told on
+  // standard error, one line a counter that moved. Throws std::runtime_error with one line.
   RowNotes read_rows(InputFile& file, RowSink& sink) const;
   // As a table of the columns wanted (all, where that is empty), whatever its length.
   [[nodiscard]] LongTable read_long(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
+  // As a capture. `sha256`, where it is wanted: of the file as it was unpacked.
+  [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
+                                              const LongTableSink::Wanted& wanted = {}) const;
   // Of a file of columns, also beside a driver that is there to write with.
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
@@ -99,7 +93,6 @@ struct CaptureInput {
   void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
              const std::function<void()>& added) const;
   static void tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults);
-  [[nodiscard]] Capture read_flight(InputFile& file) const;
 };
 
 }  // namespace ifog::tools

@@ -146,6 +146,13 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
     warn("%s: %s\n", file_.path().c_str(), line.c_str());
 }
 
+// Of the first file's header; who puts files of several power-ups behind one another is told by its times.
+std::optional<double> FlightInput::since_power_up_s(std::int64_t first_ns) const {
+  const auto powered_ns = header().powered_ns;
+  if (!powered_ns || first_ns < *powered_ns) return std::nullopt;
+  return static_cast<double>(first_ns - *powered_ns) * 1e-9;
+}
+
 Capture FlightInput::capture(DriverInstance& driver) {
   return with_name([&] {
     CaptureBuilder builder(driver.description(), header().channels);
@@ -154,20 +161,24 @@ Capture FlightInput::capture(DriverInstance& driver) {
       if (first_ns == 0) first_ns = sample.came_ns;
     });
     Capture out = builder.finish();
-    // Of the first file's header; who puts files of several power-ups behind one another is told by its
-    // times.
-    if (const auto powered_ns = header().powered_ns; powered_ns && first_ns >= *powered_ns)
-      out.since_power_up_s = static_cast<double>(first_ns - *powered_ns) * 1e-9;
+    out.since_power_up_s = since_power_up_s(first_ns);
     return out;
   });
 }
 
-void FlightInput::rows(DriverInstance& driver, RowSink& sink) {
-  with_name([&] {
+RowNotes FlightInput::rows(DriverInstance& driver, RowSink& sink) {
+  return with_name([&] {
     CaptureBuilder builder(driver.description(), header().channels);
     BuiltRows rows(builder, sink);
-    build(driver, builder, [&rows](const RecordedSample&) { rows.added(); });
+    std::int64_t first_ns = 0;
+    build(driver, builder, [&](const RecordedSample& sample) {
+      if (first_ns == 0) first_ns = sample.came_ns;
+      rows.added();
+    });
     rows.finish();
+    RowNotes notes;
+    notes.since_power_up_s = since_power_up_s(first_ns);
+    return notes;
   });
 }
 

@@ -47,7 +47,7 @@ class FlightInput {
   // As columns, channels from elsewhere, too.
   Capture capture(DriverInstance& driver);
   // The same in pieces, with every axis and channel that there may be.
-  void rows(DriverInstance& driver, RowSink& sink);
+  RowNotes rows(DriverInstance& driver, RowSink& sink);
   // What came as it came, for `ifog replay`: `bytes`, `can` and `message` entries.
   void for_each_entry(const std::function<void(const FlightEntry&)>& sink);
 
@@ -56,6 +56,7 @@ class FlightInput {
   auto with_name(Work&& work) const;
   void build(DriverInstance& driver, CaptureBuilder& builder,
              const std::function<void(const RecordedSample&)>& added);
+  [[nodiscard]] std::optional<double> since_power_up_s(std::int64_t first_ns) const;
   void tell_losses() const;
 
   InputFile& file_;

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "drivers/capture/column_names.h"
 
@@ -28,47 +29,67 @@ bool good_name(const std::string& name) {
 
 }  // namespace
 
-void LcmChannels::put(const std::string& name, double value, double measured_s, bool of_status) {
-  if (!good_name(name) || !std::isfinite(value)) return;
-  Channel& channel = channels_[name];
-  // The daemon's own view of a channel is scaled and held to its limits: it stands over a raw message.
-  if (of_status && !channel.of_status) channel = {};
-  if (channel.of_status && !of_status) return;
-  channel.of_status = of_status;
-  if (channel.known && value == channel.last && measured_s - channel.measured_s < kAnother_s) return;
-  channel.known = true;
-  channel.last = value;
-  channel.measured_s = measured_s;
-  channel.by_row[row_] = value;
-}
-
-void LcmChannels::take(const std::string& channel, std::span<const std::uint8_t> message) {
+void LcmChannelMessages::take(const std::string& channel, std::span<const std::uint8_t> message,
+                              const std::function<void(const Said&)>& sink) const {
+  const auto say = [&](const std::string& name, double value, double measured_s, bool of_status) {
+    if (good_name(name) && std::isfinite(value)) sink({name, value, measured_s, of_status});
+  };
   if (channel == status_) {
     status_t status;
     if (!decode_message(message.data(), message.size(), status)) return;
     for (std::size_t i = 0; i < status.channel_name.size(); ++i)
       if (std::isfinite(status.channel_age_s[i]))
-        put(status.channel_name[i], status.channel_value[i],
+        say(status.channel_name[i], status.channel_value[i],
             static_cast<double>(status.utime) * 1e-6 - status.channel_age_s[i], true);
     return;
   }
   channel_t one;
   if (!channel.starts_with("IFOG_") && decode_message(message.data(), message.size(), one))
-    put(one.name, one.value, std::numeric_limits<double>::infinity(), false);
+    say(one.name, one.value, std::numeric_limits<double>::infinity(), false);
 }
 
-void LcmChannels::end_row() { ++row_; }
+void LcmChannelNames::take(const std::string& channel, std::span<const std::uint8_t> message) {
+  messages_.take(channel, message, [&](const LcmChannelMessages::Said& said) {
+    const auto [at, first] = channels_.try_emplace(said.name, Channel{said.of_status, rows_});
+    if (!first && said.of_status && !at->second.of_status) at->second = {true, rows_};
+  });
+}
 
-std::vector<CaptureColumn> LcmChannels::columns() const {
-  std::vector<CaptureColumn> out;
-  for (const auto& [name, channel] : channels_) {
-    CaptureColumn column{name, std::vector<double>(row_, std::numeric_limits<double>::quiet_NaN())};
-    for (const auto& [row, value] : channel.by_row)
-      if (row < row_) column.values[row] = value;
-    if (!std::all_of(column.values.begin(), column.values.end(), [](double v) { return std::isnan(v); }))
-      out.push_back(std::move(column));
-  }
+std::map<std::string, bool> LcmChannelNames::of_status() const {
+  std::map<std::string, bool> out;
+  for (const auto& [name, channel] : channels_)
+    if (channel.first_row < rows_) out.emplace(name, channel.of_status);
   return out;
+}
+
+LcmChannelRows::LcmChannelRows(const std::string& rates, const std::map<std::string, bool>& of_status)
+    : messages_(rates) {
+  for (const auto& [name, by_status] : of_status) channels_[name].of_status = by_status;
+}
+
+std::vector<std::string> LcmChannelRows::names() const {
+  std::vector<std::string> out;
+  for (const auto& [name, channel] : channels_) out.push_back(name);
+  return out;
+}
+
+void LcmChannelRows::take(const std::string& channel, std::span<const std::uint8_t> message) {
+  messages_.take(channel, message, [&](const LcmChannelMessages::Said& said) {
+    const auto found = channels_.find(said.name);
+    if (found == channels_.end() || found->second.of_status != said.of_status) return;
+    Channel& mine = found->second;
+    if (mine.known && said.value == mine.last && said.measured_s - mine.measured_s < kAnother_s) return;
+    mine.known = true;
+    mine.last = said.value;
+    mine.measured_s = said.measured_s;
+    mine.now = said.value;
+  });
+}
+
+void LcmChannelRows::end_row(std::span<double> values) {
+  auto value = values.begin();
+  for (auto& [name, channel] : channels_)
+    *value++ = std::exchange(channel.now, std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace ifog::tools

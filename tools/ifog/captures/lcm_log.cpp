@@ -2,7 +2,6 @@
 #include "tools/ifog/captures/lcm_log.h"
 
 #include <ifog/decode.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,8 @@
 #include <filesystem>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -20,6 +21,7 @@
 
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/unnamed_file.h"
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
@@ -34,27 +36,16 @@ bool carries_rates(const std::string& channel) {
 }
 
 // LCM reads a log by its name and from any place in it. One that comes packed, through a pipe or as a flight
-// recording is kept in memory, under a name that only this process knows.
+// recording is kept in a file without one, under a name that only this process knows.
 class NamedLog {
  public:
   explicit NamedLog(InputFile& file) : name_(file.path()) {
     const bool recorded = recorded_messages(file);
     if (file.reopens() && !recorded) return;
-    fd_ = memfd_create("lcm log", MFD_CLOEXEC);
-    if (fd_ < 0) throw std::runtime_error(name_ + ": no memory to unpack it");
-    name_ = "/proc/self/fd/" + std::to_string(fd_);
-    try {
-      recorded ? unpack_messages(file) : unpack(file);
-    } catch (...) {
-      ::close(fd_);
-      throw;
-    }
+    unpacked_.emplace();
+    name_ = "/proc/self/fd/" + std::to_string(unpacked_->descriptor());
+    recorded ? unpack_messages(file) : unpack(file);
   }
-  ~NamedLog() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  NamedLog(const NamedLog&) = delete;
-  NamedLog& operator=(const NamedLog&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -63,8 +54,8 @@ class NamedLog {
     std::vector<char> block(1U << 20U);
     while (const std::size_t n = file.read(block.data(), block.size()))
       for (std::size_t done = 0; done < n;) {
-        const ssize_t wrote = ::write(fd_, block.data() + done, n - done);
-        if (wrote < 0 && errno != EINTR) throw std::runtime_error(file.path() + ": no memory to unpack it");
+        const ssize_t wrote = ::write(unpacked_->descriptor(), block.data() + done, n - done);
+        if (wrote < 0 && errno != EINTR) UnnamedFile::fail("cannot write");
         done += static_cast<std::size_t>(std::max<ssize_t>(wrote, 0));
       }
   }
@@ -79,36 +70,35 @@ class NamedLog {
       event.channel.assign(reinterpret_cast<const char*>(entry.payload.data()), entry.head.index);
       event.datalen = static_cast<int>(data.size());
       event.data = data.data();
-      if (log.writeEvent(&event) != 0) throw std::runtime_error(file.path() + ": no memory to unpack it");
+      if (log.writeEvent(&event) != 0) UnnamedFile::fail("cannot write");
     });
   }
 
   std::string name_;
-  int fd_ = -1;
+  std::optional<UnnamedFile> unpacked_;
 };
 
-std::string chosen_channel(const std::string& path, const NamedLog& source) {
+// "": there is none.
+std::string first_channel(const NamedLog& source) {
   lcm::LogFile log(source.name(), "r");
-  std::set<std::string> found;
   while (const lcm::LogEvent* event = log.readNextEvent())
-    if (carries_rates(event->channel)) found.insert(event->channel);
-  if (found.size() == 1) return *found.begin();
-  std::string list;
-  for (const std::string& each : found) list += (list.empty() ? "" : ", ") + printable(each);
-  throw std::runtime_error(path + (found.empty()
-                                       ? ": has no channel IFOG_<NAME>"
-                                       : ": has several channels, expected --channel with one of " + list));
+    if (carries_rates(event->channel)) return event->channel;
+  return "";
 }
 
-// A log, and the channel of it that carries the rates.
+// A log, and the channel of it that carries the rates: the one that was asked for, or else the first, which
+// has to be the only one (look_through).
 struct ChosenLog {
-  ChosenLog(InputFile& file, const std::string& channel) : path(file.path()), source(file) {
+  ChosenLog(InputFile& file, const std::string& channel)
+      : path(file.path()), source(file), asked_for(!channel.empty()) {
     if (!lcm::LogFile(source.name(), "r").good())
       throw std::runtime_error(path + ": cannot open as an LCM log");
-    rates = channel.empty() ? chosen_channel(path, source) : channel;
+    rates = asked_for ? channel : first_channel(source);
+    if (rates.empty()) throw std::runtime_error(path + ": has no channel IFOG_<NAME>");
   }
   std::string path;
   NamedLog source;
+  bool asked_for;
   std::string rates;
 };
 
@@ -162,6 +152,10 @@ std::size_t bytes_of(lcm::LogFile& log) {
   return static_cast<std::size_t>(std::max(0L, bytes));
 }
 
+std::span<const std::uint8_t> content_of(const lcm::LogEvent& event) {
+  return {static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen)};
+}
+
 using RateSink = std::function<void(const rate_t&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
@@ -179,9 +173,7 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     end = std::ftell(log.getFilePtr());
     progress.at(static_cast<std::size_t>(end));
     if (event->channel != wanted) {
-      if (others)
-        others(event->channel,
-               {static_cast<const std::uint8_t*>(event->data), static_cast<std::size_t>(event->datalen)});
+      if (others) others(event->channel, content_of(*event));
       continue;
     }
     const auto refuse = [&](const std::string& why) {
@@ -205,6 +197,77 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     warn("%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
 }
 
+// The first look at a log: which columns its channels make. Throws std::runtime_error with one line where
+// nobody said which of several channels with rates it is.
+std::map<std::string, bool> look_through(const ChosenLog& chosen) {
+  LcmChannelNames names(chosen.rates);
+  std::set<std::string> with_rates;
+  lcm::LogFile log(chosen.source.name(), "r");
+  Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(),
+                    bytes_of(log));
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    progress.at(static_cast<std::size_t>(std::ftell(log.getFilePtr())));
+    if (event->channel == chosen.rates) {
+      names.end_row();
+      continue;
+    }
+    if (!chosen.asked_for && carries_rates(event->channel)) with_rates.insert(event->channel);
+    names.take(event->channel, content_of(*event));
+  }
+  if (with_rates.empty()) return names.of_status();
+  with_rates.insert(chosen.rates);
+  std::string list;
+  for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
+  throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
+}
+
+// Rates and channels on their way to a sink, some thousand rows at a time.
+class LcmRows {
+ public:
+  LcmRows(LcmChannelRows channels, RowSink& sink)
+      : channels_(std::move(channels)), names_(channels_.names()), sink_(sink), values_(names_.size()) {}
+
+  void take(const std::string& channel, std::span<const std::uint8_t> message) {
+    channels_.take(channel, message);
+  }
+  void add(const rate_t& message, double time_s) {
+    if (rows_.columns.empty()) begin(message.raw.size());
+    rows_.time_s.push_back(time_s);
+    channels_.end_row(values_);
+    auto column = rows_.columns.begin();
+    for (const double rate : message.raw) (column++)->push_back(rate);
+    for (const double value : values_) (column++)->push_back(value);
+    if (rows_.size() == kRows) hand_on();
+  }
+  void finish() {
+    if (rows_.size() > 0) hand_on();
+  }
+
+ private:
+  static constexpr std::size_t kRows = std::size_t{1} << 14U;
+  void begin(std::size_t axes) {
+    std::vector<std::string> names;
+    for (const std::string& axis : axis_names(axes))
+      names.push_back(axis.empty() ? "rate_radps" : "rate_" + axis + "_radps");
+    names.insert(names.end(), names_.begin(), names_.end());
+    rows_.columns.resize(names.size());
+    sink_.begin(names);
+  }
+  void hand_on() {
+    const std::size_t columns = rows_.columns.size();
+    sink_.take(rows_);
+    rows_.time_s.clear();
+    rows_.columns.resize(columns);
+    for (std::vector<double>& column : rows_.columns) column.clear();
+  }
+
+  LcmChannelRows channels_;
+  std::vector<std::string> names_;
+  RowSink& sink_;
+  std::vector<double> values_;
+  RowBlock rows_;
+};
+
 }  // namespace
 
 bool recorded_messages(const InputFile& file) {
@@ -213,28 +276,13 @@ bool recorded_messages(const InputFile& file) {
          file.head().find("\ncarries=messages\n") != std::string_view::npos;
 }
 
-Capture read_lcm_log(InputFile& file, const std::string& channel) {
-  Capture capture;
-  const auto take_rate = [&capture](const rate_t& message, double time_s) {
-    if (capture.time_s.empty()) {
-      capture.axes = axis_names(message.raw.size());
-      capture.rate_radps.resize(capture.axes.size());
-      capture.reference_rate_radps.resize(capture.axes.size());
-    }
-    capture.time_s.push_back(time_s);
-    for (std::size_t i = 0; i < capture.axes.size(); ++i) capture.rate_radps[i].push_back(message.raw[i]);
-  };
+void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   const ChosenLog chosen(file, channel);
-  LcmChannels channels(chosen.rates);
+  LcmRows rows({chosen.rates, look_through(chosen)}, sink);
   for_each_rate(
-      chosen,
-      [&](const rate_t& message, double time_s) {
-        take_rate(message, time_s);
-        channels.end_row();
-      },
-      [&](const std::string& name, std::span<const std::uint8_t> message) { channels.take(name, message); });
-  capture.channels = channels.columns();
-  return capture;
+      chosen, [&](const rate_t& message, double time_s) { rows.add(message, time_s); },
+      [&](const std::string& name, std::span<const std::uint8_t> message) { rows.take(name, message); });
+  rows.finish();
 }
 
 Table read_published(InputFile& file, const std::string& channel) {
@@ -256,7 +304,9 @@ Table read_published(InputFile& file, const std::string& channel) {
            {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
         (column++)->values.push_back(value);
   };
-  for_each_rate(ChosenLog(file, channel), take, {});
+  const ChosenLog chosen(file, channel);
+  if (!chosen.asked_for) look_through(chosen);
+  for_each_rate(chosen, take, {});
   return table;
 }
 

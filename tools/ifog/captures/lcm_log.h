@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of a log made by lcm-logger or of a flight recording made by `ifog record`, as a capture of
-// what the sensor measured.
+// The messages of a log made by lcm-logger or of a flight recording made by `ifog record`, as rows of what
+// the sensor measured.
 #pragma once
 
 #include <string>
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/input_file.h"
+#include "drivers/capture/row_sink.h"
 
 namespace ifog::tools {
 
@@ -15,7 +16,7 @@ namespace ifog::tools {
 // and of ifog.channel_t, see lcm_channels.h. Throws std::runtime_error with one line: no log, no such channel
 // (those there are named), several where none was chosen, a message that is no rate_t, time that does not go
 // on.
-Capture read_lcm_log(InputFile& file, const std::string& channel);
+void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink);
 
 // A flight recording that holds LCM messages. Looks, reads nothing.
 bool recorded_messages(const InputFile& file);

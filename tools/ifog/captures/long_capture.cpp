@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "tools/ifog/captures/compensated_rates.h"
-#include "tools/ifog/captures/whole_table.h"
 
 namespace ifog::tools {
 namespace {
@@ -18,13 +17,6 @@ std::vector<std::string> lines_of(std::string_view text) {
     text.remove_prefix(end + 1);
   }
   return lines;
-}
-
-LongTable table_with_faults(Capture capture) {
-  std::vector<std::string> faults = std::move(capture.faults);
-  LongTable table = long_table(std::move(capture));
-  table.faults = std::move(faults);
-  return table;
 }
 
 }  // namespace
@@ -44,6 +36,7 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   const CaptureShape shape = capture_shape(table_.header, path, table_);
   view_.comments = lines_of(table_.comments);
   view_.faults = table_.faults;
+  view_.since_power_up_s = table_.since_power_up_s;
   view_.time_s = table_.time_s.all();
   view_.axes = shape.axes;
   view_.rate_radps.resize(shape.axes.size());
@@ -61,12 +54,6 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
     else
       view_.channels.push_back({column.name, column.values.all()});
   }
-}
-
-LongCapture::LongCapture(Capture capture) {
-  const std::optional<double> since_power_up_s = capture.since_power_up_s;
-  *this = LongCapture(table_with_faults(std::move(capture)), "");
-  view_.since_power_up_s = since_power_up_s;
 }
 
 void LongCapture::cut(const TimePart& part, const std::string& name) {

@@ -19,7 +19,6 @@ class LongCapture {
  public:
   // path: for messages. Throws std::runtime_error with one line: no rate, a reference without its rate.
   LongCapture(LongTable table, const std::string& path);
-  explicit LongCapture(Capture capture);
 
   [[nodiscard]] const CaptureView& view() const { return view_; }
   void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }

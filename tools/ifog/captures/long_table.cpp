@@ -20,6 +20,10 @@ void LongTable::leave_out_unknown(const std::string& path) {
     return column.known && column.name.starts_with("rate");
   });
   if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
+  std::erase_if(header, [&](const std::string& name) {
+    return std::any_of(columns.begin(), columns.end(),
+                       [&](const LongColumn& column) { return column.name == name && !column.known; });
+  });
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
 }
 

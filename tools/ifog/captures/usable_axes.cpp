@@ -30,8 +30,7 @@ bool has_value(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
 }
 
-template <typename Captured>
-void leave_out(Captured& capture, const std::string& axis) {
+void leave_out(CaptureView& capture, const std::string& axis) {
   const auto found = std::find(capture.axes.begin(), capture.axes.end(), axis);
   if (found == capture.axes.end()) return;
   const auto at = found - capture.axes.begin();
@@ -40,12 +39,10 @@ void leave_out(Captured& capture, const std::string& axis) {
   capture.reference_rate_radps.erase(capture.reference_rate_radps.begin() + at);
 }
 
-// Of whatever has a capture's columns.
-template <typename Captured>
-void keep_usable(std::span<Captured> captures, std::span<const std::string> names) {
+void keep_usable(std::span<CaptureView> captures, std::span<const std::string> names) {
   std::vector<std::string> dead;
   for (std::size_t c = 0; c < captures.size(); ++c) {
-    const Captured& capture = captures[c];
+    const CaptureView& capture = captures[c];
     std::size_t alive = 0;
     for (std::size_t a = 0; a < capture.axes.size(); ++a) {
       if (has_value(capture.rate_radps[a])) {
@@ -59,7 +56,7 @@ void keep_usable(std::span<Captured> captures, std::span<const std::string> name
     for (const std::string& axis : std::span(dead).last(capture.axes.size() - alive))
       tell_left_out(names[c], rate_of(axis), capture.size());
   }
-  for (Captured& capture : captures) {
+  for (CaptureView& capture : captures) {
     for (const std::string& axis : dead) leave_out(capture, axis);
     if (capture.axes.empty()) refuse_without_rates(names.front(), capture.size());
   }
@@ -97,10 +94,6 @@ void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std:
 }
 
 void keep_usable_axes(CaptureView& capture, const std::string& name) {
-  keep_usable(std::span(&capture, 1), {&name, 1});
-}
-
-void keep_usable_axes(Capture& capture, const std::string& name) {
   keep_usable(std::span(&capture, 1), {&name, 1});
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "tools/ifog/captures/capture_view.h"
 #include "tools/ifog/captures/long_table.h"
 
@@ -30,7 +29,6 @@ std::string expected_axes(const std::vector<std::string>& axes);
 // with one line where no axis is left.
 void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names);
 void keep_usable_axes(CaptureView& capture, const std::string& name);
-void keep_usable_axes(Capture& capture, const std::string& name);
 void keep_usable_axes(LongTable& table, const std::string& name);
 
 }  // namespace ifog::tools

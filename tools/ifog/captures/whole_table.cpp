@@ -6,6 +6,7 @@
 #include <vector>
 
 namespace ifog::tools {
+namespace {
 
 RowNotes hand_on(Capture capture, RowSink& sink) {
   std::vector<std::string> names;
@@ -30,6 +31,8 @@ RowNotes hand_on(Capture capture, RowSink& sink) {
   for (const std::string& comment : capture.comments) notes.comments += comment + '\n';
   return notes;
 }
+
+}  // namespace
 
 LongTable long_table(Capture capture) {
   LongTable table;

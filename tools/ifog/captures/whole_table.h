@@ -7,7 +7,6 @@
 
 namespace ifog::tools {
 
-RowNotes hand_on(Capture capture, RowSink& sink);
 LongTable long_table(Capture capture);
 LongTable long_table(Table whole);
 

@@ -3,6 +3,7 @@
 #include "filters/compare/compare.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "drivers/capture/column_names.h"
 #include "filters/allan/stretches.h"
 #include "filters/estimator/start_up.h"
 #include "filters/model_file/model.h"
@@ -38,11 +40,16 @@ struct Options {
   FilterChoice choice;
 };
 
-// Q and R when nobody says them: from the whole record, all axes together.
-void fill_noise(FilterSettings& settings, const Capture& capture, double period_s) {
+// Q and R when nobody says them: from the record, all axes together; from the first hours of one that is
+// longer than memory is for.
+void fill_noise(FilterSettings& settings, const CaptureView& capture, double period_s) {
   if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
+  constexpr std::size_t kMost = std::size_t{1} << 23U;  // rows
   std::vector<double> all;
-  for (const auto& axis : capture.rate_radps) all.insert(all.end(), axis.begin(), axis.end());
+  for (const auto& axis : capture.rate_radps) {
+    const auto some = axis.first(std::min(axis.size(), kMost));
+    all.insert(all.end(), some.begin(), some.end());
+  }
   const NoiseEstimate noise = estimate_noise(all, static_cast<int>(capture.axes.size()), period_s);
   if (settings.process_noise <= 0.0) settings.process_noise = noise.process_noise;
   if (settings.measurement_noise <= 0.0) settings.measurement_noise = noise.measurement_noise;
@@ -137,7 +144,12 @@ void run(const Options& options) {
   will_write("--plot", options.plot_file);
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);
-  Capture capture = options.input.read(options.capture);
+  const LongCapture read =
+      options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
+        std::string axis;
+        return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
+      });
+  CaptureView capture = read.view();
   keep_usable_axes(capture, options.capture);
   ComparisonInput in;
   in.time_s = capture.time_s;
@@ -158,6 +170,7 @@ void run(const Options& options) {
   for (const RuleEntry& entry : rules()) compare.rules.emplace_back(entry.name);
   Progress progress("comparing", compare.rules.size());
   compare.progress = progress.teller();
+  compare.keep_denoised = !options.plot_file.empty();
   try {
     fill_noise(compare.settings, capture, in.period_s);
   } catch (const std::invalid_argument& error) {

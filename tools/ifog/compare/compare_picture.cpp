@@ -9,6 +9,7 @@
 #include "filters/allan/stretches.h"
 #include "filters/units/field_units.h"
 #include "tools/report/picture.h"
+#include "tools/report/plot_data.h"
 #include "tools/report/text.h"
 
 namespace ifog::tools {
@@ -22,7 +23,7 @@ struct AllanCurve {
   std::vector<double> tau_s, sigma;  // sigma in °/h
 };
 
-AllanCurve allan(const Capture& capture, std::span<const double> rate, const SampleClock& clock) {
+AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const SampleClock& clock) {
   AllanCurve curve;
   const std::vector<Stretch> whole = stretches(capture.time_s, rate, clock);
   if (whole.empty()) return curve;
@@ -35,13 +36,21 @@ AllanCurve allan(const Capture& capture, std::span<const double> rate, const Sam
   return curve;
 }
 
+// A curve in the units that it is shown in, in no more points than are drawn.
+report::Thinned drawn(std::span<const double> time_s, double unit_s, std::span<const double> rate_radps) {
+  Samples time(time_s), rate(rate_radps);
+  for (double& t : time) t *= 1.0 / unit_s;
+  for (double& r : rate) r *= 1.0 / kDegreePerHour;
+  return report::thinned(time, rate);
+}
+
 // What the outputs keep to once their filters have started, in °/h: the first twentieth and the outermost two
 // in a thousand values left out, with a margin. None: no number among them.
-void keep_range(ChartAxis& axis, const std::vector<std::vector<double>>& outputs) {
-  std::vector<double> values;
-  for (const std::vector<double>& output : outputs)
-    std::copy_if(output.begin() + static_cast<std::ptrdiff_t>(output.size() / 20), output.end(),
-                 std::back_inserter(values), [](double y) { return std::isfinite(y); });
+void keep_range(ChartAxis& axis, const std::vector<const Samples*>& outputs_radps) {
+  Samples values;
+  for (const Samples* const output : outputs_radps)
+    for (std::size_t i = output->size() / 20; i < output->size(); ++i)
+      if (std::isfinite((*output)[i])) values.push_back((*output)[i] * (1.0 / kDegreePerHour));
   if (values.empty()) return;
   const std::size_t cut = values.size() / 1000;
   const auto nth = [&](std::size_t n) {
@@ -57,20 +66,23 @@ void keep_range(ChartAxis& axis, const std::vector<std::vector<double>>& outputs
 // The rows of one axis of the sensor.
 class AxisRows {
  public:
-  AxisRows(const Capture& capture, const Comparison& result, const std::vector<std::string>& rules,
+  AxisRows(const CaptureView& capture, const Comparison& result, const std::vector<std::string>& rules,
            std::size_t axis)
       : rules_(rules),
         prefix_(capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": "),
         unit_(report::time_unit(capture.time_s.back() - capture.time_s.front())),
-        time_(report::scaled(capture.time_s, 1.0 / unit_.seconds)),
-        raw_(report::scaled(capture.rate_radps[axis], 1.0 / kDegreePerHour)) {
+        first_(capture.time_s.front() / unit_.seconds),
+        last_(capture.time_s.back() / unit_.seconds),
+        raw_(drawn(capture.time_s, unit_.seconds, capture.rate_radps[axis])) {
     const SampleClock clock = sample_clock(capture.time_s);
     raw_allan_ = allan(capture, capture.rate_radps[axis], clock);
+    std::vector<const Samples*> outputs;
     for (std::size_t r = 0; r < rules.size(); ++r) {
-      outputs_.push_back(report::scaled(result.denoised[r][axis], 1.0 / kDegreePerHour));
-      allan_.push_back(allan(capture, result.denoised[r][axis], clock));
+      outputs.push_back(&result.denoised[r][axis]);
+      outputs_.push_back(drawn(capture.time_s, unit_.seconds, *outputs.back()));
+      allan_.push_back(allan(capture, *outputs.back(), clock));
     }
-    keep_range(rate_, outputs_);
+    keep_range(rate_, outputs);
     report::Bounds tau, sigma;
     const auto take = [&](const AllanCurve& curve) {
       for (const double t : curve.tau_s) tau.take(t, true);
@@ -91,7 +103,7 @@ class AxisRows {
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool last = r + 1 == rules_.size();
       Chart rate(prefix_ + rules_[r], "Denoised rate over time.", time_axis(last), rate_);
-      rate.line(Role::kAfter, "", time_, outputs_[r]);
+      rate.line(Role::kAfter, "", outputs_[r].x, outputs_[r].y);
       rows.push_back({last ? kRow + kNumbers : kRow,
                       {{std::move(rate), 2.0}, {allan_chart(rules_[r], &allan_[r], last), 1.0}}});
     }
@@ -99,12 +111,12 @@ class AxisRows {
 
  private:
   [[nodiscard]] ChartAxis time_axis(bool last) const {
-    return {last ? std::string("time (") + unit_.name + ")" : "", false, time_.front(), time_.back(), last};
+    return {last ? std::string("time (") + unit_.name + ")" : "", false, first_, last_, last};
   }
   [[nodiscard]] Chart raw_chart() const {
     Chart chart(prefix_ + "raw, in a range of its own", "Raw rate over time.", time_axis(false),
                 {"°/h", false, {}, {}});
-    chart.line(Role::kRaw, "", time_, raw_);
+    chart.line(Role::kRaw, "", raw_.x, raw_.y);
     return chart;
   }
   // The raw rate's curve under each: how far the noise falls, and where it comes back.
@@ -122,8 +134,9 @@ class AxisRows {
   const std::vector<std::string>& rules_;
   std::string prefix_;
   report::TimeUnit unit_;
-  std::vector<double> time_, raw_;
-  std::vector<std::vector<double>> outputs_;
+  double first_, last_;  // times
+  report::Thinned raw_;
+  std::vector<report::Thinned> outputs_;
   AllanCurve raw_allan_;
   std::vector<AllanCurve> allan_;
   ChartAxis rate_{"°/h", false, {}, {}}, tau_{"", true, {}, {}}, sigma_{"°/h", true, {}, {}};
@@ -131,7 +144,7 @@ class AxisRows {
 
 }  // namespace
 
-void draw_comparison(const std::string& path, const Capture& capture, const Comparison& result,
+void draw_comparison(const std::string& path, const CaptureView& capture, const Comparison& result,
                      const std::vector<std::string>& rules) {
   std::vector<report::PictureRow> rows;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) AxisRows(capture, result, rules, a).add_to(rows);
