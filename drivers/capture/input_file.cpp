@@ -187,6 +187,7 @@ std::string InputFile::bytes() {
     n = unpack(all.data() + before, kBlock);
     all.resize(before + n);
   }
+  if (heard_) heard_(all);
   return all;
 }
 

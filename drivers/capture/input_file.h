@@ -56,7 +56,7 @@ class InputFile {
     if (told_) told_(done, total);
   }
 
-  // From here on `heard` hears all that read() gives, as it is given.
+  // From here on `heard` hears all that is read, as it is given.
   using Heard = std::function<void(std::string_view bytes)>;
   void hear(Heard heard) { heard_ = std::move(heard); }
 

@@ -11,6 +11,7 @@
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
+#include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/reading_progress.h"
@@ -102,11 +103,8 @@ DriverSettings CaptureInput::settings() const {
   return out;
 }
 
-DriverInstance CaptureInput::make_driver(const std::vector<std::string>& folders,
-                                         const std::string& files_from) const {
-  DriverInstance made = ifog::make_driver(driver_name(), settings(), plugin_folders(folders), files_from);
-  for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
-  return made;
+DriverInstance CaptureInput::make_driver(const std::vector<std::string>& folders) const {
+  return driver_of_run(driver_name(), settings(), folders);
 }
 
 FileKind CaptureInput::kind(const InputFile& file) const {
@@ -216,21 +214,21 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
 LongCapture CaptureInput::read_long_capture(const std::string& path, std::string* sha256,
                                             const LongTableSink::Wanted& wanted) const {
   InputFile file(path);
-  const bool passes = readable(file) == FileKind::capture && (sha256 == nullptr || !is_hdf5(file));
-  if (!passes) {
-    if (sha256 == nullptr) return LongCapture(read(file));
-    std::string text = file.bytes();
-    *sha256 = sha256_hex(text);
-    InputFile at_hand(path, std::move(text));
-    return LongCapture(read(at_hand));
-  }
-  LongTable table;
-  LongTableSink sink(table, wanted);
   Sha256 hash;
   if (sha256) file.hear([&hash](std::string_view bytes) { hash.add(bytes); });
-  static_cast<RowNotes&>(table) = column_rows(file, sink);
-  if (sha256) *sha256 = hash.hex();
-  return {std::move(table), path};
+  const auto read_it = [&] {
+    if (readable(file) != FileKind::capture) return LongCapture(read(file));
+    return LongCapture(read_long_columns(file, wanted), path);
+  };
+  LongCapture out = read_it();
+  if (sha256) {
+    // What a library has read by the file's name.
+    std::vector<char> room(std::size_t{1} << 16U);
+    while (file.read(room.data(), room.size()) > 0) {
+    }
+    *sha256 = hash.hex();
+  }
+  return out;
 }
 
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {

@@ -62,10 +62,8 @@ struct CaptureInput {
   void will_read(const std::string& argument, const std::string& path) const;
 
   // Throws std::runtime_error with one line.
-  // folders: that plugins are looked for in; empty: the standard places. files_from: where relative paths in
-  // the options begin; "": where the process is.
-  [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {},
-                                           const std::string& files_from = {}) const;
+  // folders: that plugins are looked for in; empty: the standard places.
+  [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {}) const;
 
   // As it will be read: CSV where its columns are given; where neither name nor first bytes tell, CSV without
   // a driver and bytes with one.
@@ -80,8 +78,8 @@ struct CaptureInput {
   // moved. Throws std::runtime_error with one line.
   [[nodiscard]] Capture read(InputFile& file) const;
   [[nodiscard]] Capture read(const std::string& path) const;
-  // The same of any length. `sha256`, where it is wanted: of the file as it was unpacked. CSV passes through
-  // and HDF5 where no hash is wanted; others are read as a whole first. wanted: of the columns; empty: all.
+  // The same of any length. `sha256`, where it is wanted: of the file as it was unpacked. CSV and HDF5 pass
+  // through; others are read as a whole first. wanted: of the columns; empty: all.
   [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
                                               const LongTableSink::Wanted& wanted = {}) const;
 

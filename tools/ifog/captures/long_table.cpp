@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "drivers/capture/column_names.h"
+
 namespace ifog::tools {
 
 using Kind = CaptureShape::Place::Kind;
@@ -20,7 +22,24 @@ void LongTable::leave_out_unknown(const std::string& path) {
     return column.known && column.name.starts_with("rate");
   });
   if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
+  leave_out_dead_axes();
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
+}
+
+std::vector<std::string> LongTable::leave_out_dead_axes() {
+  std::vector<std::string> dead;
+  std::string axis;
+  std::erase_if(columns, [&](const LongColumn& column) {
+    if (!axis_of(column.name, "rate", axis) || column.known) return false;
+    dead.push_back(axis);
+    return true;
+  });
+  std::erase_if(columns, [&](const LongColumn& column) {
+    return axis_of(column.name, "reference_rate", axis) &&
+           std::find(dead.begin(), dead.end(), axis) != dead.end();
+  });
+  dead_axes.insert(dead_axes.end(), dead.begin(), dead.end());
+  return dead;
 }
 
 void LongTableSink::begin(const std::vector<std::string>& names) {
