@@ -7,7 +7,8 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
+
+#include "drivers/ifog/decimal.h"
 
 namespace ifog {
 
@@ -16,10 +17,8 @@ std::variant<double, ChannelFault> number_in(std::string_view text) {
   const std::size_t from = text.find_first_not_of(kBlank);
   if (from == std::string_view::npos) return ChannelFault{.kind = ChannelFault::Kind::empty};
   text = text.substr(from, text.find_last_not_of(kBlank) - from + 1);
-  // from_chars takes no plus sign, and "+-5" is no number.
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
   double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size())
     return ChannelFault{.kind = ChannelFault::Kind::no_number};
   return number;

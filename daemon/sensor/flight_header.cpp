@@ -5,7 +5,8 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
@@ -63,14 +64,9 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
   if (!noise.empty()) out.files[noise_file_name(sensor.name)] = noise;
   std::uintmax_t room = kMostAttached;
   if (!sensor.model.empty()) attach(sensor.model, room, out);
-  for (const ifog_option* option = driver.table().options; option->key != nullptr; ++option) {
-    const auto set = out.options.find(option->key);
-    if (set == out.options.end() || set->second.empty() ||
-        std::string_view(option->values) != IFOG_OPTION_FILE)
-      continue;
-    set->second = (std::filesystem::path(sensor.folder) / set->second).lexically_normal().string();
-    attach(set->second, room, out);
-  }
+  out.options = with_files_in(sensor.folder, driver.table(), std::move(out.options));
+  for (const std::string& key : file_settings(driver.table(), out.options))
+    attach(out.options[key], room, out);
   return out;
 }
 

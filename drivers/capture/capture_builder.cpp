@@ -18,12 +18,32 @@ bool never_known(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
 }
 
+DeviceCount counter_of(const ifog_description& description) {
+  return {std::max<std::uint32_t>(description.sequence_modulus, 1),
+          description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0};
+}
+
+// Of the frames: axes, then channels.
+std::vector<std::string> columns_of(const ifog_description& description) {
+  std::vector<std::string> out;
+  for (std::uint32_t i = 0; i < description.axes; ++i)
+    out.push_back("rate " + std::string(description.axis[i]));
+  for (std::uint32_t i = 0; i < description.environments; ++i) out.emplace_back(description.environment[i]);
+  return out;
+}
+
+// Of the same columns: samples of both become rows in the same way.
+bool same_samples(const ifog_description& a, const ifog_description& b) {
+  return a.kind == b.kind && a.sequence_modulus == b.sequence_modulus &&
+         a.has_device_time == b.has_device_time && a.nominal_rate_hz == b.nominal_rate_hz &&
+         a.angle_wrap_rad == b.angle_wrap_rad &&
+         std::equal(a.full_scale, a.full_scale + a.axes, b.full_scale);
+}
+
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
-    : description_(description),
-      counter_(std::max<std::uint32_t>(description.sequence_modulus, 1),
-               description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0) {
+    : description_(description), counter_(counter_of(description)) {
   for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
   capture_.rate_radps.resize(description.axes);
   capture_.reference_rate_radps.resize(description.axes);
@@ -31,6 +51,17 @@ CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::v
     capture_.channels.push_back({description.environment[i], {}});
   for (const std::string& name : outside) capture_.channels.push_back({name, {}});
   for (const CaptureColumn& channel : capture_.channels) channel_range_.push_back(measurable(channel.name));
+}
+
+void CaptureBuilder::go_on_as(const ifog_description& description) {
+  if (columns_of(description) != columns_of(description_))
+    throw std::runtime_error(
+        "goes on with other axes or channels, as the driver's options changed; expected recordings of one");
+  if (same_samples(description, description_)) return;
+  description_ = description;
+  counter_ = counter_of(description);
+  clock_ = Clock::undecided;
+  broken_ = true;
 }
 
 void CaptureBuilder::choose_clock(const ifog_sample& sample) {
@@ -151,7 +182,7 @@ void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
 
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
   const bool first = taken_ + capture_.size() == 0;
-  if (first) choose_clock(sample);
+  if (clock_ == Clock::undecided) choose_clock(sample);
   bool anew = broken_ && !first;
   const std::uint64_t steps = first || anew ? 0 : steps_to(sample);
   if (first || anew) {
@@ -220,6 +251,7 @@ Capture CaptureBuilder::finish() {
   if (capture_.time_s.empty()) throw std::runtime_error("holds no sample that the driver understands");
   for (std::size_t i = capture_.axes.size(); i-- > 0;) {
     if (!never_known(capture_.rate_radps[i])) continue;
+    capture_.dead_axes.push_back(capture_.axes[i]);
     capture_.axes.erase(capture_.axes.begin() + static_cast<std::ptrdiff_t>(i));
     capture_.rate_radps.erase(capture_.rate_radps.begin() + static_cast<std::ptrdiff_t>(i));
     capture_.reference_rate_radps.pop_back();

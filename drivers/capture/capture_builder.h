@@ -37,6 +37,9 @@ class CaptureBuilder {
   // What comes next does not join what came: its clock and counter may have begun anew. The arrival times,
   // which must be known, say how much later it is.
   void discontinuity() { broken_ = true; }
+  // The driver's options are others from the next sample on, which does not join what came. Throws
+  // std::runtime_error with one line where the columns would not be the same.
+  void go_on_as(const ifog_description& description);
   // From here on a device whose clock jumps back has begun anew; else that cannot be told from a wrong
   // driver, and is refused. A sample whose counter says that it came twice, or late, is left out either way.
   void allow_restarts() { restarts_ = true; }

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "drivers/capture/column_names.h"
 #include "drivers/capture/input_file.h"
+#include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -26,9 +26,8 @@ double number(const std::string& path, std::size_t line, const std::string& colu
     with_point[comma] = '.';
     digits = {with_point.data(), cell.size()};
   }
-  if (digits.front() == '+') digits.remove_prefix(1);  // from_chars takes no plus sign
   double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range)
     fail_at(path, line, printable(column) + " is " + in_quotes(cell) + ", outside what a double holds");
   if (error != std::errc() || end != digits.data() + digits.size())

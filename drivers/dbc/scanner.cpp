@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "drivers/dbc/keywords.h"
+#include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog::dbc {
@@ -90,12 +91,11 @@ std::uint64_t Scanner::integer(const char* expected, std::uint64_t highest) {
 
 double Scanner::number(const char* expected) {
   skip_space();
-  const std::size_t sign = at_ < text_.size() && text_[at_] == '+' ? 1 : 0;  // from_chars takes no plus sign
   double value = 0.0;
-  const char* begin = text_.data() + at_ + sign;
-  const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
+  const char* begin = text_.data() + at_;
+  const auto [end, error] = read_decimal(begin, text_.data() + text_.size(), value);
   if (error != std::errc() || !std::isfinite(value)) fail(expected);
-  at_ += static_cast<std::size_t>(end - begin) + sign;
+  at_ += static_cast<std::size_t>(end - begin);
   return value;
 }
 

@@ -26,8 +26,8 @@ struct RecordedSamples {
       discontinuity;  // the device was opened again, or something of the recording is missing
   // Before a discontinuity that the daemon did not have: something of the recording is missing. May be empty.
   std::function<void()> missing{};
-  // A file begins behind the first, before its samples: of another run, or with other settings, perhaps. May
-  // be empty.
+  // A file begins behind the first, before its samples: of another run, or with other settings, perhaps. The
+  // driver may be exchanged here for one with the options that the header names. May be empty.
   std::function<void(const FlightHeader&)> file{};
 };
 

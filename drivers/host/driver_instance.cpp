@@ -119,6 +119,14 @@ DriverInstance::DriverInstance(DriverInstance&& other) noexcept
       description_(other.description_),
       warnings_(std::move(other.warnings_)) {}
 
+DriverInstance& DriverInstance::operator=(DriverInstance&& other) noexcept {
+  std::swap(plugin_, other.plugin_);
+  std::swap(instance_, other.instance_);
+  std::swap(description_, other.description_);
+  std::swap(warnings_, other.warnings_);
+  return *this;
+}
+
 ifog_driver_counters DriverInstance::counters() const {
   ifog_driver_counters out{};
   table().counters(instance_, &out);
@@ -159,16 +167,28 @@ void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_
                            printable(error.data(), kLongestMessage));
 }
 
+std::vector<std::string> file_settings(const ifog_driver& table, const DriverSettings& settings) {
+  std::vector<std::string> keys;
+  for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
+    const auto given = settings.find(option->key);
+    if (given != settings.end() && !given->second.empty() &&
+        std::string_view(option->values) == IFOG_OPTION_FILE)
+      keys.emplace_back(option->key);
+  }
+  return keys;
+}
+
+DriverSettings with_files_in(const std::filesystem::path& folder, const ifog_driver& table,
+                             DriverSettings settings) {
+  for (const std::string& key : file_settings(table, settings))
+    settings[key] = (folder / settings[key]).lexically_normal().string();
+  return settings;
+}
+
 DriverInstance make_driver(const std::string& name, const DriverSettings& settings,
                            const std::vector<std::string>& folders, const std::filesystem::path& files_from) {
   std::shared_ptr<const Plugin> plugin = find_plugin(name, folders);
-  DriverSettings placed = settings;
-  for (const ifog_option* option = plugin->table().options; option->key != nullptr; ++option) {
-    const auto given = placed.find(option->key);
-    if (given == placed.end() || given->second.empty() || std::strcmp(option->values, IFOG_OPTION_FILE) != 0)
-      continue;
-    given->second = (files_from / given->second).lexically_normal().string();
-  }
+  const DriverSettings placed = with_files_in(files_from, plugin->table(), settings);
   return DriverInstance(std::move(plugin), placed);
 }
 

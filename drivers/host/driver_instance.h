@@ -30,7 +30,7 @@ class DriverInstance {
   DriverInstance(std::shared_ptr<const Plugin> plugin, const DriverSettings& settings);
   ~DriverInstance();
   DriverInstance(DriverInstance&& other) noexcept;
-  DriverInstance& operator=(DriverInstance&&) = delete;
+  DriverInstance& operator=(DriverInstance&& other) noexcept;
   DriverInstance(const DriverInstance&) = delete;
   DriverInstance& operator=(const DriverInstance&) = delete;
 
@@ -93,6 +93,13 @@ class DriverInstance {
   ifog_description description_{};
   std::vector<std::string> warnings_;
 };
+
+// The keys of those settings that name files, by the plugin's list.
+std::vector<std::string> file_settings(const ifog_driver& table, const DriverSettings& settings);
+
+// The settings with those files in `folder` where their paths are relative; "": where the process is.
+DriverSettings with_files_in(const std::filesystem::path& folder, const ifog_driver& table,
+                             DriverSettings settings);
 
 // Finds, loads and creates in one go. Relative paths in the settings begin in `files_from`; "": where the
 // process is.

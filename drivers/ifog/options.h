@@ -7,7 +7,6 @@
 // interface.
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -18,6 +17,7 @@
 #include <string_view>
 #include <utility>
 
+#include "decimal.h"
 #include "driver.h"
 #include "quoted.h"
 
@@ -54,7 +54,7 @@ class Options {
                               const std::string& expected) const {
     const std::string_view value = text(key);
     double result = 0.0;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
+    const auto [end, error] = read_decimal(value.data(), value.data() + value.size(), result);
     if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(result) ||
         result < low || result > high)
       fail(key, expected);

@@ -36,6 +36,11 @@ std::uint32_t line_of(const Model& model, const std::string& channel) {
   return 0;
 }
 
+// Axes that repeat one value while another does not.
+std::uint32_t stuck_beside_others(const Increment& in) noexcept {
+  return (in.valid_axes & ~in.stuck_axes) != 0 ? in.stuck_axes : 0;
+}
+
 }  // namespace
 
 void ExactSum::add(double term) noexcept {
@@ -177,6 +182,12 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
     start_up_[axis * start_up_size_ + collected_] = out.compensated_radps[axis];
   if (++collected_ < start_up_size_) return;
+  // What repeats one value shows no noise, and would make that of the others look smaller.
+  if (const std::uint32_t stuck = stuck_beside_others(in); stuck != 0)
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
+      if ((stuck >> axis & 1U) != 0)
+        std::fill_n(start_up_.begin() + static_cast<std::ptrdiff_t>(axis * start_up_size_), start_up_size_,
+                    std::numeric_limits<double>::quiet_NaN());
   const NoiseEstimate noise = estimate_noise(start_up_, facts_.axes, period_s_);
   if (learns_measurement_noise_) filter_.measurement_noise = noise.measurement_noise;
   if (filter_.process_noise <= 0.0) {
@@ -198,7 +209,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
 void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept {
   RestSample is = (out.estimate.flags & kAtRest) != 0 ? RestSample::kRest : RestSample::kPassedOver;
   if ((out.estimate.flags & kManoeuvre) != 0 || (in.flags & kGapBefore) != 0) is = RestSample::kMotion;
-  rest_noise_.take(out.compensated_radps, in.valid_axes, is);
+  rest_noise_.take(out.compensated_radps, in.valid_axes & ~stuck_beside_others(in), is);
   const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
   if (!found) return;
   filter_.process_noise = filter_.follow_manoeuvres
@@ -220,8 +231,17 @@ void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
   }
 }
 
+// 0, with a variance that says how well that is known, would be believed.
+void SignalChain::leave_unknown(ChainOutput& out) const noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parts_->facts_.axes); ++i)
+    if ((known_axes_ >> i & 1U) == 0)
+      out.estimate.denoised_radps[i] = out.estimate.variance_rad2ps2[i] =
+          std::numeric_limits<double>::quiet_NaN();
+}
+
 void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   ChainParts& parts = *parts_;
+  known_axes_ |= in.valid_axes;
   out.flags = 0;
   parts.compensate(in, out);
   for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i) {
@@ -230,6 +250,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   }
   if (parts.estimator_ == nullptr) {
     parts.publish_raw(in, out);
+    leave_unknown(out);
     parts.learn(in, out);
     return;
   }
@@ -248,6 +269,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   if (parts.compensator_)
     for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i)
       out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];
+  leave_unknown(out);
 }
 
 EstimatorHealth SignalChain::health() const noexcept {

@@ -56,9 +56,11 @@ enum ChainFlags : std::uint32_t {
 
 struct ChainOutput {
   Axes compensated_radps{};
-  Axes delta_theta_rad{};               // compensated, unfiltered
-  Axes angle_rad{};                     // running sum of delta_theta
-  EstimatorOutput estimate;             // its variance includes the correction's
+  Axes delta_theta_rad{};  // compensated, unfiltered
+  Axes angle_rad{};        // running sum of delta_theta
+  // Its variance includes the correction's. Of an axis that has never had a value denoised and variance are
+  // NaN.
+  EstimatorOutput estimate;
   std::uint32_t flags = 0;              // ChainFlags
   std::uint32_t compensator_flags = 0;  // CompensatorFlags
 };
@@ -141,8 +143,11 @@ class SignalChain {
   [[nodiscard]] EstimatorHealth health() const noexcept;
 
  private:
+  void leave_unknown(ChainOutput& out) const noexcept;
+
   std::unique_ptr<ChainParts> parts_;
-  EstimatorHealth before_;  // the counters of estimators that are gone
+  std::uint32_t known_axes_ = 0;  // that have had a value
+  EstimatorHealth before_;        // the counters of estimators that are gone
   std::array<ExactSum, kMaxAxes> angle_{};
 };
 

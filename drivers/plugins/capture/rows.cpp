@@ -2,10 +2,11 @@
 #include "drivers/plugins/capture/rows.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "drivers/ifog/decimal.h"
 
 namespace ifog::capture_rows {
 namespace {
@@ -31,8 +32,7 @@ bool next_cell(std::string_view& line, bool& more, std::string_view& cell) {
 bool parse(std::string_view cell, double& value) {
   value = std::numeric_limits<double>::quiet_NaN();
   if (cell.empty()) return true;
-  if (cell.front() == '+') cell.remove_prefix(1);  // from_chars takes no plus sign
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const auto [end, error] = read_decimal(cell.data(), cell.data() + cell.size(), value);
   return error == std::errc() && end == cell.data() + cell.size() && !std::isinf(value);
 }
 

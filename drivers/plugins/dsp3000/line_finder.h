@@ -17,7 +17,7 @@ class LineFinder {
     std::uint64_t good = 0;
     std::uint64_t malformed = 0;      // lines that have not the form
     std::uint64_t bytes_skipped = 0;  // bytes that are part of no good line
-    std::uint64_t bytes_framed = 0;   // bytes of good lines
+    std::uint64_t bytes_framed = 0;   // bytes of good lines, and of an empty one that comes first
   };
 
   // Calls found(Reading) for each good line, in order. No allocation.
@@ -57,9 +57,11 @@ class LineFinder {
         return reading;
       }
     }
-    // What comes before the first line end is no fault of the line's.
+    // What comes before the first line end is no fault of the line's, and nothing is no loss: the encoder
+    // begins with a line end.
     if (whole) ++counters_.malformed;
-    counters_.bytes_skipped += length;
+    const bool empty = length == 2 && line_.front() == '\r';
+    (!whole && empty ? counters_.bytes_framed : counters_.bytes_skipped) += length;
     return {};
   }
 

@@ -6,8 +6,10 @@ hostile files, each refused with one line.
 usage: hdf5.py PATH_OF_IFOG SOURCE_DIR       Exit 77 without h5py or h5dump.
 """
 import gzip
+import hashlib
 import os
 import random
+import resource
 import shutil
 import struct
 import subprocess
@@ -173,6 +175,24 @@ class Checks:
                 assert bits(values) == bits(denoised[name][:]), name
         ifog("diagnose", capture)
         ifog("replay", capture, "--driver", "kvh1750", "--option", "format=b", "--speed", "0", "--to", f"file:{self.folder / 'sent.kvh'}")
+
+    def check_a_large_file_is_hashed_in_pieces(self):
+        """Of which only some columns are read; in less memory than it has bytes."""
+        draw = numpy.random.default_rng(3)
+        path, model = self.folder / "large.h5", self.folder / "large.toml"
+        write(path, {"time_s": numpy.arange(20000) / 100, "rate_radps": 1e-5 * draw.standard_normal(20000)}, group="/imu")
+        with h5py.File(path, "a") as file:
+            blob = file.create_dataset("elsewhere", shape=(600 << 20,), dtype="u1")
+            blob[-1] = 1  # written, and yet mostly a hole of the file
+        assert path.stat().st_size > 600 << 20
+        limit = 500 << 20
+        done = subprocess.run([IFOG, "diagnose", "--quiet", path, "--group", "/imu", "--write-model", model], capture_output=True, text=True,
+                              check=False, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit)))
+        assert done.returncode == 0, done
+        with open(path, "rb") as file:
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
+        path.unlink()
+        assert digest in model.read_text(), model.read_text()
 
     def check_groups_and_names_of_ones_own(self):
         columns = {"t": numpy.arange(5) * 10, "GyroX": numpy.array([1.0, 2, 3, 4, 5]), "T": numpy.array([32.0, 50, 32, 32, 32]),

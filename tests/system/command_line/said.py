@@ -132,6 +132,99 @@ class Checks:
             assert documents[0] == documents[1], f"{command}: another result than without the dead axis"
         assert "raw_y_radps" not in columns(self.folder / "axes.csv")
 
+    def check_an_axis_that_repeats_one_value_is_left_out_of_fits(self):
+        """The others are fitted as they are alone; also where a correction that is alive would make it move."""
+        other = [self.random.gauss(0, SIGMA) for _ in range(ROWS)]
+        warm = {"temperature_degC": [20 + 0.4 * math.sin(i / 100) for i in range(ROWS)]}
+        rates = {"rate_x_radps": self.noise, "rate_y_radps": [1e-4] * ROWS, "rate_z_radps": other}
+        path = self.write("stuck_y.csv", rates | warm)
+        alone = self.write("not_y.csv", {name: rate for name, rate in rates.items() if "_y_" not in name} | warm)
+        tune = ["tune", "--state", "random-walk"]
+        for command in (tune, ["compare"], ["diagnose"], ["diagnose", "--model", self.model("of_all.toml")]):
+            documents = []
+            for capture in (path, alone):
+                to = self.folder / "stuck.json"
+                text = said(*command, capture, "--json", to)
+                assert (f"{path}: rate_y is 0.0001 rad/s in all of its {ROWS} rows: the axis is stuck, and left out" in text) == (capture == path), text
+                documents.append(json.loads(json.dumps(json.loads(to.read_text())).replace(str(path), str(alone))))
+            assert documents[0] == documents[1], f"{command}: another result than without the stuck axis"
+        noise = []
+        for capture in (path, alone):
+            to = self.folder / "stuck.json"
+            text = said("denoise", capture, "--output", self.folder / "stuck.out.csv", "--json", to)
+            assert (f"rate_y repeats one value in {ROWS - 100} of {ROWS} rows" in text) == (capture == path), text
+            document = json.loads(to.read_text())
+            schema.check(document)
+            assert [axis["stuck"] for axis in document["axes"]] == ([0, ROWS - 100, 0] if capture == path else [0, 0])
+            noise.append(document["filter"]["measurement_noise"])
+        assert noise[0] == noise[1], f"the noise of a start-up with a stuck axis is {noise[0]}, without {noise[1]}"
+        # Where no other is left, the rates are refused for what they are.
+        for command in (tune, ["diagnose"]):
+            refused(1, *command, self.write("still.csv", {"rate_radps": [1e-4] * ROWS}), says=["still.csv"])
+
+    def check_a_model_of_an_axis_without_a_value_corrects_the_others(self):
+        other = [self.random.gauss(0, SIGMA) for _ in range(ROWS)]
+        warm = {"temperature_degC": [20 + i / 10000 for i in range(ROWS)]}
+        dead = self.write("dead_y_warm.csv", {"rate_x_radps": self.noise, "rate_y_radps": [math.nan] * ROWS, "rate_z_radps": other} | warm)
+        alone = self.write("no_y_warm.csv", {"rate_x_radps": self.noise, "rate_z_radps": other} | warm)
+        model, of_x = self.folder / "xyz.toml", self.model("only_x.toml", "x")
+        effect = of_x.read_text().split("[[effect]]")[1].split("[[range]]")
+        model.write_text("version = 1\n" + "".join("[[effect]]" + effect[0].replace('"x"', f'"{axis}"') for axis in "xy") + "[[range]]" + effect[1])
+        outs = []
+        for capture, of in ((dead, model), (alone, of_x)):
+            outs.append(self.folder / "corrected.csv")
+            text = said("denoise", capture, "--model", of, "--output", outs[-1])
+            outs[-1] = outs[-1].read_text()
+        assert outs[0] == outs[1], "another correction than of a capture without that axis"
+        refused(1, "denoise", alone, "--model", model, "--output", self.folder / "never.csv", says=[str(model), "no axis 'y'"])
+
+    def check_figures_are_of_the_part_that_is_wanted(self):
+        """Noise is known after four seconds; values are missing from 5 to 8 s."""
+        part = [math.nan if 500 <= i < 800 else v for i, v in enumerate(self.noise)]
+        holed, out, to = self.write("parts.csv", {"rate_radps": part}), self.folder / "parts.out.csv", self.folder / "parts.json"
+        for bounds, samples, unknown, invalid in (([], ROWS, 400, 300), (["--to", 3], 300, 300, 0), (["--from", 6], ROWS - 600, 0, 200),
+                                                  (["--from", 10], ROWS - 1000, 0, 0), (["--from", 2, "--to", 6], 400, 200, 100)):
+            text = said("denoise", holed, *bounds, "--output", out, "--json", to)
+            found = json.loads(to.read_text())
+            figures = [found[key] for key in ("samples", "samples_before_noise_known", "invalid")]
+            assert figures == [samples, unknown, invalid], f"{bounds}: {figures}"
+            none = unknown == samples
+            assert found["filter"]["from_start_up"] != none and ("lies within the start-up" in text) == none, text
+
+    def check_numbers_too_small_for_a_double_are_zero(self):
+        tiny = self.folder / "tiny.csv"
+        tiny.write_text("time_s,rate_radps\n" + "".join(f"{i / RATE_HZ},{v if i % 3 else '1e-400'}\n" for i, v in enumerate(self.noise)))
+        out = self.folder / "tiny.out.csv"
+        ifog("denoise", tiny, "--output", out)
+        assert columns(out)["raw_radps"][0] == 0.0
+        for value in ("1e-310", "1e-400"):
+            result = ran("denoise", self.one, "--output", out, "--process-noise", value, "--measurement-noise", "1e-10")
+            assert result.returncode == 0, result
+
+    def check_what_a_configuration_names_is_read(self):
+        """Relative to it, whatever else the command line says, and no output of the run."""
+        place = self.folder / "configured"
+        place.mkdir()
+        dbc, model, config = place / "bus.dbc", self.model("configured/model.toml"), place / "ifogd.toml"
+        dbc.write_bytes(DBC[1].read_bytes())
+        config.write_text('[[sensor]]\nname = "nose"\ndriver = "dbc"\n[sensor.transport]\ntype = "file"\npath = "can.log"\nformat = "candump"\n'
+                          '[sensor.options]\ndbc = "bus.dbc"\nsignal = "Rate_x"\nrate_hz = 50\n')
+        log = place / "can.log"
+        ifog("convert", self.one, log, "--dbc", dbc, "--option", "signal=Rate_x", "--option", "rate_hz=100")
+        before = [path.read_bytes() for path in (dbc, log, config)]
+        out, to = self.folder / "configured.csv", self.folder / "configured.json"
+        denoise = ["denoise", log, "--config", config]
+        ifog(*denoise, "--output", out, "--option", "rate_hz=100", "--json", to)
+        assert json.loads(to.read_text())["sample_rate_hz"] == 100
+        for path in (dbc, log, config):
+            refused(2, *denoise, "--output", path, says=["expected another one"])
+            refused(2, *denoise, "--output", out, "--json", path, says=["expected another one"])
+        refused(2, "proposals", "--config", config, "--json", dbc, says=["option dbc of sensor nose", "expected another one"])
+        assert [path.read_bytes() for path in (dbc, log, config)] == before
+        text = config.read_text().replace("driver = ", f'model = "{model}"\ndriver = ')
+        config.write_text(text)
+        refused(2, *denoise, "--output", model, says=["the configuration's model", "expected another one"])
+
     def check_a_drivers_axis_without_a_value_has_no_figures(self):
         frames, out, summary = self.folder / "x.kvh", self.folder / "x.csv", self.folder / "x.json"
         ifog("convert", self.one, frames, "--driver", "kvh1750", "--option", "rate_hz=100")
@@ -141,6 +234,9 @@ class Checks:
         schema.check(document)
         assert [axis["missing"] for axis in document["axes"]] == [0, ROWS, ROWS], document["axes"]
         assert document["axes"][1]["raw_std_radps"] is None
+        found = columns(out)
+        assert all(math.isnan(value) for name in ("denoised_y_radps", "variance_z_rad2ps2") for value in found[name]), "a rate that nobody measured"
+        assert not any(math.isnan(value) for value in found["denoised_x_radps"])
 
     def check_full_scale_is_the_same_everywhere(self):
         """What the daemon takes for missing by the driver's full scale, convert and allan take for missing, too, and say so."""
@@ -162,6 +258,13 @@ class Checks:
         ifog("convert", self.one, packed)
         for again in (self.one, copy, packed):
             refused(1, "diagnose", self.one, again, says=[str(again), "the same samples as", str(self.one)])
+        times = [i / RATE_HZ for i in range(ROWS)]
+        for name, begin, end, said_from, said_to in (("tail.csv", 1000, 3000, "10", "19.99"), ("inside.csv", 500, 1500, "5", "14.99")):
+            part = self.write(name, {"rate_radps": self.noise[begin:end]}, times[begin:end])
+            whole = self.write("front.csv", {"rate_radps": self.noise[:2000]}, times[:2000])
+            refused(1, "diagnose", whole, part, says=[str(part), f"from {said_from} to {said_to} s", "expected each record once"])
+        # Records of their own may begin at the same time.
+        ifog("diagnose", "--quiet", self.one, self.write("another.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(ROWS)]}))
 
     def check_a_model_of_one_axis_for_several_is_said(self):
         warm = {"temperature_degC": [20 + i / 10000 for i in range(ROWS)]}

@@ -328,6 +328,57 @@ TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
     }
 }
 
+// Three axes of which one is not as the others: until `dead_until` it has no value, or it repeats one.
+ChainOutput of_three(int n, int dead_until, bool repeats, SignalChain& chain) {
+  ChainSettings three = settings();
+  three.facts.axes = 3;
+  Incrementer incrementer(three.facts);
+  Increment increment;
+  ChainOutput out;
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0.01, 1e-4);
+  for (int i = 0; i < n; ++i) {
+    Reading reading;
+    reading.sequence = static_cast<std::uint32_t>(i % 128);
+    reading.has_sequence = true;
+    reading.value = {normal(engine), repeats ? 0.0 : normal(engine), normal(engine)};
+    reading.valid_axes = repeats || i >= dead_until ? 7 : 5;
+    incrementer.next(reading, increment);
+    chain.process(increment, out);
+    const bool known = repeats || i >= dead_until;
+    EXPECT_EQ(std::isfinite(out.estimate.denoised_radps[1]), known) << i;
+    EXPECT_EQ(std::isfinite(out.estimate.variance_rad2ps2[1]), known) << i;
+    EXPECT_TRUE(std::isfinite(out.estimate.denoised_radps[0] + out.estimate.variance_rad2ps2[2])) << i;
+  }
+  return out;
+}
+
+SignalChain chain_of_three(double q, double r) {
+  ChainSettings three = settings(q, r);
+  three.facts.axes = 3;
+  three.axes = {"x", "y", "z"};
+  three.start_up_s = 1.0;
+  return SignalChain(std::make_unique<ChainParts>(three));
+}
+
+// Nothing is known of it, and 0 with a small variance would say that all is.
+TEST(SignalChain, AnAxisThatHasHadNoValueHasNoEstimate) {
+  for (const double q : {1e-10, 0.0}) {
+    SignalChain chain = chain_of_three(q, 100.0 * q);
+    of_three(3000, 3000, false, chain);
+    SignalChain late = chain_of_three(q, 100.0 * q);
+    const ChainOutput out = of_three(6000, 2500, false, late);
+    EXPECT_NEAR(out.estimate.denoised_radps[1], 0.01, 1e-4);
+  }
+}
+
+// The others' noise is what it is: an axis that repeats one value has none to share.
+TEST(SignalChain, AStuckAxisMakesTheOthersNoQuieter) {
+  SignalChain chain = chain_of_three(0.0, 0.0);
+  of_three(1500, 0, true, chain);
+  EXPECT_NEAR(chain.parts().filter().measurement_noise, 1e-8, 0.1e-8);
+}
+
 // A tenth of a day at 5 kHz, to a tenth of what a day may lose. The terms are whole multiples of 2^-70, so
 // that 128-bit integers sum them exactly.
 TEST(ExactSum, ATenthOfADayAt5kHzIsExactTo1e10) {

@@ -114,6 +114,14 @@ TEST(Dsp3000, EncodesWhatItDecodes) {
   }
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()),
             "\r\n0.000000 1\r\n-0.000001 1\r\n5.250000 1\r\n-123.456789 1\r\n999.999999 1\r\n");
+  // Read back, nothing of it is left over, however it is cut.
+  ifog::DriverInstance reader = ifog::make_driver("dsp3000", {});
+  std::size_t samples = 0;
+  for (const std::uint8_t byte : bytes)
+    samples += decode(reader, std::string(1, static_cast<char>(byte))).size();
+  EXPECT_EQ(samples, 5U);
+  EXPECT_EQ(reader.counters().bytes_framed, bytes.size());
+  EXPECT_EQ(reader.counters().bytes_skipped, 0U);
   sample.value[0] = 1000.0 * kDegree;
   EXPECT_THROW(driver.encode_bytes(sample, bytes), std::runtime_error);
 }

@@ -11,6 +11,7 @@
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
+#include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/reading_progress.h"
@@ -101,11 +102,8 @@ DriverSettings CaptureInput::settings() const {
   return out;
 }
 
-DriverInstance CaptureInput::make_driver(const std::vector<std::string>& folders,
-                                         const std::string& files_from) const {
-  DriverInstance made = ifog::make_driver(driver_name(), settings(), plugin_folders(folders), files_from);
-  for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
-  return made;
+DriverInstance CaptureInput::make_driver(const std::vector<std::string>& folders) const {
+  return driver_of_run(driver_name(), settings(), folders);
 }
 
 FileKind CaptureInput::kind(const InputFile& file) const {

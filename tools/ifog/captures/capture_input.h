@@ -62,10 +62,8 @@ struct CaptureInput {
   void will_read(const std::string& argument, const std::string& path) const;
 
   // Throws std::runtime_error with one line.
-  // folders: that plugins are looked for in; empty: the standard places. files_from: where relative paths in
-  // the options begin; "": where the process is.
-  [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {},
-                                           const std::string& files_from = {}) const;
+  // folders: that plugins are looked for in; empty: the standard places.
+  [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {}) const;
 
   // As it will be read: CSV where its columns are given; where neither name nor first bytes tell, CSV without
   // a driver and bytes with one.

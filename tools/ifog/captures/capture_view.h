@@ -21,7 +21,7 @@ struct CaptureView {
 
   std::vector<std::string> comments;
   std::span<const double> time_s;
-  std::vector<std::string> axes;
+  std::vector<std::string> axes, dead_axes;
   std::vector<std::span<const double>> rate_radps;
   std::vector<std::span<const double>> reference_rate_radps;  // by axis, empty where there is none
   std::vector<Channel> channels;

@@ -7,12 +7,13 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/effects/compensate_series.h"
+#include "tools/ifog/captures/model_axes.h"
 
 namespace ifog::tools {
 
 std::vector<Samples> compensated_rates(const CaptureView& capture, const Model& model) {
-  Compensator compensator(model, capture.axes, std::numeric_limits<double>::infinity(),
-                          capture.since_power_up_s);
+  Compensator compensator(without_axes(model, capture.dead_axes), capture.axes,
+                          std::numeric_limits<double>::infinity(), capture.since_power_up_s);
   SeriesToCompensate series{capture.time_s, capture.rate_radps, {}};
   for (const std::string& name : compensator.channels()) {
     const CaptureView::Channel* found = nullptr;

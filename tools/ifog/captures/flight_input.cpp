@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,8 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
 #include "filters/model_file/kept_noise.h"
+#include "tools/ifog/captures/driver_of_run.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -37,6 +40,26 @@ class NamedText {
   int fd_;
 };
 
+// What a driver is made of: its options, and what the files hold that they name.
+std::map<std::string, std::pair<std::string, std::string>> options_in(const FlightHeader& header) {
+  std::map<std::string, std::pair<std::string, std::string>> out;
+  for (const auto& [key, value] : header.options) {
+    const auto file = header.files.find(value);
+    out[key] = {value, file == header.files.end() ? "" : file->second};
+  }
+  return out;
+}
+
+void add(const ifog_driver_counters& from, ifog_driver_counters& to) {
+  for (std::uint64_t ifog_driver_counters::*count :
+       {&ifog_driver_counters::frames_good, &ifog_driver_counters::frames_crc,
+        &ifog_driver_counters::frames_format, &ifog_driver_counters::bytes_skipped,
+        &ifog_driver_counters::frames_repeated, &ifog_driver_counters::samples_incomplete,
+        &ifog_driver_counters::bytes_framed, &ifog_driver_counters::bytes_pending,
+        &ifog_driver_counters::values_refused, &ifog_driver_counters::frames_other})
+    to.*count += from.*count;
+}
+
 }  // namespace
 
 template <typename Work>
@@ -54,24 +77,30 @@ FlightInput::FlightInput(InputFile& file)
   with_name([this] { reader_.next(); });
 }
 
+// The recording's own, not another in its place.
+bool FlightInput::names_the_driver() const { return driver_.empty() || driver_ == header().driver; }
+
 DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options,
-                                        const std::vector<std::string>& folders,
-                                        const std::string& files_from) const {
-  const bool other = !driver.empty() && driver != header().driver;
+                                        const std::vector<std::string>& folders) {
+  driver_ = driver;
+  options_ = options;
+  folders_ = folders;
+  return made();
+}
+
+DriverInstance FlightInput::made() const {
+  const bool other = !names_the_driver();
   DriverSettings settings = other ? DriverSettings{} : header().options;
   std::vector<std::unique_ptr<NamedText>> carried;
   for (auto& [key, value] : settings)
     if (const auto found = header().files.find(value); found != header().files.end())
       value = carried.emplace_back(std::make_unique<NamedText>(found->second))->name();
-  for (const auto& [key, value] : options) settings[key] = value;
+  for (const auto& [key, value] : options_) settings[key] = value;
   return with_name([&] {
     if (header().driver.empty() && !other)
       throw std::runtime_error(
           "is a recording of LCM messages, expected none of --driver and --option with it");
-    DriverInstance made =
-        ifog::make_driver(other ? driver : header().driver, settings, plugin_folders(folders), files_from);
-    for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
-    return made;
+    return driver_of_run(other ? driver_ : header().driver, settings, folders_);
   });
 }
 
@@ -81,7 +110,10 @@ SensorConfig FlightInput::sensor() const {
 
 std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) const {
   const auto found = header().files.find(sensor.model);
-  if (found == header().files.end()) return read_sensor_model(sensor);
+  if (found == header().files.end()) {
+    will_read("the recording's model", sensor.model);
+    return read_sensor_model(sensor);
+  }
   return std::make_shared<const Model>(parse_model(found->second, sensor.model));
 }
 
@@ -99,16 +131,26 @@ void FlightInput::tell_losses() const {
 RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const RecordedSamples& sink) {
   return with_name([&] {
     RecordingCounts counts;
+    auto options = options_in(header());
+    // What was recorded with other options would be read as what it is not.
+    const auto file = [&](const FlightHeader& header) {
+      if (auto now = options_in(header); names_the_driver() && now != options) {
+        options = std::move(now);
+        add(driver.counters(), counts.driver);
+        driver = made();
+      }
+      if (sink.file) sink.file(header);
+    };
     const RecordedSamples counting{[&](const RecordedSample& sample) {
                                      ++counts.samples;
                                      sink.sample(sample);
                                    },
-                                   sink.discontinuity, sink.missing, sink.file};
+                                   sink.discontinuity, sink.missing, file};
     decode_flight(reader_, driver, counting);
     const std::uint64_t before = driver.counters().bytes_skipped;
     driver.reset();
     counts.bytes_at_end = driver.counters().bytes_skipped - before;
-    counts.driver = driver.counters();
+    add(driver.counters(), counts.driver);
     tell_losses();
     if (counts.samples == 0)
       throw std::runtime_error("driver " + std::string(driver.table().name) + " finds no sample in it");
@@ -122,17 +164,19 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
   builder.allow_restarts();
   std::vector<ChannelValue> before(header().channels.size());
   std::vector<double> fresh(before.size());
-  const RecordingCounts counts = for_each_sample(driver, {[&](const RecordedSample& recorded) {
-                                                            for (std::size_t i = 0; i < before.size(); ++i) {
-                                                              const ChannelValue& now = recorded.outside[i];
-                                                              fresh[i] =
-                                                                  now.same(before[i]) ? kNone : now.value;
-                                                              before[i] = now;
-                                                            }
-                                                            builder.add(recorded.sample, fresh);
-                                                            added(recorded);
-                                                          },
-                                                          [&] { builder.discontinuity(); }});
+  const RecordingCounts counts =
+      for_each_sample(driver, {[&](const RecordedSample& recorded) {
+                                 for (std::size_t i = 0; i < before.size(); ++i) {
+                                   const ChannelValue& now = recorded.outside[i];
+                                   fresh[i] = now.same(before[i]) ? kNone : now.value;
+                                   before[i] = now;
+                                 }
+                                 builder.add(recorded.sample, fresh);
+                                 added(recorded);
+                               },
+                               [&] { builder.discontinuity(); },
+                               {},
+                               [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter\n", file_.path().c_str(), builder.missing());

@@ -30,11 +30,10 @@ class FlightInput {
 
   // The driver of the recording with its options, those of `options` over them; another one, which then has
   // only `options`, where `driver` names it.
-  // folders: that plugins are looked for in; empty: the standard places. files_from: where relative paths in
-  // the options begin; "": where the process is.
+  // folders: that plugins are looked for in; empty: the standard places. Where a later file of the recording
+  // names other options, it is made anew from them.
   [[nodiscard]] DriverInstance make_driver(const std::string& driver, const DriverSettings& options,
-                                           const std::vector<std::string>& folders = {},
-                                           const std::string& files_from = {}) const;
+                                           const std::vector<std::string>& folders = {});
   // As the daemon had it configured, and the model it used: what the recording carries of it, else the file
   // that it names. Null: none.
   [[nodiscard]] SensorConfig sensor() const;
@@ -58,9 +57,15 @@ class FlightInput {
              const std::function<void(const RecordedSample&)>& added);
   [[nodiscard]] std::optional<double> since_power_up_s(std::int64_t first_ns) const;
   void tell_losses() const;
+  [[nodiscard]] DriverInstance made() const;
+  [[nodiscard]] bool names_the_driver() const;
 
   InputFile& file_;
   FlightReader reader_;
+  // By make_driver().
+  std::string driver_;
+  DriverSettings options_;
+  std::vector<std::string> folders_;
 };
 
 }  // namespace ifog::tools

@@ -25,6 +25,7 @@ CaptureView::CaptureView(const Capture& capture)
     : comments(capture.comments),
       time_s(capture.time_s),
       axes(capture.axes),
+      dead_axes(capture.dead_axes),
       rate_radps(capture.rate_radps.begin(), capture.rate_radps.end()),
       reference_rate_radps(capture.reference_rate_radps.begin(), capture.reference_rate_radps.end()),
       faults(capture.faults),
@@ -39,6 +40,7 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   view_.since_power_up_s = table_.since_power_up_s;
   view_.time_s = table_.time_s.all();
   view_.axes = shape.axes;
+  view_.dead_axes = table_.dead_axes;
   view_.rate_radps.resize(shape.axes.size());
   view_.reference_rate_radps.resize(shape.axes.size());
   using Kind = CaptureShape::Place::Kind;
@@ -56,17 +58,21 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   }
 }
 
-void LongCapture::cut(const TimePart& part, const std::string& name) {
+void LongCapture::cut(const TimePart& part, const std::string& name) { view_ = this->part(part, name); }
+
+CaptureView LongCapture::part(const TimePart& part, const std::string& name) const {
+  CaptureView out = view_;
   const TimePart::Rows rows = part.rows(view_.time_s, name);
   const auto keep = [&](std::span<const double>& values) {
     if (!values.empty()) values = values.subspan(rows.begin, rows.end - rows.begin);
   };
-  if (view_.since_power_up_s && rows.begin < view_.size())
-    *view_.since_power_up_s += view_.time_s[rows.begin] - view_.time_s.front();
-  keep(view_.time_s);
-  for (std::span<const double>& rate : view_.rate_radps) keep(rate);
-  for (std::span<const double>& reference : view_.reference_rate_radps) keep(reference);
-  for (CaptureView::Channel& channel : view_.channels) keep(channel.values);
+  if (out.since_power_up_s && rows.begin < view_.size())
+    *out.since_power_up_s += view_.time_s[rows.begin] - view_.time_s.front();
+  keep(out.time_s);
+  for (std::span<const double>& rate : out.rate_radps) keep(rate);
+  for (std::span<const double>& reference : out.reference_rate_radps) keep(reference);
+  for (CaptureView::Channel& channel : out.channels) keep(channel.values);
+  return out;
 }
 
 void LongCapture::correct(const Model& model) {

@@ -22,6 +22,8 @@ class LongCapture {
 
   [[nodiscard]] const CaptureView& view() const { return view_; }
   void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }
+  // The rows inside.
+  [[nodiscard]] CaptureView part(const TimePart& part, const std::string& name) const;
   // Rows outside are gone. name: for messages. Throws as TimePart::rows().
   void cut(const TimePart& part, const std::string& name);
   // The rates less the model's effects. Throws as compensated_rates().

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "drivers/capture/column_names.h"
+
 namespace ifog::tools {
 
 using Kind = CaptureShape::Place::Kind;
@@ -20,11 +22,27 @@ void LongTable::leave_out_unknown(const std::string& path) {
     return column.known && column.name.starts_with("rate");
   });
   if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
+  leave_out_dead_axes();
   std::erase_if(header, [&](const std::string& name) {
     return std::any_of(columns.begin(), columns.end(),
                        [&](const LongColumn& column) { return column.name == name && !column.known; });
   });
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
+}
+
+std::vector<std::string> LongTable::leave_out_dead_axes() {
+  std::vector<std::string> dead;
+  std::string axis;
+  const auto of_dead_axis = [&](const std::string& name) {
+    return (axis_of(name, "rate", axis) || axis_of(name, "reference_rate", axis)) &&
+           std::find(dead.begin(), dead.end(), axis) != dead.end();
+  };
+  for (const LongColumn& column : columns)
+    if (!column.known && axis_of(column.name, "rate", axis)) dead.push_back(axis);
+  std::erase_if(columns, [&](const LongColumn& column) { return of_dead_axis(column.name); });
+  std::erase_if(header, of_dead_axis);
+  dead_axes.insert(dead_axes.end(), dead.begin(), dead.end());
+  return dead;
 }
 
 void LongTableSink::begin(const std::vector<std::string>& names) {

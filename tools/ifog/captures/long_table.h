@@ -21,14 +21,17 @@ struct LongColumn {
 
 struct LongTable : RowNotes {
   LongSeries time_s;
-  std::vector<std::string> header;  // all that the file has but time_s
-  std::vector<LongColumn> columns;  // of those that are wanted, in the same order
+  std::vector<std::string> header;     // all that the file has but time_s, but for dead_axes
+  std::vector<LongColumn> columns;     // of those that are wanted, in the same order
+  std::vector<std::string> dead_axes;  // of the sensor, whose columns were left out: they never have a value
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
   // Of a recording: axes and channels that never had a value. Throws std::runtime_error where nothing is
   // left.
   void leave_out_unknown(const std::string& path);
+  // The axes of rates that never had one, whose columns are gone from here on, with their references.
+  std::vector<std::string> leave_out_dead_axes();
 };
 
 // Puts rows into a table: the columns that `wanted` says yes to, all where it is empty.

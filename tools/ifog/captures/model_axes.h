@@ -14,4 +14,8 @@ namespace ifog::tools {
 void tell_model_of_one_axis(const Model& model, const std::string& path,
                             const std::vector<std::string>& axes);
 
+// The model for a capture from which these axes of its sensor were left out: less the effects that are of
+// them or depend on their rates. What of the others is lost by that is told; the rest of it stays as it was.
+[[nodiscard]] Model without_axes(Model model, const std::vector<std::string>& axes);
+
 }  // namespace ifog::tools

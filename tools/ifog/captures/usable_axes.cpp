@@ -30,35 +30,59 @@ bool has_value(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
 }
 
-void leave_out(CaptureView& capture, const std::string& axis) {
-  const auto found = std::find(capture.axes.begin(), capture.axes.end(), axis);
-  if (found == capture.axes.end()) return;
-  const auto at = found - capture.axes.begin();
-  capture.axes.erase(found);
-  capture.rate_radps.erase(capture.rate_radps.begin() + at);
-  capture.reference_rate_radps.erase(capture.reference_rate_radps.begin() + at);
+// As many as the daemon wants to see (filters/estimator/sensor_check.h): what is coarse repeats itself, too.
+bool repeats_one_value(std::span<const double> values) {
+  constexpr std::ptrdiff_t kFewest = 100;
+  const auto is_value = [](double value) { return !std::isnan(value); };
+  const auto first = std::find_if(values.begin(), values.end(), is_value);
+  return std::count_if(first, values.end(), is_value) > kFewest &&
+         std::all_of(first, values.end(), [&](double value) { return !is_value(value) || value == *first; });
 }
 
-void keep_usable(std::span<CaptureView> captures, std::span<const std::string> names) {
-  std::vector<std::string> dead;
-  for (std::size_t c = 0; c < captures.size(); ++c) {
-    const CaptureView& capture = captures[c];
-    std::size_t alive = 0;
-    for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-      if (has_value(capture.rate_radps[a])) {
-        ++alive;
-        tell_missing(names[c], capture.axes[a], capture.time_s, capture.rate_radps[a]);
-      } else {
-        dead.push_back(capture.axes[a]);
-      }
-    }
-    if (alive == 0) refuse_without_rates(names[c], capture.size());
-    for (const std::string& axis : std::span(dead).last(capture.axes.size() - alive))
-      tell_left_out(names[c], rate_of(axis), capture.size());
+void tell_stuck(const std::string& name, const std::string& axis, std::span<const double> rate) {
+  const double value = *std::find_if(rate.begin(), rate.end(), [](double v) { return !std::isnan(v); });
+  warn("%s: %s is %.6g rad/s in all of its %zu rows: the axis is stuck, and left out\n", name.c_str(),
+       rate_of(axis).c_str(), value, rate.size());
+}
+
+// Of one capture.
+template <typename Captured>
+std::vector<std::string> unusable(const Captured& capture, const std::string& name) {
+  std::vector<std::string> missing, stuck;
+  for (std::size_t a = 0; a < capture.axes.size(); ++a)
+    if (!has_value(capture.rate_radps[a]))
+      missing.push_back(capture.axes[a]);
+    else if (repeats_one_value(capture.rate_radps[a]))
+      stuck.push_back(capture.axes[a]);
+  if (missing.size() == capture.axes.size()) refuse_without_rates(name, capture.size());
+  // Where no other is left, what the command says of such rates is said.
+  if (missing.size() + stuck.size() == capture.axes.size()) stuck.clear();
+  const auto is_in = [](const std::vector<std::string>& axes, const std::string& axis) {
+    return std::find(axes.begin(), axes.end(), axis) != axes.end();
+  };
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    const std::string& axis = capture.axes[a];
+    if (is_in(missing, axis))
+      tell_left_out(name, rate_of(axis), capture.size());
+    else if (is_in(stuck, axis))
+      tell_stuck(name, axis, capture.rate_radps[a]);
+    else
+      tell_missing(name, axis, capture.time_s, capture.rate_radps[a]);
   }
-  for (CaptureView& capture : captures) {
-    for (const std::string& axis : dead) leave_out(capture, axis);
-    if (capture.axes.empty()) refuse_without_rates(names.front(), capture.size());
+  missing.insert(missing.end(), stuck.begin(), stuck.end());
+  return missing;
+}
+
+template <typename Captured>
+void leave_out_of(const std::vector<std::string>& axes, Captured& capture) {
+  for (const std::string& axis : axes) {
+    const auto found = std::find(capture.axes.begin(), capture.axes.end(), axis);
+    if (found == capture.axes.end()) continue;
+    const auto at = found - capture.axes.begin();
+    capture.axes.erase(found);
+    capture.rate_radps.erase(capture.rate_radps.begin() + at);
+    capture.reference_rate_radps.erase(capture.reference_rate_radps.begin() + at);
+    capture.dead_axes.push_back(axis);
   }
 }
 
@@ -89,12 +113,30 @@ void refuse_without_rates(const std::string& name, std::size_t rows) {
                            " rows, expected rates");
 }
 
+std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
+                                       const std::vector<std::string>& names) {
+  std::vector<std::string> all;
+  for (std::size_t c = 0; c < captures.size(); ++c)
+    for (std::string& axis : unusable(captures[c], names[c]))
+      if (std::find(all.begin(), all.end(), axis) == all.end()) all.push_back(std::move(axis));
+  for (std::size_t c = 0; c < captures.size(); ++c) {
+    CaptureView left = captures[c];
+    leave_out(all, left);
+    if (left.axes.empty())
+      throw std::runtime_error(names[c] + ": no axis is left that can be used in every capture");
+  }
+  return all;
+}
+
+void leave_out(const std::vector<std::string>& axes, CaptureView& capture) { leave_out_of(axes, capture); }
+
 void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
-  keep_usable(std::span(captures), names);
+  const std::vector<std::string> out = unusable_axes(captures, names);
+  for (CaptureView& capture : captures) leave_out(out, capture);
 }
 
 void keep_usable_axes(CaptureView& capture, const std::string& name) {
-  keep_usable(std::span(&capture, 1), {&name, 1});
+  leave_out_of(unusable(capture, name), capture);
 }
 
 void keep_usable_axes(LongTable& table, const std::string& name) {
@@ -106,17 +148,8 @@ void keep_usable_axes(LongTable& table, const std::string& name) {
       alive += column.known ? 1 : 0;
     }
   if (rates > 0 && alive == 0) refuse_without_rates(name, table.size());
-  std::vector<std::string> dead;
-  std::erase_if(table.columns, [&](const LongColumn& column) {
-    if (!axis_of(column.name, "rate", axis) || column.known) return false;
-    tell_left_out(name, rate_of(axis), table.size());
-    dead.push_back(axis);
-    return true;
-  });
-  std::erase_if(table.columns, [&](const LongColumn& column) {
-    return axis_of(column.name, "reference_rate", axis) &&
-           std::find(dead.begin(), dead.end(), axis) != dead.end();
-  });
+  for (const std::string& dead : table.leave_out_dead_axes())
+    tell_left_out(name, rate_of(dead), table.size());
 }
 
 }  // namespace ifog::tools

@@ -24,9 +24,15 @@ std::string expected_axes(const std::vector<std::string>& axes);
 // The one refusal of a capture in which no axis has a value.
 [[noreturn]] void refuse_without_rates(const std::string& name, std::size_t rows);
 
-// Tells on standard error, in these words, what is missing of each axis, and leaves out an axis that never
-// has a value: in one of several captures out of all, which are fitted together. Throws std::runtime_error
-// with one line where no axis is left.
+// The axes that never have a value, or repeat one while another axis does not: in one of several captures, as
+// all are fitted together. Of the rates as the sensor sent them, as a correction that is alive would hide it.
+// Tells on standard error, in these words, of each of them and what is missing of the others. Throws
+// std::runtime_error with one line where no axis is left.
+std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
+                                       const std::vector<std::string>& names);
+void leave_out(const std::vector<std::string>& axes, CaptureView& capture);
+
+// Both in one. Of a table only those that never have a value: `denoise` gives what the daemon would.
 void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names);
 void keep_usable_axes(CaptureView& capture, const std::string& name);
 void keep_usable_axes(LongTable& table, const std::string& name);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog::tools {
@@ -42,13 +43,20 @@ ValueKind value_kind(const std::string& type) {
   return found == kKinds.end() ? ValueKind::text : found->second;
 }
 
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = read_decimal(text.data(), end, value);
+  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 bool is_number(const std::string& text, ValueKind kind) {
+  if (kind == ValueKind::number) return number_in(text).has_value();
   std::string_view digits = text;
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
-  double real = 0.0;
   std::int64_t whole = 0;
   std::uint64_t count = 0;
-  if (kind == ValueKind::number) return read(digits, real) && std::isfinite(real);
   if (kind == ValueKind::count) return read(digits, count);
   return read(digits, whole) || read(digits, count);
 }

@@ -2,6 +2,7 @@
 // What an option's value must be, and the words for one that is not: the value and what was expected.
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace CLI {
@@ -15,6 +16,9 @@ enum class ValueKind { text, number, whole, count };  // count: whole, 0 or more
 
 // By the type as the parser names it, or as a command does.
 ValueKind value_kind(const std::string& type);
+
+// Decimal and finite, by the rule of drivers/ifog/decimal.h; empty: it is none.
+std::optional<double> number_in(const std::string& text);
 
 // Decimal and finite; whole where the kind says so, and within 64 bits.
 bool is_number(const std::string& text, ValueKind kind);

@@ -56,7 +56,7 @@ std::string wrong_number(const FilterSetting& setting, const std::string& text) 
     std::int64_t value = 0;
     good = good && CLI::detail::lexical_cast(text, value) && choose(setting, value, ignored);
   } else if constexpr (std::is_same_v<T, double>) {
-    good = good && choose(setting, std::stod(text), ignored);
+    good = good && choose(setting, *number_in(text), ignored);
   }
   return good ? "" : "is " + in_quotes(text) + ", expected " + expected(setting);
 }

@@ -26,13 +26,13 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
   }
 }
 
-void add(const IncrementerCounts& from, IncrementerCounts& to) {
+void add(const IncrementerCounts& from, const IncrementerCounts& less, IncrementerCounts& to) {
   for (std::uint64_t IncrementerCounts::*count :
        {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
         &IncrementerCounts::repeated, &IncrementerCounts::restarts, &IncrementerCounts::invalid,
         &IncrementerCounts::saturated, &IncrementerCounts::implausible,
         &IncrementerCounts::channel_implausible, &IncrementerCounts::clock_steps})
-    to.*count += from.*count;
+    to.*count += from.*count - less.*count;
 }
 
 }  // namespace
@@ -57,7 +57,8 @@ ChainRun::ChainRun(const ChainSettings& settings, const OfflineSettings& offline
 }
 
 void ChainRun::begin(const ChainSettings& settings) {
-  if (incrementer_) add(incrementer_->counts(), result_.counts);
+  if (incrementer_) count(counts_);  // what came behind its last sample
+  counted_ = {};
   incrementer_.emplace(settings.facts);
   chain_.emplace(parts_of(settings, model_path_));
   sequence_shift_ = 0;
@@ -81,10 +82,17 @@ const Increment* ChainRun::run(const Reading& reading, ChainOutput& out) {
 }
 
 OfflineResult ChainRun::finish() {
-  add(incrementer_->counts(), result_.counts);
+  count(counts_);
   result_.filter = chain_->parts().filter();
   result_.noise_known = chain_->parts().noise_known();
   return std::move(result_);
+}
+
+void ChainRun::count(bool counts) {
+  const IncrementerCounts& now = incrementer_->counts();
+  if (counts) add(now, counted_, result_.counts);
+  counted_ = now;
+  counts_ = counts;
 }
 
 void ChainRun::describe() {

@@ -27,6 +27,8 @@ class ChainRun {
   void exchange(const ChainSettings& settings);
   // Null: the sample came twice, or after one that follows it.
   const Increment* run(const Reading& reading, ChainOutput& out);
+  // Whether what has come since the last call counts in the result.
+  void count(bool counts);
   void discontinuity() { incrementer_->discontinuity(); }
   OfflineResult finish();
 
@@ -40,6 +42,8 @@ class ChainRun {
   std::optional<std::uint64_t> first_sequence_;
   std::uint64_t sequence_shift_ = 0;
   OfflineResult result_;
+  IncrementerCounts counted_;  // of this incrementer, by count()
+  bool counts_ = true;         // the last sample
 };
 
 }  // namespace ifog::tools

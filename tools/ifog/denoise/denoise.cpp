@@ -4,23 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "daemon/config/config.h"
-#include "daemon/sensor/sensor_parts.h"
-#include "daemon/state/state_folder.h"
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/smoother.h"
-#include "filters/model_file/kept_noise.h"
 #include "filters/series/series_view.h"
-#include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight_input.h"
@@ -32,9 +26,9 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/filter_options.h"
-#include "tools/ifog/console/installed.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/denoise/denoise_settings.h"
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
 #include "tools/report/picture.h"
@@ -43,18 +37,7 @@
 namespace ifog::tools {
 namespace {
 
-struct Options {
-  std::string capture, output, model, config, sensor, json, picture, noise;
-  double nominal_rate_hz = 0.0, start_up_s = 0.0;
-  std::optional<std::uint64_t> first_sequence;
-  std::optional<double> since_power_up_s;
-  TimePart part;
-  CaptureInput input;
-  FilterChoice filter;
-  bool smooth = false;
-};
-
-nlohmann::json summary(const Options& options, const DenoisedRows& rows, const OfflineResult& result) {
+nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
   nlohmann::json axes = nlohmann::json::array();
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
     const DenoisedRows::AxisMoments& of_axis = rows.moments(a);
@@ -66,6 +49,7 @@ nlohmann::json summary(const Options& options, const DenoisedRows& rows, const O
       one[std::string(name) + "_std_radps"] = moments->deviation();
     }
     one["missing"] = of_axis.missing;
+    one["stuck"] = of_axis.stuck;
     axes.push_back(std::move(one));
   }
   const FilterSettings& filter = result.filter;
@@ -131,53 +115,6 @@ void draw(const std::string& path, const DenoisedColumns& columns, const Offline
   report::write_picture(path, report::picture_svg("Rate, denoised by " + result.filter.rule, rows));
 }
 
-// flight: null for other captures.
-OfflineSettings settings_of(Options& options, const InputFile& capture, const FlightInput* flight) {
-  OfflineSettings out;
-  if (flight != nullptr && options.config.empty()) out.sensor = flight->sensor();
-  if (!options.config.empty()) {
-    Config config = read_config(options.config);
-    // The service is told its state folder by systemd, a person at a terminal is not.
-    if (std::error_code none; state_folder(config.state_folder).empty() &&
-                              std::filesystem::equivalent(options.config, kServiceConfig, none))
-      use_adopted_models(config, kServiceState);
-    const auto found =
-        std::find_if(config.sensors.begin(), config.sensors.end(), [&](const SensorConfig& sensor) {
-          return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
-        });
-    if (found == config.sensors.end())
-      throw std::runtime_error(options.config + ": " +
-                               (options.sensor.empty()
-                                    ? "has several sensors; expected --sensor NAME"
-                                    : "has no sensor \"" + printable(options.sensor) + "\""));
-    out.sensor = *found;
-    out.plugin_folders = config.plugin_folders;
-    if (options.input.options.empty()) out.files_from = out.sensor.folder;
-    if (file_kind(capture) != FileKind::capture && !options.input.has_driver()) {
-      options.input.driver = out.sensor.driver;
-      for (const auto& [key, value] : out.sensor.options) options.input.options.push_back(key + "=" + value);
-    }
-  }
-  // What is said on the command line stands over the configuration.
-  out.sensor.filter = over(options.filter, std::move(out.sensor.filter));
-  if (!options.model.empty())
-    out.sensor.model = options.model;
-  else if (!options.config.empty())
-    will_read("the configuration's model", out.sensor.model);
-  if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
-  if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;
-  out.model = flight != nullptr && options.config.empty() && options.model.empty()
-                  ? flight->model(out.sensor)
-                  : read_sensor_model(out.sensor);
-  out.first_sequence = options.first_sequence;
-  out.since_power_up_s = options.since_power_up_s;
-  if (!options.noise.empty())
-    out.learned = read_kept_noise(options.noise).noise;
-  else if (flight != nullptr && options.config.empty())
-    out.learned = flight->noise(out.sensor);
-  return out;
-}
-
 // What was not usable, in the words of every command.
 void tell_unusable(const std::string& name, const DenoisedRows& rows, const OfflineResult& result) {
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
@@ -185,6 +122,9 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
     const std::string column = result.axes[a].empty() ? "rate" : "rate_" + result.axes[a];
     const std::string missing = missing_in_words(column, axis.missing, rows.written(), axis.first_missing_s);
     if (!missing.empty()) warn("%s: %s\n", name.c_str(), missing.c_str());
+    if (axis.stuck > 0)
+      warn("%s: %s repeats one value in %zu of %zu rows: the axis is stuck there\n", name.c_str(),
+           column.c_str(), axis.stuck, rows.written());
   }
   for (const std::string& line : not_measured_in_words(result.counts.saturated, result.counts.implausible))
     warn("%s: %s\n", name.c_str(), line.c_str());
@@ -208,14 +148,16 @@ void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments
       moments.denoised.deviation() / kDegreePerHour);
 }
 
-void tell(const Options& options, const DenoisedRows& rows, const OfflineResult& result) {
+void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
   if (rows.none_filtered())
     warn(
-        "%s: no longer than the start-up that shows its noise: denoised is the compensated rate; expected "
-        "--process-noise and --measurement-noise, or a shorter --start-up\n",
-        options.capture.c_str());
+        "%s: %s: denoised is the compensated rate; expected --process-noise and --measurement-noise, or a "
+        "shorter --start-up\n",
+        options.capture.c_str(),
+        result.noise_known ? "what is wanted of it lies within the start-up that shows its noise"
+                           : "no longer than the start-up that shows its noise");
   tell_unusable(options.capture, rows, result);
   if (result.not_as_published_from_s && options.config.empty())
     warn(
@@ -227,11 +169,15 @@ void tell(const Options& options, const DenoisedRows& rows, const OfflineResult&
       result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
       static_cast<unsigned long long>(result.counts.missing));
   if (result.runs > 1 || result.exchanges > 0)
-    say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): each as it was; at the end\n",
-        result.runs, result.exchanges);
+    say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): %s; at the end\n", result.runs,
+        result.exchanges,
+        !options.config.empty()        ? "each run from its beginning, as configured"
+        : options.over_the_recording() ? "each as it was, but for what the command line says"
+                                       : "each as it was");
   const FilterSettings& filter = result.filter;
   if (rows.none_filtered())
-    say("filter %s, state %s: not run, the noise is not known\n", filter.rule.c_str(), filter.state.c_str());
+    say("filter %s, state %s: not run, the noise is not known%s\n", filter.rule.c_str(), filter.state.c_str(),
+        result.noise_known ? " there" : "");
   else
     say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
         filter.rule.c_str(), filter.state.c_str(), filter.process_noise, filter.measurement_noise,
@@ -257,16 +203,16 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
 }
 
 // Steps of the time column that are no multiple of what --rate says are taken for gaps or jitter.
-void tell_other_rate(const Options& options, const LongTable& table) {
+void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTable& table) {
   constexpr double kAlike = 0.2;
-  if (!(options.nominal_rate_hz > 0.0) || table.size() < 2) return;
+  if (!(rate_hz > 0.0) || table.size() < 2) return;
   const double own_hz = 1.0 / median_step(table.time_s);
-  if (std::abs(options.nominal_rate_hz / own_hz - 1.0) > kAlike)
-    warn("%s: --rate is %g Hz, the capture's own times say %.6g Hz\n", options.capture.c_str(),
-         options.nominal_rate_hz, own_hz);
+  if (std::abs(rate_hz / own_hz - 1.0) > kAlike)
+    warn("%s: %s is %g Hz, the capture's own times say %.6g Hz\n", options.capture.c_str(),
+         options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
 }
 
-void run(Options options) {
+void run(DenoiseOptions options) {
   if (!options.sensor.empty() && options.config.empty())
     throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
                                                ", expected --config with it, whose sensors have names");
@@ -281,7 +227,8 @@ void run(Options options) {
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
   if (kind == FileKind::flight && !recorded_messages(capture)) flight.emplace(capture);
-  const auto settings = [&] { return settings_of(options, capture, flight ? &*flight : nullptr); };
+  const std::optional<ConfiguredSensor> configured = configured_sensor(options, kind);
+  const auto settings = [&] { return settings_of(options, configured, flight ? &*flight : nullptr); };
   // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
   const OfflineSink sink{[&](const std::vector<std::string>& axes) {
@@ -290,27 +237,32 @@ void run(Options options) {
                            rows.begin(axes);
                          },
                          [&](double time_s, const Increment& increment, const ChainOutput& out) {
-                           rows.add(time_s, increment, out);
+                           return rows.add(time_s, increment, out);
                          }};
   OfflineResult result;
   const ReadingProgress progress(capture, "denoising");
+  const std::vector<std::string> folders =
+      configured ? configured->plugin_folders : std::vector<std::string>{};
   if (flight) {
-    const OfflineSettings first = settings();
-    DriverInstance driver = flight->make_driver(options.input.driver_name(), options.input.settings(),
-                                                first.plugin_folders, first.files_from);
+    DriverInstance driver =
+        flight->make_driver(options.input.driver_name(), options.input.settings(), folders);
     result = denoise_flight(*flight, driver, settings, !options.config.empty(), sink);
   } else if (kind == FileKind::bytes || kind == FileKind::candump) {
-    const OfflineSettings all = settings();
     if (!options.input.has_driver())
       throw std::runtime_error(
           options.capture + ": is no capture in columns, expected --driver NAME, --dbc FILE or --config F");
-    DriverInstance driver = options.input.make_driver(all.plugin_folders, all.files_from);
-    result = denoise_recording(options.input, capture, driver, all, sink);
+    DriverInstance driver = options.input.make_driver(folders);
+    result = denoise_recording(options.input, capture, driver, settings(), sink);
   } else {
     LongTable table = options.input.read_long(capture);
     keep_usable_axes(table, options.capture);
-    tell_other_rate(options, table);
-    result = denoise_capture(table, options.capture, settings(), sink);
+    OfflineSettings of = settings();
+    tell_other_rate(options, of.sensor.nominal_rate_hz, table);
+    const std::string model = of.model ? of.model->identity() : "";
+    if (of.model && !table.dead_axes.empty())
+      of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
+    result = denoise_capture(table, options.capture, of, sink);
+    result.model = model;  // of the file, whatever of it is for axes that are not here
   }
   if (options.smooth) smooth(rows.columns(), result);
   rows.finish(options.capture);
@@ -324,7 +276,7 @@ void run(Options options) {
 void add_denoise(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "denoise", "Denoise a capture as the daemon would, bit for bit with the same settings");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DenoiseOptions>();
   command
       ->add_option(
           "CAPTURE", options->capture,

@@ -61,12 +61,15 @@ void DenoisedRows::flush() {
   for (std::vector<double>& column : held_) column.clear();
 }
 
-void DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
+void DenoisedRows::count(const ChainOutput& out) {
   if ((out.estimate.flags & kGated) != 0) ++counts_.gated;
   if ((out.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) ++counts_.stale;
   if ((out.compensator_flags & kOutOfRange) != 0) ++counts_.out_of_range;
   if ((out.compensator_flags & kRampUnknown) != 0) ++counts_.ramp_unknown;
   if ((out.flags & kNoiseUnknown) != 0) ++counts_.unknown_noise;
+}
+
+bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
   if (rows_++ == 0) first_s_ = time_s;
   last_s_ = time_s;
   if (keep_) {
@@ -77,6 +80,7 @@ void DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
   const bool inside = time_s >= part_.from_s && !over_;
   if (inside) {
     ++written_;
+    count(out);
     if (!smooth_) append(time_s);
   }
   for (std::size_t a = 0; a < axes_.size(); ++a) {
@@ -92,6 +96,7 @@ void DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
     if (!inside) continue;
     AxisMoments& of_axis = moments_[a];
     if (!std::isfinite(raw) && of_axis.missing++ == 0) of_axis.first_missing_s = time_s;
+    if ((increment.stuck_axes >> a & 1U) != 0) ++of_axis.stuck;
     of_axis.raw.add(raw);
     of_axis.compensated.add(compensated);
     of_axis.denoised.add(denoised);
@@ -99,6 +104,7 @@ void DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
     for (const double value : {raw, compensated, denoised, variance}) append(value);
   }
   if (inside && !smooth_) end_row();
+  return inside;
 }
 
 void DenoisedRows::finish(const std::string& name) {

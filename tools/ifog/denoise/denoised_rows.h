@@ -47,6 +47,7 @@ class DenoisedRows {
     Moments raw, compensated, denoised;
     std::size_t missing = 0;       // rows without a raw value
     double first_missing_s = 0.0;  // the time of the first of them
+    std::size_t stuck = 0;         // rows in which the sensor repeats one value, as the chain judges it
   };
 
   // Writes what of it is in `part`, CSV or HDF5 by the name. keep: the columns as well; smooth: write nothing
@@ -55,7 +56,8 @@ class DenoisedRows {
 
   // Once, before the first sample.
   void begin(const std::vector<std::string>& axes);
-  void add(double time_s, const Increment& increment, const ChainOutput& out);
+  // Whether it is in the part.
+  bool add(double time_s, const Increment& increment, const ChainOutput& out);
   // What was kept, of all rows: smoothing fills its last two columns. After the last sample.
   [[nodiscard]] DenoisedColumns& columns() { return columns_; }
   // Of the rows in the part from here on. name: of the capture. Throws std::runtime_error with one line when
@@ -63,8 +65,9 @@ class DenoisedRows {
   void finish(const std::string& name);
 
   [[nodiscard]] std::size_t written() const { return written_; }
-  // Not one sample was filtered: the noise was known too late, or never.
-  [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == rows_; }
+  // All figures are of the rows in the part.
+  // Not one was filtered: the noise was known too late, or never.
+  [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == written_; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
 
@@ -72,6 +75,7 @@ class DenoisedRows {
   void append(double value);
   void end_row();
   void flush();
+  void count(const ChainOutput& out);
 
   std::string output_;
   std::optional<ColumnWriter> file_;

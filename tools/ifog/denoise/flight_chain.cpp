@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "daemon/sensor/facts.h"
@@ -15,13 +16,15 @@ namespace {
 class FlightChain {
  public:
   FlightChain(FlightInput& flight, DriverInstance& driver, const std::function<OfflineSettings()>& settings,
-              const OfflineSink& sink)
+              bool fixed, const OfflineSink& sink)
       : flight_(flight),
         driver_(driver),
         settings_(settings),
+        fixed_(fixed),
         sink_(sink),
         first_(settings_()),
         now_(chain_settings(first_)),
+        axes_(now_.axes),
         chain_(now_, first_),
         run_(flight.header().run),
         number_(flight.header().settings),
@@ -46,7 +49,7 @@ class FlightChain {
     between_runs_ = false;
     came_ns_ = recorded.came_ns;
     if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = time_s_;
-    sink_.sample(time_s_, *increment, out_);
+    chain_.count(sink_.sample(time_s_, *increment, out_));
   }
 
   void discontinuity() { chain_.discontinuity(); }
@@ -54,13 +57,16 @@ class FlightChain {
 
   void file(const FlightHeader& header) {
     const bool another_run = header.run != run_;
-    if (!another_run && header.settings == number_) return;
+    if (!another_run && (fixed_ || header.settings == number_)) return;
     run_ = header.run;
     number_ = header.settings;
     OfflineSettings settings = settings_();
     // What was said of the first sample.
     if (another_run) settings.since_power_up_s.reset();
     now_ = chain_settings(settings);
+    if (now_.axes != axes_)
+      throw std::runtime_error(
+          "goes on with other axes, as the driver's options changed; expected recordings of one");
     if (another_run) {
       ++runs_;
       between_runs_ = true;
@@ -105,10 +111,12 @@ class FlightChain {
   FlightInput& flight_;
   DriverInstance& driver_;
   const std::function<OfflineSettings()>& settings_;
+  bool fixed_;
   const OfflineSink& sink_;
   std::vector<std::size_t> recorded_at_;
   OfflineSettings first_;
   ChainSettings now_;
+  std::vector<std::string> axes_;
   ChainRun chain_;
   std::uint64_t run_;
   std::uint32_t number_;
@@ -127,12 +135,10 @@ class FlightChain {
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
                              const OfflineSink& sink) {
-  FlightChain chain(flight, driver, settings, sink);
-  RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
-                          [&] { chain.discontinuity(); },
-                          [&] { chain.missing(); },
-                          {}};
-  if (!fixed) samples.file = [&](const FlightHeader& header) { chain.file(header); };
+  FlightChain chain(flight, driver, settings, fixed, sink);
+  const RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
+                                [&] { chain.discontinuity(); }, [&] { chain.missing(); },
+                                [&](const FlightHeader& header) { chain.file(header); }};
   const RecordingCounts counts = flight.for_each_sample(driver, samples);
   for (const std::string& loss : losses(counts))
     warn("%s: %s\n", flight.header().sensor.c_str(), loss.c_str());

@@ -152,7 +152,8 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
         reading.channel[c] = now[1 + shape.axes.size() + c][i];
         if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
       }
-      if (const Increment* const increment = chain.run(reading, out)) sink.sample(now[0][i], *increment, out);
+      if (const Increment* const increment = chain.run(reading, out))
+        chain.count(sink.sample(now[0][i], *increment, out));
     }
   }
   return chain.finish();
@@ -176,7 +177,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
     const Increment* const increment = chain.run(reading, out);
     if (increment == nullptr) return;
     if (!std::exchange(first, false)) time_s += increment->dt_s;
-    sink.sample(time_s, *increment, out);
+    chain.count(sink.sample(time_s, *increment, out));
   });
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
   return chain.finish();

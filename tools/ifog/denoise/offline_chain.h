@@ -20,10 +20,6 @@
 namespace ifog::tools {
 
 struct OfflineSettings {
-  // Of a configuration that says the driver, too: where plugins are looked for, and where relative paths in
-  // its options begin. Empty: the standard places, and where the process is.
-  std::vector<std::string> plugin_folders;
-  std::string files_from;
   SensorConfig sensor;                  // model, filter, options, channels; its transport is not used
   std::shared_ptr<const Model> model;   // null: none
   std::optional<LearnedNoise> learned;  // ChainSettings::learned
@@ -36,13 +32,13 @@ struct OfflineSink {
   // Once, before the first sample: the sensor's axes.
   std::function<void(const std::vector<std::string>& axes)> begin;
   // One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step
-  // times.
-  std::function<void(double time_s, const Increment&, const ChainOutput&)> sample;
+  // times. Whether it counts in the result: it is of the part that is wanted.
+  std::function<bool(double time_s, const Increment&, const ChainOutput&)> sample;
 };
 
 struct OfflineResult {
   std::vector<std::string> axes;
-  IncrementerCounts counts;
+  IncrementerCounts counts;           // of what counts, see OfflineSink
   FilterSettings filter;              // in force at the end
   bool noise_learned = false;         // from the first seconds
   bool noise_known = true;            // false: the record is shorter than the start-up
@@ -62,7 +58,8 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink);
 // The samples, times and channels that the daemon had.
 // As it was recorded: settings are asked for at the first file, at each with which the daemon took others
-// into use, and at each run of the daemon, which begins anew. `fixed`: those of the first for all of it.
+// into use, and at each run of the daemon, which begins anew. `fixed`: they are one for all of it, and only
+// the runs begin anew.
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
                              const OfflineSink& sink);

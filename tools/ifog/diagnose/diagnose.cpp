@@ -47,6 +47,10 @@ void run(const Arguments& arguments) {
     read.push_back(arguments.input.read_long_capture(path, wanted ? &hashes.back() : nullptr));
     if (arguments.since_power_up_s) read.back().set_since_power_up(*arguments.since_power_up_s);
   }
+  std::vector<CaptureView> as_sent;
+  for (std::size_t c = 0; c < read.size(); ++c)
+    as_sent.push_back(read[c].part(arguments.part, arguments.captures[c]));
+  const std::vector<std::string> not_usable = unusable_axes(as_sent, arguments.captures);
   Model model;
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
@@ -61,8 +65,8 @@ void run(const Arguments& arguments) {
   for (std::size_t c = 0; c < read.size(); ++c) {
     read[c].cut(arguments.part, arguments.captures[c]);
     captures.push_back(read[c].view());
+    leave_out(not_usable, captures.back());
   }
-  keep_usable_axes(captures, arguments.captures);
   AxesToDiagnose wanted = arguments.wanted;
   if (arguments.latitude_deg) wanted.latitude_rad = *arguments.latitude_deg * kDegree;
   const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, wanted);

@@ -51,19 +51,56 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
   return record;
 }
 
-bool same_numbers(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+bool same_row(const CaptureView& a, std::size_t i, const CaptureView& b, std::size_t j) {
+  for (std::size_t axis = 0; axis < a.rate_radps.size(); ++axis)
+    if (std::memcmp(&a.rate_radps[axis][i], &b.rate_radps[axis][j], sizeof(double)) != 0) return false;
+  return true;
 }
 
-// One record given twice, be it as a copy or in another format, would count as twice the evidence.
+struct Common {
+  std::size_t rows = 0;
+  double from_s = 0.0, to_s = 0.0;
+};
+
+// Rows at the same times, where in all of them the rates are the same: two parts of one record. None where
+// one row differs, as it does between records that both begin at 0.
+Common common_rows(const CaptureView& a, const CaptureView& b) {
+  if (a.size() == 0 || b.size() == 0 || a.rate_radps.size() != b.rate_radps.size()) return {};
+  const double from_s = std::max(a.time_s.front(), b.time_s.front());
+  const auto first = [&](const CaptureView& of) {
+    return static_cast<std::size_t>(std::lower_bound(of.time_s.begin(), of.time_s.end(), from_s) -
+                                    of.time_s.begin());
+  };
+  Common found;
+  for (std::size_t i = first(a), j = first(b); i < a.size() && j < b.size();) {
+    if (a.time_s[i] != b.time_s[j]) {
+      ++(a.time_s[i] < b.time_s[j] ? i : j);
+      continue;
+    }
+    if (!same_row(a, i, b, j)) return {};
+    if (found.rows++ == 0) found.from_s = a.time_s[i];
+    found.to_s = a.time_s[i];
+    ++i;
+    ++j;
+  }
+  return found;
+}
+
+// One record given twice, be it as a copy or in another format, or in parts that overlap, would count as
+// twice the evidence.
 void require_each_once(const std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
+  constexpr std::size_t kByChance = 100;  // rows of a coarse sensor at rest
   for (std::size_t later = 1; later < captures.size(); ++later)
-    for (std::size_t c = 0; c < later; ++c)
-      if (same_numbers(captures[c].time_s, captures[later].time_s) &&
-          std::equal(captures[c].rate_radps.begin(), captures[c].rate_radps.end(),
-                     captures[later].rate_radps.begin(), captures[later].rate_radps.end(), same_numbers))
-        throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] +
-                                 ", expected each record once");
+    for (std::size_t c = 0; c < later; ++c) {
+      const Common common = common_rows(captures[c], captures[later]);
+      const bool whole = common.rows == captures[c].size() && common.rows == captures[later].size();
+      if (!whole && common.rows <= kByChance) continue;
+      std::array<char, 80> where{};
+      if (!whole)
+        std::snprintf(where.data(), where.size(), " from %.10g to %.10g s", common.from_s, common.to_s);
+      throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] + where.data() +
+                               ", expected each record once");
+    }
 }
 
 // What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of

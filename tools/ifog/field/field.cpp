@@ -15,6 +15,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
+#include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/installed.h"
 
 namespace ifog::tools {
@@ -43,7 +44,10 @@ Field::Field(const FieldOptions& options) {
     config_ = parse_config(read_toml_text(config_path_), config_path_);
   state_ = options.state.empty() ? state_folder(config_ ? config_->state_folder : "") : options.state;
   if (state_.empty()) state_ = kServiceState;
-  if (config_) use_adopted_models(*config_, state_);
+  if (config_) {
+    use_adopted_models(*config_, state_);
+    will_read_files_of(*config_);
+  }
   lcm_url_ = options.lcm_url;
   if (lcm_url_.empty()) lcm_url_ = config_ ? config_->lcm_url : Config{}.lcm_url;
 }

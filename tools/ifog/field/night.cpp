@@ -15,6 +15,7 @@
 #include "drivers/transport/utc_now.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/compensated_rates.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
@@ -214,6 +215,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   CaptureView corrected(recorded.capture);
   const std::vector<Samples> rates = compensated_rates(corrected, before);
   corrected.rate_radps.assign(rates.begin(), rates.end());
+  leave_out(unusable_axes({CaptureView(recorded.capture)}, {sensor_.name}), corrected);
   AxesToDiagnose wanted;
   wanted.fit_to = kFitTo;
   wanted.threads = 1;  // the daemon is at work beside it

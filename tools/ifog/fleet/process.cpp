@@ -2,6 +2,7 @@
 #include "tools/ifog/fleet/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -84,6 +86,24 @@ std::string read_all(int from) {
   }
 }
 
+// All that comes; false where its end has not come by then.
+bool read_until(int from, std::chrono::steady_clock::time_point until, std::string& text) {
+  std::array<char, 4096> part{};
+  for (;;) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()).count();
+    if (left <= 0) return false;
+    pollfd ready{from, POLLIN, 0};
+    const int came = poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, INT_MAX)));
+    if (came <= 0) continue;
+    const ssize_t got = read(from, part.data(), part.size());
+    if (got > 0)
+      text.append(part.data(), static_cast<std::size_t>(got));
+    else if (got == 0 || errno != EINTR)
+      return true;
+  }
+}
+
 bool open_as(int descriptor, const char* path, int flags) {
   const int opened = open(path, flags, 0666);
   if (opened < 0 || opened == descriptor) return opened >= 0;
@@ -133,7 +153,8 @@ std::string ending(int status) {
   return WEXITSTATUS(status) == 0 ? "" : "exit " + std::to_string(WEXITSTATUS(status));
 }
 
-Ran run_to_end(const std::vector<std::string>& words, const std::string& input) {
+Ran run_to_end(const std::vector<std::string>& words, const std::string& input,
+               std::chrono::milliseconds patience) {
   Pipe in, out;
   FileActions actions;
   actions.copy(in.ends[0], STDIN_FILENO);
@@ -150,11 +171,17 @@ Ran run_to_end(const std::vector<std::string>& words, const std::string& input) 
   }
   in.close_end(1);
   Ran ran;
-  ran.said = read_all(out.ends[0]);
+  const bool answered = read_until(out.ends[0], std::chrono::steady_clock::now() + patience, ran.said);
+  if (!answered) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   ran.ended = ending(status);
+  if (!answered) {
+    std::ostringstream words_for_it;
+    words_for_it << "no answer within " << std::chrono::duration<double>(patience).count() << " s";
+    ran.ended = words_for_it.str();
+  }
   return ran;
 }
 

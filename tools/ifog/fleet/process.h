@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,14 @@ pid_t start(const std::vector<std::string>& words, const std::string& said_path)
 // "" for a good end, else in words: "exit 1", "killed by signal 9". status: of waitpid().
 std::string ending(int status);
 
-// Runs a program found by PATH to its end with `input`, of at most some 60 kB, on its standard input.
+// Runs a program found by PATH to its end with `input`, of at most some 60 kB, on its standard input. One
+// that has not closed its output after `patience` is killed.
 struct Ran {
-  std::string ended;  // as ending()
+  std::string ended;  // as ending(), or "no answer within 120 s"
   std::string said;   // standard output and error
 };
-Ran run_to_end(const std::vector<std::string>& words, const std::string& input);
+Ran run_to_end(const std::vector<std::string>& words, const std::string& input,
+               std::chrono::milliseconds patience);
 
 // Whether PATH has a program of this name.
 bool is_there(const std::string& program);

@@ -24,6 +24,8 @@ constexpr std::size_t kLargestArray = 1000;
 constexpr double kFirstPause_s = 0.5, kLongestPause_s = 15.0;
 // A controller that restarts answers again within this time.
 constexpr double kPatience_s = 600.0;
+// Slurm's own commands give up sooner; longer waits one whose network or file system hangs.
+constexpr std::chrono::minutes kAnswer{2};
 
 // "0-3,7" of ascending numbers.
 std::string ranges_of(const std::vector<std::size_t>& numbers) {
@@ -54,6 +56,8 @@ std::size_t jobs_in(const std::string& said) {
 }
 
 std::string first_line(const std::string& text) { return printable(text.substr(0, text.find('\n')), 300); }
+
+std::string how(const Ran& ran) { return ran.ended + (ran.said.empty() ? "" : ": " + first_line(ran.said)); }
 
 class SlurmEngine : public Engine {
  public:
@@ -104,8 +108,8 @@ class SlurmEngine : public Engine {
   }
 
   static void submit(const std::string& script) {
-    const Ran ran = run_to_end({"sbatch", "--parsable"}, script);
-    if (!ran.ended.empty()) throw std::runtime_error("sbatch: " + ran.ended + ": " + first_line(ran.said));
+    const Ran ran = run_to_end({"sbatch", "--parsable"}, script, kAnswer);
+    if (!ran.ended.empty()) throw std::runtime_error("sbatch: " + how(ran));
     say("submitted the array %s\n", first_line(ran.said).c_str());
   }
 
@@ -113,11 +117,11 @@ class SlurmEngine : public Engine {
   std::size_t under_way() {
     const auto since = std::chrono::steady_clock::now();
     for (;;) {
-      const Ran ran =
-          run_to_end({"squeue", "--noheader", "--array", "--me", "--name=" + name_, "--format=%i"}, "");
+      const Ran ran = run_to_end(
+          {"squeue", "--noheader", "--array", "--me", "--name=" + name_, "--format=%i"}, "", kAnswer);
       if (ran.ended.empty()) return jobs_in(ran.said);
       if (Seconds(std::chrono::steady_clock::now() - since).count() > kPatience_s)
-        throw std::runtime_error("squeue: " + ran.ended + ": " + first_line(ran.said));
+        throw std::runtime_error("squeue: " + how(ran));
       pause(kFirstPause_s);
     }
   }
