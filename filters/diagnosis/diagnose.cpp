@@ -28,6 +28,7 @@
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/record_lines.h"
 #include "filters/diagnosis/residual/resonances.h"
+#include "filters/diagnosis/residual/two_states.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/earth_rate.h"
@@ -113,6 +114,7 @@ class Run {
     separate_dead_zone();
     separate_lines();
     separate_hysteresis();
+    drop_steps_of_two_states();
     drop_what_changes_sign();
     drop_what_stands_twice();
     drop_what_is_not_proven();
@@ -220,6 +222,14 @@ class Run {
     take_out(*result_.hysteresis, reconstructed_, data_.grid);
     reconstructed_.grid.error = data_.grid.error;
     search(lines_.slow);
+    subtract_found(data_, found_, errors_);
+  }
+
+  void drop_steps_of_two_states() {
+    if (data_.grid.dwells || was_turned(records_) || !steps_are_jumps(errors_, data_.grid, found_)) return;
+    for (std::size_t i = found_.chosen.size(); i-- > 0;)
+      if (found_.chosen[i].candidate.form == Form::kStep)
+        found_ = without_effect(data_, reconstructed_, std::move(found_), i);
     subtract_found(data_, found_, errors_);
   }
 

@@ -2,8 +2,8 @@
 // How far a model goes on outside the range it was fitted on.
 //
 // Holding a well-known linear effect at the edge leaves the whole of what the channel does beyond it, so
-// polynomial forms go on: linear as they are, higher ones by their tangent at the edge, for as much again as
-// the range is wide. Beyond that, and for what is only known where it was looked up, the value is held.
+// polynomial forms go on: linear as they are, higher ones by their tangent (curve_reach.h), for as much again
+// as the range is wide. Beyond that, and for what is only known where it was looked up, the value is held.
 #pragma once
 
 #include <algorithm>

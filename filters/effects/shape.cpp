@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/effects/curve_reach.h"
 
 namespace ifog {
 namespace {
@@ -24,6 +25,19 @@ bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSin
 
 // Bounded of itself: there is no edge beyond which it runs away.
 bool is_bounded(Form form) { return is_periodic(form) || form == Form::kTransition; }
+
+// How far beyond the range the form follows its own curve.
+double curve_reach(const ShapeSettings& settings) noexcept {
+  return power_of(settings.form) > 1 ? settings.half_width : 0.0;
+}
+
+// Of the channel, as far as that.
+double followed(const ShapeSettings& settings, const Reach& channel) noexcept {
+  const double reach = curve_reach(settings);
+  return channel.edge + std::clamp(channel.past_the_edge(), -reach, reach);
+}
+
+std::string_view name_of_width(Form form) { return power_of(form) > 1 ? kCurveReach : kHalfWidth; }
 
 double power(double c, Form form) noexcept {
   const double c2 = c * c;
@@ -58,7 +72,7 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.table_y = effect.table_y;
   settings.period = effect.period;
   settings.angle = effect.angle;
-  settings.half_width = parameter(effect, kHalfWidth);
+  settings.half_width = parameter(effect, name_of_width(settings.form));
   return settings;
 }
 
@@ -74,6 +88,7 @@ ShapeSettings with_shape_settings(const Effect& effect) {
   settings.reference = effect.with_reference;
   settings.time_constant_s = parameter(effect, time_constant_name(*form));
   settings.second_time_constant_s = parameter(effect, "second_lag_s");
+  if (power_of(*form) > 1) settings.half_width = parameter(effect, kCurveReach);
   return settings;
 }
 
@@ -200,7 +215,8 @@ double Shape::slope(double value) const noexcept {
 double Shape::at(const Reach& channel) const noexcept {
   if (is_bounded(settings_.form)) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
-  return at(channel.edge) + slope(channel.edge) * channel.past_the_edge();
+  const double curved = followed(settings_, channel);
+  return at(curved) + slope(curved) * (channel.value - curved);
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
@@ -218,7 +234,8 @@ double Shape::left_behind(const Reach& channel) const noexcept {
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
   if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {
-    return std::abs(at(channel.value) - at(channel)) + std::abs(slope(channel.edge) * channel.beyond);
+    return std::abs(at(channel.value) - at(channel)) +
+           std::abs(slope(followed(settings_, channel)) * channel.beyond);
   }
   const double tau = std::max(settings_.time_constant_s, 1e-3);
   switch (settings_.form) {

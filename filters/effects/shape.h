@@ -18,7 +18,7 @@ struct ShapeSettings {
   double second_time_constant_s = 0.0;   // lagged: a second stage
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
-  double half_width = 0.0;               // dead_zone, transition
+  double half_width = 0.0;               // dead_zone, transition; of a power above one its curve_reach
   bool angle = false;
   double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };

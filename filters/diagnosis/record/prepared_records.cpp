@@ -13,10 +13,13 @@ const std::vector<Record>& checked(const std::vector<Record>& captures) {
 
 }  // namespace
 
-// An angle's wraps are no faults, and differences are of channels without any.
+// Of a share of each record the rest is what judges, so there records stay whole. An angle's wraps are no
+// faults, and differences are of channels without any.
 PreparedRecords::PreparedRecords(const std::vector<Record>& captures, const TimeShare& share,
                                  double significance)
-    : unwrapped_(with_unwrapped_angles(checked(captures))),
+    : timed_(with_even_stamps(checked(captures))),
+      parted_(share.whole() ? part_at_long_holes(timed_.records) : PartedRecords{timed_.records, {}}),
+      unwrapped_(with_unwrapped_angles(parted_.records)),
       repaired_(repair_records(unwrapped_.records)),
       aligned_(align_references(repaired_.records)),
       derived_(with_derived_channels(aligned_.records)),
@@ -30,7 +33,8 @@ const std::vector<Record>* PreparedRecords::as_logged() const {
 
 std::vector<std::string> PreparedRecords::remarks() const {
   std::vector<std::string> all;
-  for (const auto* remarks : {&repaired_.remarks, &aligned_.remarks, &resting_.remarks})
+  for (const auto* remarks :
+       {&timed_.remarks, &parted_.remarks, &repaired_.remarks, &aligned_.remarks, &resting_.remarks})
     all.insert(all.end(), remarks->begin(), remarks->end());
   return all;
 }

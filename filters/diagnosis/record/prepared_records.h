@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures as every diagnosis and measurement takes them: angles without their wraps, faults of logging
+// Captures as every diagnosis and measurement takes them: stamps that scatter set even, parted at
+// long holes, angles without their wraps, faults of logging
 // repaired, a late reference shifted, derived channels beside, turns left out, the part to fit cut, ramps
 // taken out. Each step's records show columns that the step before owns, so all of it stays together.
 #pragma once
@@ -9,7 +10,9 @@
 
 #include "filters/diagnosis/record/channel_faults.h"
 #include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/record/even_stamps.h"
 #include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/long_holes.h"
 #include "filters/diagnosis/record/ramps_out.h"
 #include "filters/diagnosis/record/reference_delay.h"
 #include "filters/diagnosis/record/turned.h"
@@ -34,6 +37,8 @@ class PreparedRecords {
   [[nodiscard]] std::vector<std::string> remarks() const;  // in the order of the steps
 
  private:
+  TimedRecords timed_;
+  PartedRecords parted_;
   DerivedRecords unwrapped_;
   RepairedRecords repaired_;
   AlignedRecords aligned_;

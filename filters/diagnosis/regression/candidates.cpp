@@ -20,8 +20,9 @@ constexpr double kBlocksOfRate = 2.0;
 constexpr double kShortestWarmUp_s = 10.0;
 // Of a sample: a band power that weighs the frequencies near half the sample rate most.
 constexpr double kHighest = 0.5;
-constexpr double kInside = 0.1;  // of the range from its edge: of a transition both levels have to be seen
-constexpr int kHarmonics = 2;    // of a turn: once, as a field does, and twice, as what bends does
+constexpr double kInside = 0.1;     // of the range from its edge: of a transition both levels have to be seen
+constexpr double kSeenTurn = 0.75;  // of a turn: on a shorter arc the rest of the circle would be a guess
+constexpr int kHarmonics = 2;       // of a turn: once, as a field does, and twice, as what bends does
 constexpr double kOfDifference =
     3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
 constexpr double kOfOtherAxis = 2.0;
@@ -70,6 +71,8 @@ void add_difference(const BlockData& data, std::size_t channel, std::vector<Cand
 }
 
 void add_angle(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  const FineChannel& angle = data.channels[channel];
+  if (angle.high - angle.low < kSeenTurn * angle.period) return;
   for (int times = 1; times <= kHarmonics; ++times) {
     for (const Form form : {Form::kCosine, Form::kSine}) {
       found.push_back(candidate_of(form, channel));

@@ -10,6 +10,7 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/report/separate.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
+#include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -17,6 +18,9 @@ namespace {
 
 // The joint fit is linear in the logarithm of a time constant: further it is not to be trusted.
 constexpr double kFarthest = 0.3;
+// Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
+constexpr double kWellKnown = 5.0;
+constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
   std::vector<double> used;
@@ -96,6 +100,35 @@ JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchRes
 }
 
 namespace {
+
+int highest_power(const Effect& effect) {
+  const Form form = form_named(effect.form).value_or(Form::kLinear);
+  return power_of(form == Form::kProduct ? form_named(effect.with_form).value_or(Form::kLinear) : form);
+}
+
+// By its tangent a square leaves as much again one span beyond its range as it did within. Where the
+// curvature is far above its error the form itself is the better guess; not beside higher powers of the same
+// channel, for then all of them are a series that ends somewhere.
+void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effects) {
+  const auto channels = [](const Effect& effect) {
+    return std::array<std::string, 2>{effect.channel, effect.with_channel};
+  };
+  for (FoundEffect& found : effects) {
+    Effect& effect = found.effect;
+    const int power = highest_power(effect);
+    if (power < 2 || power > kHighestFollowed) continue;
+    const bool series = std::any_of(effects.begin(), effects.end(), [&](const FoundEffect& other) {
+      return highest_power(other.effect) > kHighestFollowed && channels(other.effect) == channels(effect);
+    });
+    const ModelParameter& size = effect.parameters.front();
+    if (series || !(std::abs(size.value) > kWellKnown * size.std_error)) continue;
+    const std::string& of = effect.form == name_of(Form::kProduct) ? effect.with_channel : effect.channel;
+    for (const FineChannel& channel : data.channels)
+      if (channel.name == of)
+        effect.parameters.push_back(
+            {std::string(kCurveReach), channel.high - channel.low, 0.0, std::string(unit_of(of))});
+  }
+}
 
 // What the search chose, with parameters, their errors and each one's part of the error by block.
 void add_effects(const BlockData& data, const SearchResult& found, const JointFit& joint,
@@ -205,6 +238,7 @@ Findings findings_of(const BlockData& data, const BlockData& reconstructed, cons
                      const JointFit& joint, const std::string& axis) {
   Findings findings;
   add_effects(data, found, joint, axis, findings);
+  follow_known_curves(data, findings.effects);
   name_saturation(data, findings.effects);
   add_alternatives(data, reconstructed, found, axis, findings);
   add_earth_rate(findings);

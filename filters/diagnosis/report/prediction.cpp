@@ -9,6 +9,7 @@
 
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/residual/hysteresis.h"
+#include "filters/effects/curve_reach.h"
 #include "filters/effects/reach.h"
 
 namespace ifog {
@@ -112,7 +113,8 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
       on.left += coefficient * (column.array() - 2.0 * *ramp_s).cwiseMax(0.0).matrix();
       continue;
     }
-    const bool tangent = power_of(candidate->form) > 1 || candidate->form == Form::kLookup;
+    const bool tangent = (power_of(candidate->form) > 1 && parameter(effect, kCurveReach) == 0.0) ||
+                         candidate->form == Form::kLookup;
     on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
     if (!(candidate->time_constant_s > 0.0)) continue;
     const Columns by_logarithm =

@@ -156,4 +156,22 @@ std::optional<TwoStates> find_two_states(std::span<const double> left, double pe
   return found;
 }
 
+bool steps_are_jumps(const std::vector<EvenError>& errors, const BlockGrid& grid, const SearchResult& found) {
+  const EvenError& longest = longest_of(errors);
+  const auto record = static_cast<std::size_t>(&longest - errors.data());
+  Samples left = longest.after;
+  bool any = false;
+  Eigen::Index at = grid.constants();
+  for (const Chosen& each : found.chosen) {
+    const Candidate& step = each.candidate;
+    const double size = found.coefficients[at];
+    at += step.width();
+    if (step.form != Form::kStep || step.record != record) continue;
+    any = true;
+    const double from = std::ceil((step.time_s - longest.start_s) / grid.sample_s);
+    for (auto i = static_cast<std::size_t>(std::max(0.0, from)); i < left.size(); ++i) left[i] += size;
+  }
+  return any && find_two_states(left, grid.sample_s).has_value();
+}
+
 }  // namespace ifog

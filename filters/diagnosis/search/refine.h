@@ -16,4 +16,8 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                   std::size_t at);
 
+// Whether both levels of every transition lie within the channel's range, as far as one half width from its
+// middle. What only bends there is a polynomial's to describe, which goes on where a level would stop.
+bool levels_seen(const BlockData& data, const std::vector<Candidate>& model);
+
 }  // namespace ifog

@@ -96,7 +96,7 @@ class EffectSearch {
     trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
     if (model[at].searched()) refine_shape(data_, trial.noise.shape, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
-    trial.score = 2.0 * trial.noise.log_likelihood - penalty(model);
+    if (levels_seen(data_, model)) trial.score = 2.0 * trial.noise.log_likelihood - penalty(model);
     trial.model = std::move(model);
     return trial;
   }
@@ -164,6 +164,7 @@ class EffectSearch {
   }
 
   [[nodiscard]] bool proven(const Trial& trial) const {
+    if (!levels_seen(data_, trial.model)) return false;
     const Claimed claimed{trial.model, trial.noise};
     return trial.model.back().form == Form::kStep ? step_persists(data_, claimed)
                                                   : predicts_held_out(data_, claimed);
@@ -254,7 +255,7 @@ class EffectSearch {
     for (std::size_t i = first; i < model_.size(); ++i) {
       if (!model_[i].searched()) continue;
       Trial trial = refined(model_, i, noise_.shape);
-      if (trial.noise.log_likelihood > noise_.log_likelihood) {
+      if (levels_seen(data_, trial.model) && trial.noise.log_likelihood > noise_.log_likelihood) {
         model_ = trial.model;
         noise_ = trial.noise;
       }

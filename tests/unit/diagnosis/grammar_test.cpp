@@ -244,6 +244,22 @@ TEST(Grammar, OnceATurnIsTracedToTheTablesAngle) {
   EXPECT_TRUE(found.ranges.empty()) << "an angle leaves no range";
 }
 
+// A tenth of a turn, back and forth: whatever follows the angle there says nothing of the rest of the circle.
+TEST(Grammar, OfAnArcNothingIsSaidOfTheTurn) {
+  Sensor s(9);
+  std::vector<double> angle;
+  s.turn([](double t) { return 0.01 * std::cos(2.0 * M_PI * t / 200.0); });
+  for (std::size_t i = 0; i < s.time.size(); ++i) {
+    const double turned = 6.0 + 0.318 * std::sin(2.0 * M_PI * s.time[i] / 200.0);
+    angle.push_back(std::fmod(turned, 2.0 * M_PI));
+    s.rate[i] += 4e-6 * std::cos(turned);
+  }
+  s.columns.emplace_back("table_rad", angle);
+  const Diagnosis found = diagnose({s.record()}, {});
+  EXPECT_EQ(effect_of(found, "cosine", "table_rad"), nullptr) << all_in_words(found);
+  EXPECT_EQ(effect_of(found, "sine", "table_rad"), nullptr) << all_in_words(found);
+}
+
 TEST(Grammar, ATurningPointFarFromTheReferenceIsALineAndAParabola) {
   Sensor s(10);
   const auto temperature = [](double t) { return -5.0 + 4.0 * std::sin(2.0 * M_PI * t / 610.0); };

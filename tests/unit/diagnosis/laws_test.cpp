@@ -4,6 +4,7 @@
 // temperature. What is written is run over a second capture, whose truth is the same equation.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -107,6 +108,21 @@ TEST(Laws, AStraightLineIsNoTransition) {
   const auto law = [](double, double, double temperature, double) { return 2e-7 * (temperature - 25.0); };
   const Diagnosis found = diagnose({make(5, kWhite, 0.0, false, law).record()}, {});
   EXPECT_EQ(all_in_words(found), "linear of temperature_degC; ");
+}
+
+// The turning point lies where the first capture was; a tangent at its edge would leave a third of the
+// square.
+TEST(Laws, AWellKnownTurningPointIsFollowedBeyondItsRange) {
+  const auto law = [](double, double, double temperature, double) {
+    return 6e-8 * (temperature - 24.0) * (temperature - 24.0);
+  };
+  const Diagnosis found = diagnose({make(8, kWhite, 0.0, false, law).record()}, {});
+  const auto square = std::find_if(found.effects.begin(), found.effects.end(), [](const FoundEffect& each) {
+    return each.effect.form == "quadratic" && each.effect.channel == "temperature_degC";
+  });
+  ASSERT_NE(square, found.effects.end()) << all_in_words(found);
+  EXPECT_NEAR(parameter(square->effect, "curve_reach"), 12.0, 0.2) << "as far as its range is wide";
+  EXPECT_LT(left_of(found, make(9, 0.0, 9.0, false, law)), 0.15) << "the second capture is warmer";
 }
 
 // At 12.3 V, the middle of what it saw, the scale factor is right: alone neither of the two shows.

@@ -34,6 +34,20 @@ void add(BlockData& data, const Candidate& effect, double coefficient) {
   data.grid.error += coefficient * regressors(data, effect).col(0);
 }
 
+// From -3 to 3: a transition about 2 with a half width of 1.5 has only begun to level out at 3.
+TEST(Search, OfATransitionBothLevelsHaveToBeSeen) {
+  BlockData data;
+  data.channels.push_back(channel_of("temperature_degC", {-3.0, 0.0, 3.0}));
+  data.channels[0].low = -3.0;
+  data.channels[0].high = 3.0;
+  Candidate transition = of(0, Form::kTransition);
+  transition.half_width = 1.5;
+  for (const auto& [centre, seen] : {std::pair{0.0, true}, {1.4, true}, {2.0, false}, {-2.0, false}}) {
+    transition.centre = centre;
+    EXPECT_EQ(levels_seen(data, {of(0, Form::kLinear), transition}), seen) << centre;
+  }
+}
+
 Scored best_of(const std::vector<Scored>& scored) {
   return *std::max_element(scored.begin(), scored.end(),
                            [](const Scored& a, const Scored& b) { return a.ratio < b.ratio; });

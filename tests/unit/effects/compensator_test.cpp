@@ -286,6 +286,22 @@ TEST(Compensator, AHigherPowerGoesOnByItsTangent) {
   EXPECT_NEAR(out.variance_rad2ps2[0], std::pow(1e-8 * (25.0 * 25.0 * 25.0 - tangent), 2), 1e-16);
 }
 
+TEST(Compensator, AWellKnownCurveGoesOnAsItIsForOneMoreSpan) {
+  for (const auto& [form, power] : {std::pair{"quadratic", 2}, {"cubic", 3}}) {
+    Model model = fitted_from_10_to_40(form, 1e-8, 0.0);
+    model.effects[0].parameters.push_back({"curve_reach", 30.0, 0.0, "degC"});
+    model.covariance.assign(4, 0.0);
+    Compensator compensator(model, {""});
+    for (const double t : {0.0, 50.0, 70.0, 90.0}) {
+      const auto out = step(compensator, 0.0, {t});
+      const double c = std::min(t, 70.0) - 25.0;
+      EXPECT_NEAR(out.correction_radps[0], 1e-8 * std::pow(c, power), 1e-16) << form << ' ' << t;
+      const double held = t > 70.0 ? 1e-8 * power * std::pow(c, power - 1) * (t - 70.0) : 0.0;
+      EXPECT_NEAR(out.variance_rad2ps2[0], held * held, 1e-18) << form << ' ' << t;
+    }
+  }
+}
+
 // An even spread over the zone has a third of the square of its half width; nothing is given back.
 TEST(Compensator, WhatADeadZoneHidesIsInTheVariance) {
   Model model;

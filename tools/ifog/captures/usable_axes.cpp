@@ -46,8 +46,7 @@ void tell_stuck(const std::string& name, const std::string& axis, std::span<cons
 }
 
 // Of one capture.
-template <typename Captured>
-std::vector<std::string> unusable(const Captured& capture, const std::string& name) {
+std::vector<std::string> unusable(const CaptureView& capture, const std::string& name) {
   std::vector<std::string> missing, stuck;
   for (std::size_t a = 0; a < capture.axes.size(); ++a)
     if (!has_value(capture.rate_radps[a]))
@@ -71,19 +70,6 @@ std::vector<std::string> unusable(const Captured& capture, const std::string& na
   }
   missing.insert(missing.end(), stuck.begin(), stuck.end());
   return missing;
-}
-
-template <typename Captured>
-void leave_out_of(const std::vector<std::string>& axes, Captured& capture) {
-  for (const std::string& axis : axes) {
-    const auto found = std::find(capture.axes.begin(), capture.axes.end(), axis);
-    if (found == capture.axes.end()) continue;
-    const auto at = found - capture.axes.begin();
-    capture.axes.erase(found);
-    capture.rate_radps.erase(capture.rate_radps.begin() + at);
-    capture.reference_rate_radps.erase(capture.reference_rate_radps.begin() + at);
-    capture.dead_axes.push_back(axis);
-  }
 }
 
 }  // namespace
@@ -128,7 +114,17 @@ std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
   return all;
 }
 
-void leave_out(const std::vector<std::string>& axes, CaptureView& capture) { leave_out_of(axes, capture); }
+void leave_out(const std::vector<std::string>& axes, CaptureView& capture) {
+  for (const std::string& axis : axes) {
+    const auto found = std::find(capture.axes.begin(), capture.axes.end(), axis);
+    if (found == capture.axes.end()) continue;
+    const auto at = found - capture.axes.begin();
+    capture.axes.erase(found);
+    capture.rate_radps.erase(capture.rate_radps.begin() + at);
+    capture.reference_rate_radps.erase(capture.reference_rate_radps.begin() + at);
+    capture.dead_axes.push_back(axis);
+  }
+}
 
 void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
   const std::vector<std::string> out = unusable_axes(captures, names);
@@ -136,7 +132,7 @@ void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std:
 }
 
 void keep_usable_axes(CaptureView& capture, const std::string& name) {
-  leave_out_of(unusable(capture, name), capture);
+  leave_out(unusable(capture, name), capture);
 }
 
 void keep_usable_axes(LongTable& table, const std::string& name) {

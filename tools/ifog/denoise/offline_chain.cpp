@@ -11,7 +11,7 @@
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture.h"
-#include "filters/allan/stretches.h"
+#include "filters/allan/row_times.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/console/progress.h"
@@ -54,35 +54,6 @@ double rate_of(const SeriesView& time_s, const SampleClock& clock) {
   const double median = 1.0 / median_step(time_s), mean = 1.0 / clock.period_s;
   return clock.scatters() || std::abs(mean / median - 1.0) > kCoarse ? mean : median;
 }
-
-// The times of the rows: their stamps, or where those scatter an even clock, anew behind each hole.
-class RowTimes {
- public:
-  RowTimes(const SeriesView& time_s, const SampleClock& clock)
-      : period_s_(clock.period_s), first_s_(time_s.at(0)) {
-    if (clock.scatters()) holes_ = holes(time_s, clock);
-    scatters_ = clock.scatters();
-  }
-  // ns since the first row, of each row in turn.
-  std::int64_t next(double stamp_s) {
-    if (!scatters_) return std::llround((stamp_s - first_s_) * 1e9);
-    if (row_ > 0) {
-      const bool hole = at_ < holes_.size() && holes_[at_] + 1 == row_;
-      at_ += hole ? 1 : 0;
-      even_s_ += hole ? period_s_ * std::max(2.0, std::round((stamp_s - last_s_) / period_s_)) : period_s_;
-    }
-    ++row_;
-    last_s_ = stamp_s;
-    return std::llround(even_s_ * 1e9);
-  }
-
- private:
-  double period_s_, first_s_;
-  bool scatters_ = false;
-  std::vector<std::size_t> holes_;
-  std::size_t row_ = 0, at_ = 0;
-  double even_s_ = 0.0, last_s_ = 0.0;
-};
 
 ChainSettings chain_settings_of(const LongTable& capture, const std::string& path, const CaptureShape& shape,
                                 const std::vector<std::size_t>& channels, const OfflineSettings& settings,
@@ -141,7 +112,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
     for (std::size_t i = 0; i < count; ++i) {
       // The column's own times are the device's clock; from the first sample on, as a clock cannot be
       // negative here.
-      reading.device_time_ns = times->next(now[0][i]);
+      reading.device_time_ns = std::llround(times->next(now[0][i]) * 1e9);
       reading.valid_axes = 0;
       for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
         reading.value[axis] = now[1 + axis][i];

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// When the rows of a capture were taken: what every command makes of its time column.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "filters/allan/stretches.h"
+
+namespace ifog {
+
+// By their stamps, or where those scatter (SampleClock::scatters) by an even clock that is set anew behind
+// each hole, to whole periods.
+class RowTimes {
+ public:
+  // clock: sample_clock(time_s). At least one row.
+  RowTimes(const SeriesView& time_s, const SampleClock& clock);
+
+  // Seconds since the first row, of each row in turn.
+  double next(double stamp_s);
+
+ private:
+  double period_s_, first_s_;
+  bool scatters_;
+  std::vector<std::size_t> holes_;
+  std::size_t row_ = 0, at_ = 0;
+  double even_s_ = 0.0, last_s_ = 0.0;
+};
+
+}  // namespace ifog

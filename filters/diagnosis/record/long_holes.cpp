@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/record/long_holes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "filters/diagnosis/record/fitted_part.h"
+#include "filters/effects/compensate_series.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kLong = 0.25;  // of the time that was recorded
+constexpr double kLeastHole_s = 600.0;
+constexpr double kLongestStep_s = 1.0;  // beyond, rows are averages of their own
+constexpr std::size_t kFewestRows = 64;
+constexpr double kFewestShare = 0.01;  // of all rows
+
+std::vector<SampleRange> parts_of(const Record& record, double& longest_s) {
+  const std::size_t rows = record.time_s.size();
+  std::vector<SampleRange> parts{{0, rows}};
+  const double step_s = usual_step(record.time_s);
+  if (step_s > kLongestStep_s) return parts;
+  const double least_s = std::max(kLeastHole_s, kLong * step_s * static_cast<double>(rows));
+  if (record.time_s.back() - record.time_s.front() < least_s) return parts;
+  for (std::size_t i = 1; i < rows; ++i) {
+    const double hole_s = record.time_s[i] - record.time_s[i - 1];
+    if (hole_s < least_s) continue;
+    longest_s = std::max(longest_s, hole_s);
+    parts.back().to = i;
+    parts.push_back({i, rows});
+  }
+  return parts;
+}
+
+bool long_enough(const SampleRange& part, std::size_t rows) {
+  return part.size() >= kFewestRows &&
+         static_cast<double>(part.size()) >= kFewestShare * static_cast<double>(rows);
+}
+
+std::string in_words(const Record& record, std::size_t parts, std::size_t left_out, double longest_s) {
+  std::array<char, 240> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": the longest hole is of %.4g s; its %zu parts were taken as captures of their own, each with a "
+      "bias of its own",
+      longest_s, parts);
+  std::string words = record.name + text.data();
+  if (left_out > 0)
+    words += ", but for " + std::to_string(left_out) + " rows in parts too short to say anything";
+  return words;
+}
+
+}  // namespace
+
+PartedRecords part_at_long_holes(const std::vector<Record>& records) {
+  PartedRecords out;
+  for (const Record& record : records) {
+    double longest_s = 0.0;
+    std::vector<SampleRange> parts = parts_of(record, longest_s);
+    const std::size_t rows = record.time_s.size();
+    std::size_t left_out = 0;
+    for (const SampleRange& part : parts) left_out += long_enough(part, rows) ? 0 : part.size();
+    if (parts.size() > 1)
+      std::erase_if(parts, [&](const SampleRange& part) { return !long_enough(part, rows); });
+    if (longest_s == 0.0 || parts.empty()) {
+      out.records.push_back(record);
+      continue;
+    }
+    for (const SampleRange& samples : parts) {
+      Record part = part_of(record, samples);
+      std::array<char, 64> from{};
+      std::snprintf(from.data(), from.size(), " (from %.6g s)", part.time_s.front());
+      part.name += from.data();
+      out.records.push_back(std::move(part));
+    }
+    out.remarks.push_back(in_words(record, parts.size(), left_out, longest_s));
+  }
+  return out;
+}
+
+}  // namespace ifog

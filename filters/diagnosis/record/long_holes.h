@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Captures with a hole that is long beside what was recorded, as records of their own. One grid over such a
+// hole would be mostly hole: its blocks too long for what is quick, its samples more than were ever taken,
+// its channels a straight line for hours.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/record.h"
+
+namespace ifog {
+
+struct PartedRecords {
+  std::vector<Record> records;       // of the same arrays; a part's name says when it begins
+  std::vector<std::string> remarks;  // a sentence for each capture that was parted
+};
+
+// A bias may have changed in the hole, so each part has a constant of its own. Parts of a few rows are
+// left out, and it is said. Dwells stay together.
+PartedRecords part_at_long_holes(const std::vector<Record>& records);
+
+}  // namespace ifog
