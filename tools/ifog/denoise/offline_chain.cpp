@@ -67,21 +67,20 @@ class RowTimes {
   std::int64_t next(double stamp_s) {
     if (!scatters_) return std::llround((stamp_s - first_s_) * 1e9);
     if (row_ > 0) {
-      const bool hole = at_ < holes_.size() && holes_[at_] + 1 == row_;
+      const bool hole = at_ < holes_.size() && holes_[at_].after + 1 == row_;
+      even_s_ += period_s_ * static_cast<double>(hole ? holes_[at_].lost + 1 : 1);
       at_ += hole ? 1 : 0;
-      even_s_ += hole ? period_s_ * std::max(2.0, std::round((stamp_s - last_s_) / period_s_)) : period_s_;
     }
     ++row_;
-    last_s_ = stamp_s;
     return std::llround(even_s_ * 1e9);
   }
 
  private:
   double period_s_, first_s_;
   bool scatters_ = false;
-  std::vector<std::size_t> holes_;
+  std::vector<Hole> holes_;
   std::size_t row_ = 0, at_ = 0;
-  double even_s_ = 0.0, last_s_ = 0.0;
+  double even_s_ = 0.0;
 };
 
 ChainSettings chain_settings_of(const LongTable& capture, const std::string& path, const CaptureShape& shape,
