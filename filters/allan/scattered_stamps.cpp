@@ -25,16 +25,20 @@ class Clock {
  public:
   explicit Clock(double period_s) : period_s_(period_s) {}
 
-  // times: the first stamp of all, or behind a silence, and those that follow it. Its phase is what a clock
-  // says that has followed them for a while.
+  // times: the first stamp of all, or behind a silence, and those that follow it. Its phase is against the
+  // median of theirs, by the numbers that a clock gives them which begins with it.
   void begin(std::span<const double> times) {
-    Clock ahead(period_s_);
-    const std::size_t last = std::min(kSettle, times.size()) - 1;
-    double numbers = 0.0;
-    for (std::size_t k = 1; k <= last; ++k)
-      numbers += 1.0 + static_cast<double>(ahead.take(times[k - 1], times.subspan(k)));
-    const double late = (times[0] - times[last]) / period_s_ + numbers + ahead.late_;
-    late_ = late - std::round(late);
+    Clock trial(period_s_);
+    std::array<double, kSettle> late{};
+    std::size_t count = 1;
+    for (double numbers = 0.0; count < std::min(kSettle, times.size()); ++count) {
+      const std::size_t lost = trial.take(times[count - 1], times.subspan(count));
+      if (lost > kSilence) break;
+      numbers += 1.0 + static_cast<double>(lost);
+      late[count] = (times[count] - times[0]) / period_s_ - numbers;
+    }
+    late_ = -middle_of(std::span(late).first(count));
+    late_ -= std::round(late_);
   }
   // The next stamp and those that follow it; how many are lost before it.
   std::size_t take(double last_s, std::span<const double> times) {
@@ -61,9 +65,12 @@ class Clock {
     std::array<double, kNext> late{};
     const std::size_t count = std::min(kNext, times.size());
     for (std::size_t k = 0; k < count; ++k) late[k] = late_ + later(times[0], times[k], k);
-    // One of them and no mean of two, which may be either side of a hole.
-    const auto middle = late.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
-    std::nth_element(late.begin(), middle, late.begin() + static_cast<std::ptrdiff_t>(count));
+    return middle_of(std::span(late).first(count));
+  }
+  // One of them and no mean of two, which may be either side of a hole.
+  static double middle_of(std::span<double> values) {
+    const auto middle = values.begin() + (std::ssize(values) - 1) / 2;
+    std::nth_element(values.begin(), middle, values.end());
     return *middle;
   }
 

@@ -104,11 +104,15 @@ double scattered_period(const SeriesView& time_s, double near_s) {
   Period out{.period_s = near_s};
   for (int round = 0; round < 3; ++round) out = mean_period(time_s, out.period_s, true);
   // Where stamps are off by all but half a period steps say nothing. If nothing is missing at the mean of all
-  // of them, that is it: unless a few holes make a much better clock.
+  // of them, that is it, unless a few holes make a much better clock; or stamps would be off by more than
+  // half a period, as those of bursts.
+  constexpr double kHalfEitherWay = 0.1;  // a twelfth, with the error of the clock
   const std::size_t count = time_s.size() - 1;
   const double all_s = (time_s.at(count) - time_s.at(0)) / static_cast<double>(count);
   const Period all = mean_period(time_s, all_s, true);
-  return all.gaps == 0 && (4 * out.gaps > count || all.squares < 2.0 * out.squares) ? all_s : out.period_s;
+  const bool even = all.gaps == 0 && all.squares < kHalfEitherWay &&
+                    (4 * out.gaps > count || all.squares < 2.0 * out.squares);
+  return even ? all_s : out.period_s;
 }
 
 }  // namespace

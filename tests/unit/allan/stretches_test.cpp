@@ -107,5 +107,18 @@ TEST(SampleClock, BehindASilenceThePhaseIsAnother) {
   EXPECT_NEAR(clock.period_s, 0.01, 1e-6);
 }
 
+// Twenty samples, then a silence: each burst has its own phase.
+TEST(SampleClock, BurstsArePartedBySilences) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> off(-3e-3, 3e-3);
+  std::vector<double> time;
+  for (int burst = 0; burst < 500; ++burst)
+    for (int n = 0; n < 20; ++n) time.push_back(burst * 1.0037 + n * 0.01 + off(engine));
+  const SampleClock clock = sample_clock(time);
+  EXPECT_TRUE(clock.scatters());
+  EXPECT_EQ(clock.gaps, 499U);
+  EXPECT_NEAR(clock.period_s, 0.01, 1e-5);
+}
+
 }  // namespace
 }  // namespace ifog
