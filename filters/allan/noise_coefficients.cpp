@@ -32,6 +32,8 @@ constexpr double kBound = kNested;
 // A ramp competes with a random walk estimated from few numbers, so its likelihood ratio has a long tail.
 constexpr double kRampPresent = 10.0;
 constexpr double kOneSided = 1.959964;
+// Of less the likelihood's curvature, which has its square in the denominator, is no number any more.
+constexpr double kLeastPower = 1e-120;
 
 // Variance of `term` at which the likelihood, the others at their best, has fallen by kBound/2. The root of
 // twice the loss is nearly a straight line there, which secants follow in a few steps.
@@ -48,7 +50,8 @@ double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::
   double low = best.variances[term], lost_low = 0.0;
   double high = low + wanted / std::sqrt(likelihood.information(best.variances)(index, index));
   double lost_high = lost(high);
-  while (lost_high < wanted) {
+  constexpr int kMostDoublings = 64;
+  for (int i = 0; i < kMostDoublings && lost_high < wanted; ++i) {
     low = std::exchange(high, low + 2.0 * (high - low));
     lost_low = std::exchange(lost_high, lost(high));
   }
@@ -195,6 +198,9 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
   NoiseSpectrum measured = noise_spectrum(sum);
   if (std::all_of(measured.bins.begin(), measured.bins.end(), [](const auto& b) { return !(b.power > 0.0); }))
     throw std::invalid_argument("the rate never changes; there is no noise to fit");
+  if (std::all_of(measured.bins.begin(), measured.bins.end(),
+                  [](const auto& b) { return b.power < kLeastPower; }))
+    throw std::invalid_argument("the rate changes by less than 1e-60 rad/s: no sensor's noise");
   NoiseCoefficients found;
   for (const FrequencyRange& line : measured.lines) found.lines_hz.push_back(in_hz(line, period_s));
   const Described record = described(std::move(measured));

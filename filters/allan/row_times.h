@@ -9,8 +9,8 @@
 
 namespace ifog {
 
-// By their stamps, or where those scatter (SampleClock::scatters) by an even clock that is set anew behind
-// each hole, to whole periods.
+// By their stamps, or where those scatter (SampleClock::scatters) by an even clock that has the samples of
+// each hole in it.
 class RowTimes {
  public:
   // clock: sample_clock(time_s). At least one row.
@@ -22,9 +22,9 @@ class RowTimes {
  private:
   double period_s_, first_s_;
   bool scatters_;
-  std::vector<std::size_t> holes_;
+  std::vector<Hole> holes_;
   std::size_t row_ = 0, at_ = 0;
-  double even_s_ = 0.0, last_s_ = 0.0;
+  double even_s_ = 0.0;
 };
 
 }  // namespace ifog

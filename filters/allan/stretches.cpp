@@ -5,90 +5,114 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <utility>
+
+#include "filters/allan/scattered_stamps.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kGap = 1.5;     // in periods
-constexpr double kSurely = 2.1;  // likewise: stamps that keep their order are off by less than half a period
-constexpr std::size_t kLeastBeside = 2;
-
-// How many samples on either side say whether the stamps stay late behind a step: two, and where the stamps
-// scatter by themselves as many as their median needs to be worth a tenth of a period.
-std::size_t samples_beside(std::vector<double> steps, double period) {
-  constexpr double kScatters = 0.1, kWorth = 0.1;  // of a period
-  constexpr std::size_t kMostBeside = 64;
-  for (double& step : steps) step = std::abs(step - period);
-  std::nth_element(steps.begin(), steps.begin() + std::ssize(steps) / 2, steps.end());
-  const double scatter =
-      1.4826 * steps[steps.size() / 2] / (std::numbers::sqrt2 * period);  // of a stamp, as of Gaussians
-  if (scatter < kScatters) return kLeastBeside;
-  const double wanted = std::ceil(std::numbers::pi * (scatter / kWorth) * (scatter / kWorth));
-  return std::clamp<std::size_t>(static_cast<std::size_t>(std::min(wanted, 1e3)), kLeastBeside, kMostBeside);
-}
+constexpr double kGap = 1.5;  // in periods
+constexpr std::size_t kBeside = 2;
 
 // Some steps of the time with the samples around them.
 class Steps {
  public:
-  Steps(std::span<const double> time_s, std::size_t first, std::size_t samples, std::size_t beside)
-      : time_s_(time_s), first_(first), samples_(samples), beside_(beside) {}
+  Steps(std::span<const double> time_s, std::size_t first, std::size_t samples)
+      : time_s_(time_s), first_(first), samples_(samples) {}
 
   // From sample i to the next.
   [[nodiscard]] double step(std::size_t i) const { return at(i + 1) - at(i); }
   // A late stamp followed by an early one is jitter; a gap leaves all that follows late. The step is judged
-  // by the second sample on either side, which what one bad stamp does has no part in; and of stamps that
-  // scatter, by the medians on either side as well.
+  // by the second sample on either side, which what one bad stamp does has no part in.
   [[nodiscard]] bool is_gap(std::size_t i, double period) const {
     if (step(i) <= kGap * period) return false;
-    const std::size_t low = i >= kLeastBeside ? i - kLeastBeside : 0;
-    const std::size_t high = std::min(i + 1 + kLeastBeside, samples_ - 1);
+    const std::size_t low = i >= kBeside ? i - kBeside : 0;
+    const std::size_t high = std::min(i + 1 + kBeside, samples_ - 1);
     const double across = (at(high) - at(low)) / period;
-    if (across - static_cast<double>(high - low) <= kGap - 1.0) return false;
-    return beside_ == kLeastBeside || late_for_good(i, period);
+    return across - static_cast<double>(high - low) > kGap - 1.0;
   }
 
  private:
   [[nodiscard]] double at(std::size_t i) const { return time_s_[i - first_]; }
-  // By the medians on either side, up to the next step that no scatter makes: another hole says nothing of
-  // this one.
-  [[nodiscard]] bool late_for_good(std::size_t i, double period) const {
-    const double surely = kSurely * period;
-    if (step(i) > surely) return true;
-    std::vector<double> before, behind;
-    for (std::size_t k = 0; k < std::min(beside_, i + 1); ++k) {
-      if (k > 0 && step(i - k) > surely) break;
-      before.push_back((at(i - k) - at(i)) / period + static_cast<double>(k));
-    }
-    for (std::size_t k = 0; k < std::min(beside_, samples_ - 1 - i); ++k) {
-      if (k > 0 && step(i + k) > surely) break;
-      behind.push_back((at(i + 1 + k) - at(i)) / period - static_cast<double>(k + 1));
-    }
-    if (2 * std::min(before.size(), behind.size()) < beside_) return false;  // too few to say
-    return median(behind) - median(before) > kGap - 1.0;
-  }
-  static double median(std::vector<double>& values) {
-    const auto middle = values.begin() + std::ssize(values) / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
 
   std::span<const double> time_s_;
-  std::size_t first_, samples_, beside_;
+  std::size_t first_, samples_;
 };
 
 // use(steps, i) for every step i in order.
 template <typename Use>
-void for_each_step(const SeriesView& time_s, std::size_t beside, Use use) {
+void for_each_step(const SeriesView& time_s, Use use) {
   const std::size_t samples = time_s.size();
   std::vector<double> room;
   for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
     const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
-    const std::size_t low = begin - std::min(begin, beside);
-    const std::size_t high = std::min(end + 1 + beside, samples);
-    const Steps steps(time_s.piece(low, high - low, room), low, samples, beside);
+    const std::size_t low = begin - std::min(begin, kBeside);
+    const std::size_t high = std::min(end + 1 + kBeside, samples);
+    const Steps steps(time_s.piece(low, high - low, room), low, samples);
     for (std::size_t i = begin; i < end; ++i) use(steps, i);
   }
+}
+
+double middle_of(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// found(i, lost, step) for each hole behind sample i; of stamps that scatter, their mean square.
+template <typename Found>
+double for_each_hole(const SeriesView& time_s, double period, bool scatters, Found found) {
+  if (scatters) return holes_of_scattered(time_s, period, found);
+  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+    if (!steps.is_gap(i, period)) return;
+    const double step = steps.step(i);
+    found(i, static_cast<std::size_t>(std::max(0.0, std::round(step / period) - 1.0)), step);
+  });
+  return 0.0;
+}
+
+struct Period {
+  double period_s = 0.0;  // the mean of the steps that are no gap
+  std::size_t gaps = 0;
+  double squares = 0.0;  // as for_each_hole
+};
+
+// By the gaps that there are with this period. Of stamps that scatter a short gap counts as so many steps:
+// its length says less of when the next sample was taken than its number.
+Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
+  constexpr std::size_t kShort = 8;
+  const std::size_t count = time_s.size() - 1;
+  double between_s = time_s.at(count) - time_s.at(0);
+  double steps = static_cast<double>(count);
+  Period out;
+  out.squares = for_each_hole(time_s, period_s, scatters, [&](std::size_t, std::size_t lost, double step_s) {
+    ++out.gaps;
+    if (scatters && lost <= kShort) {
+      steps += static_cast<double>(lost);
+      return;
+    }
+    between_s -= step_s;
+    steps -= 1.0;
+  });
+  if (out.gaps == count) throw std::invalid_argument("no two samples are one sample time apart");
+  out.period_s = between_s / steps;
+  return out;
+}
+
+// Of stamps that scatter; near: what their steps one by one say.
+double scattered_period(const SeriesView& time_s, double near_s) {
+  Period out{.period_s = near_s};
+  for (int round = 0; round < 3; ++round) out = mean_period(time_s, out.period_s, true);
+  // Where stamps are off by all but half a period steps say nothing. If nothing is missing at the mean of all
+  // of them, that is it, unless a few holes make a much better clock; or stamps would be off by more than
+  // half a period, as those of bursts.
+  constexpr double kHalfEitherWay = 0.1;  // a twelfth, with the error of the clock
+  const std::size_t count = time_s.size() - 1;
+  const double all_s = (time_s.at(count) - time_s.at(0)) / static_cast<double>(count);
+  const Period all = mean_period(time_s, all_s, true);
+  const bool even = all.gaps == 0 && all.squares < kHalfEitherWay &&
+                    (4 * out.gaps > count || all.squares < 2.0 * out.squares);
+  return even ? all_s : out.period_s;
 }
 
 }  // namespace
@@ -100,51 +124,45 @@ SampleClock sample_clock(const SeriesView& time_s) {
   std::vector<double> some;
   const std::size_t stride = count / 100'000 + 1;
   some.reserve(count / stride + 1);
-  for_each_step(time_s, kLeastBeside, [&](const Steps& steps, std::size_t i) {
+  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
     if (i % stride == 0) some.push_back(steps.step(i));
   });
-  std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2), some.end());
-  double period = some[some.size() / 2];
+  double period = middle_of(some);
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
-  const std::size_t beside = samples_beside(std::move(some), period);
-  SampleClock clock;
-  const double all_s = time_s.at(count) - time_s.at(0);
   // Coarse stamps make the median one tick too short or too long; a second round with the mean settles it.
-  for (int round = 0; round < 2; ++round) {
-    clock = {};
-    double gaps_s = 0.0;
-    for_each_step(time_s, beside, [&](const Steps& steps, std::size_t i) {
-      if (!steps.is_gap(i, period)) return;
-      if (clock.gaps++ == 0) clock.first_gap = i;
-      gaps_s += steps.step(i);
-    });
-    if (clock.gaps == count) throw std::invalid_argument("no two samples are one sample time apart");
-    period = (all_s - gaps_s) / static_cast<double>(count - clock.gaps);
-  }
+  for (int round = 0; round < 2; ++round) period = mean_period(time_s, period, false).period_s;
+  SampleClock clock;
+  for (double& step : some) step = std::abs(step - period);
+  clock.scatter = 1.4826 * middle_of(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
+  if (clock.scatters()) period = scattered_period(time_s, period);
   clock.period_s = period;
-  clock.beside = beside;
-  for_each_step(time_s, beside, [&](const Steps& steps, std::size_t i) {
-    const double step = steps.step(i);
-    if (steps.is_gap(i, period))
-      clock.missing += static_cast<std::size_t>(std::max(0.0, std::round(step / period) - 1.0));
+
+  const std::vector<Hole> gaps = holes(time_s, clock);
+  clock.gaps = gaps.size();
+  if (!gaps.empty()) clock.first_gap = gaps.front().after;
+  for (const Hole& gap : gaps) clock.missing += gap.lost;
+  auto gap = gaps.begin();
+  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+    if (gap != gaps.end() && gap->after == i)
+      ++gap;
     else
-      clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(step - period));
+      clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(steps.step(i) - period));
   });
   return clock;
 }
 
-std::vector<std::size_t> holes(const SeriesView& time_s, const SampleClock& clock) {
-  std::vector<std::size_t> gaps;
-  for_each_step(time_s, clock.beside, [&](const Steps& steps, std::size_t i) {
-    if (steps.is_gap(i, clock.period_s)) gaps.push_back(i);
+std::vector<Hole> holes(const SeriesView& time_s, const SampleClock& clock) {
+  std::vector<Hole> out;
+  for_each_hole(time_s, clock.period_s, clock.scatters(), [&](std::size_t i, std::size_t lost, double) {
+    out.push_back({i, lost});
   });
-  return gaps;
+  return out;
 }
 
 std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
                                const SampleClock& clock) {
-  const std::vector<std::size_t> gaps = holes(time_s, clock);
+  const std::vector<Hole> gaps = holes(time_s, clock);
   std::vector<Stretch> found;
   Stretch now;
   const auto close = [&](std::size_t next) {
@@ -155,7 +173,7 @@ std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_
   for_each_piece(rate_radps, 0, rate_radps.size(), [&](std::span<const double> rate, std::size_t first) {
     for (std::size_t k = 0; k < rate.size(); ++k) {
       const std::size_t i = first + k;
-      const bool last = gap != gaps.end() && *gap == i;
+      const bool last = gap != gaps.end() && gap->after == i;
       if (last) ++gap;
       if (std::isnan(rate[k])) {
         close(i + 1);

@@ -20,22 +20,28 @@ struct Stretch {
 struct SampleClock {
   double period_s = 0.0;        // mean of the steps that are no gap
   double worst_jitter_s = 0.0;  // largest distance of such a step from period_s
-  std::size_t gaps = 0;         // steps longer than 1.5 periods
-  std::size_t missing = 0;      // samples that fit into them
-  std::size_t beside = 2;       // samples on either side by which a gap is told
+  std::size_t gaps = 0;         // steps over which samples are missing
+  std::size_t missing = 0;      // so many
+  double scatter = 0.0;  // deviation of a stamp, in periods, by the steps' median distance from period_s
   // The stamps are off by more than steps of an even clock are told by: when a sample was taken its number
   // says better.
-  [[nodiscard]] bool scatters() const { return beside > 2; }
+  [[nodiscard]] bool scatters() const { return scatter >= 0.1; }
   std::size_t first_gap = 0;  // index of the sample before the first gap; meaningful when gaps > 0
 };
 
 // time_s strictly increasing, at least two samples; throws std::invalid_argument otherwise. The median step
 // decides what a gap is, so up to half of the steps may be gaps. Time stamps rounded to coarse ticks
 // alternate between steps of k and k + 1 ticks; a step counts as a gap only if the stamps stay late after it.
+// Of stamps that scatter see filters/allan/scattered_stamps.h.
 [[nodiscard]] SampleClock sample_clock(const SeriesView& time_s);
 
-// The last samples before a hole, in order.
-[[nodiscard]] std::vector<std::size_t> holes(const SeriesView& time_s, const SampleClock& clock);
+struct Hole {
+  std::size_t after = 0;  // the last sample before it
+  std::size_t lost = 0;
+};
+
+// In order.
+[[nodiscard]] std::vector<Hole> holes(const SeriesView& time_s, const SampleClock& clock);
 
 // The runs without gap or NaN, in order. time_s may be empty: then only NaNs part them.
 [[nodiscard]] std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,

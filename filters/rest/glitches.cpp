@@ -5,16 +5,29 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <vector>
 
 namespace ifog {
 namespace {
 
 constexpr double kFar = 30.0;
+// Of white noise a sample less the middle of its neighbours has 1.5 times its variance.
+constexpr double kOfMedian = 1.4826 / 1.224744871391589;
+// Samples about one: a change of the noise fills at least half of a block or of the next one. Of fewer second
+// differences no deviation is taken, and of as many it is off by a fifth at times.
+constexpr std::size_t kNear = 64, kLeast = 16;
+constexpr double kLouder = 2.0;
+constexpr double kRounding = 1e-12;       // of a value
 constexpr std::size_t kEnough = 100'000;  // second differences whose median is as good as that of all
 
-// use(i, away, apart) for each sample with two neighbours: how far it is from their middle, and they from
-// each other.
+// A sample with two neighbours: how far it is from their middle, they from each other, and it from the one
+// before.
+struct Middle {
+  double value = 0.0, away = 0.0, apart = 0.0, step = 0.0;
+};
+
+// use(i, middle) for each.
 template <typename Use>
 void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use use) {
   for (const Stretch& part : parts) {
@@ -22,7 +35,8 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
     for_each_piece(rate, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
       for (std::size_t k = 0; k < values.size(); ++k) {
         if (first + k >= part.begin + 2)
-          use(first + k - 1, std::abs(middle - 0.5 * (before + values[k])), std::abs(values[k] - before));
+          use(first + k - 1, Middle{middle, std::abs(middle - 0.5 * (before + values[k])),
+                                    std::abs(values[k] - before), std::abs(middle - before)});
         before = middle;
         middle = values[k];
       }
@@ -30,24 +44,65 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
   }
 }
 
+// What a leap is measured against.
+class Yardstick {
+ public:
+  Yardstick(const SeriesView& rate, std::span<const Stretch> parts) : near_(rate.size() / kNear + 1) {
+    std::vector<double> some, block;
+    const std::size_t stride = rate.size() / kEnough + 1;
+    std::size_t now = 0;
+    double largest = 0.0, smallest_step = std::numeric_limits<double>::infinity();
+    const auto close = [&] {
+      if (block.size() >= kLeast) near_[now] = kOfMedian * median(block);
+      block.clear();
+    };
+    for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
+      if (i % stride == 0) some.push_back(middle.away);
+      if (i / kNear != now) close();
+      now = i / kNear;
+      block.push_back(middle.away);
+      largest = std::max(largest, std::abs(middle.value));
+      if (middle.step > kRounding * std::abs(middle.value))
+        smallest_step = std::min(smallest_step, middle.step);
+    });
+    close();
+    if (some.size() < 3) return;
+    all_ = kOfMedian * median(some);
+    // Of a coarse sensor most neighbours are the same, but for the rounding of their digits.
+    least_ = std::max(kRounding * largest, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
+  }
+  // At sample i: of the whole record; of those about it where they are louder, so that what grows louder is
+  // no fault; 0 where nothing moves.
+  [[nodiscard]] double at(std::size_t i) const {
+    const std::size_t block = i / kNear, first = block - std::min<std::size_t>(block, 1);
+    const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = near_.begin() + static_cast<std::ptrdiff_t>(std::min(block + 2, near_.size()));
+    const double near = *std::max_element(begin, end);
+    return std::max(near > kLouder * all_ ? near : all_, least_);
+  }
+
+ private:
+  static double median(std::vector<double>& values) {
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
+  std::vector<double> near_;  // deviations, of so many samples each
+  double all_ = 0.0, least_ = 0.0;
+};
+
 }  // namespace
 
 Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts) {
-  std::vector<double> some;
-  const std::size_t stride = rate.size() / kEnough + 1;
-  for_each_middle(rate, parts, [&](std::size_t i, double away, double) {
-    if (i % stride == 0) some.push_back(away);
-  });
   Glitches out;
-  if (some.size() < 3) return out;
-  std::nth_element(some.begin(), some.begin() + std::ssize(some) / 2, some.end());
-  // Of white noise a sample less the middle of its neighbours has 1.5 times its variance.
-  const double deviation = 1.4826 * some[some.size() / 2] / std::sqrt(1.5);
-  if (!(deviation > 0.0)) return out;  // more than half of the record stands still
-  for_each_middle(rate, parts, [&](std::size_t i, double away, double apart) {
-    if (away <= kFar * deviation || apart >= 0.5 * away) return;
+  const Yardstick yardstick(rate, parts);
+  for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
+    if (!(middle.away > 0.0) || middle.apart >= 0.5 * middle.away) return;
+    const double deviation = yardstick.at(i);
+    if (!(deviation > 0.0) || middle.away <= kFar * deviation) return;
     if (out.count++ == 0) out.first = i;
-    out.most_times = std::max(out.most_times, away / deviation);
+    out.most_times = std::max(out.most_times, middle.away / deviation);
   });
   return out;
 }

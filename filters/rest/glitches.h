@@ -16,12 +16,14 @@ namespace ifog {
 struct Glitches {
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
-  double most_times =
-      0.0;  // the largest leap over the standard deviation of the noise, by the median of second differences
+  // The largest leap over the standard deviation of the noise, by the median of second differences.
+  double most_times = 0.0;
 };
 
 // parts: what is at rest and without holes. A sample between two that differ by less than half of its leap,
-// by more than 30 standard deviations: of Gaussian noise not one in 1e190.
+// by more than 30 standard deviations: of Gaussian noise not one in 1e190. The deviation is that of the
+// record, or of the hundred samples about it where those are more than twice as loud: noise that grows louder
+// is no fault of the logger; and half the smallest step of a coarse sensor at least.
 [[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts);
 
 // "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..."; empty for none. time_s: of a

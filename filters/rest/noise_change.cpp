@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "filters/rest/held.h"
+
 namespace ifog {
 namespace {
 
@@ -31,6 +33,11 @@ constexpr std::size_t kMostChanges = 3;
 // the usual one is the mean of so many.
 constexpr double kMostTimes = 5.0;
 constexpr double kUsual = 128.0;
+// Of the values, what differs by less does not differ: their rounding. Of a coarse sensor most neighbours are
+// the same; what is usual is said by those that are not.
+constexpr double kRounding = 1e-13;
+// Beyond, what is loud or quiet stands against next to nothing.
+constexpr double kMostLoud = 1e6;
 // A step of so many usual ones is a spike if it is back within so many samples.
 constexpr double kSpike = 10.0;
 constexpr int kMostReplaced = 3;
@@ -40,6 +47,7 @@ constexpr int kMostReplaced = 3;
 // say.
 struct Octave {
   std::array<double, kCells> magnitudes{}, counts{};
+  double beyond_rounding = 0.0;  // so many of them all
 };
 
 // Scaling coefficients go in one by one, every second one brings a wavelet coefficient and a scaling
@@ -60,7 +68,8 @@ class Pyramid {
       level.last = {level.last[1], level.last[2], level.last[3], value};
       if (++level.count < 4 || level.count % 2 == 1) return;
       const auto& x = level.last;
-      add(k, at, kHigh[0] * x[0] + kHigh[1] * x[1] + kHigh[2] * x[2] + kHigh[3] * x[3]);
+      add(k, at, kHigh[0] * x[0] + kHigh[1] * x[1] + kHigh[2] * x[2] + kHigh[3] * x[3],
+          kRounding * (std::abs(x[2]) + std::abs(x[3])));
       value = kHigh[3] * x[0] - kHigh[2] * x[1] + kHigh[1] * x[2] - kHigh[0] * x[3];
     }
   }
@@ -78,7 +87,7 @@ class Pyramid {
     }
     replaced_ = 0;
     accepted_ = rate;
-    if (first) return rate;
+    if (first || step <= kRounding * std::abs(rate)) return rate;
     steps_ = std::min(steps_ + 1.0, kUsual);
     usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
     return rate;
@@ -87,17 +96,20 @@ class Pyramid {
   struct Level {
     std::array<double, 4> last{};
     std::size_t count = 0;
-    double usual = 0.0, met = 0.0;  // mean magnitude of its coefficients, over so many
+    double usual = 0.0, met = 0.0;  // mean magnitude of its coefficients beyond rounding, over so many
   };
   // (1 - sqrt 3, sqrt 3 - 3, 3 + sqrt 3, -1 - sqrt 3) / (4 sqrt 2).
   static constexpr std::array<double, 4> kHigh{-0.12940952255126037, -0.22414386804201339,
                                                0.83651630373780790, -0.48296291314453414};
 
-  void add(std::size_t octave, std::size_t at, double coefficient) {
+  void add(std::size_t octave, std::size_t at, double coefficient, double rounding) {
     if (octave >= octaves_.size()) octaves_.resize(octave + 1);
     // It reaches back over three of its octave's lengths: half of that.
     const std::size_t back = std::min(at, std::size_t{3} << octave);
     const std::size_t cell = std::min(kCells - 1, (at - back) * kCells / samples_);
+    octaves_[octave].counts[cell] += 1.0;
+    if (std::abs(coefficient) <= rounding) return;
+    octaves_[octave].beyond_rounding += 1.0;
     // An outlier counts for no more than what is rare; what stays loud soon is the usual.
     Level& level = levels_[octave];
     level.met = std::min(level.met + 1.0, kUsual);
@@ -105,7 +117,6 @@ class Pyramid {
                                                  : std::min(std::abs(coefficient), kMostTimes * level.usual);
     level.usual += (magnitude - level.usual) / level.met;
     octaves_[octave].magnitudes[cell] += magnitude;
-    octaves_[octave].counts[cell] += 1.0;
   }
 
   std::size_t samples_;
@@ -169,10 +180,13 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
 }
 
 Loudness loudness_of(const Octave& octave) {
-  const double count = count_of(octave, 0, kCells);
+  const double count = octave.beyond_rounding, share = count / count_of(octave, 0, kCells);
+  // Of a coarse sensor's, of which a share is no zero, how many that are varies, too, and comes in pairs: one
+  // change of the value is in two of them.
+  const double wanted = kFewest * (1.0 + 3.0 * (1.0 - share));
   Loudness out;
   std::size_t times = kTimes;
-  while (times >= kFewestTimes && count < kFewest * static_cast<double>(times)) times /= 2;
+  while (times >= kFewestTimes && count < wanted * static_cast<double>(times)) times /= 2;
   if (times < kFewestTimes) return out;
   out.cells_each = kCells / times;
   std::vector<double> counts;
@@ -192,7 +206,8 @@ Loudness loudness_of(const Octave& octave) {
   constexpr double kOfMiddle = 1.3;  // variance of the mean of the middle two of four over that of all four
   // Of the mean magnitude of n normal variables the relative variance is (pi / 2 - 1) / n, of its root a
   // quarter.
-  const double least = std::sqrt(0.1427 / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
+  const double each = 0.25 * (0.5708 + 2.0 * (1.0 - share)) / share;
+  const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
   if (!(least > 0.0)) return {};
   out.deviation = least;
   for (const std::size_t together : {1, 2, 4})
@@ -228,7 +243,7 @@ double times_as_loud(const Loudness& of, std::size_t begin, std::size_t end,
   const auto all = static_cast<double>(of.root.size()), here = static_cast<double>(end - begin);
   const double inside = (sums[end] - sums[begin]) / here;
   const double outside = (sums.back() - sums[end] + sums[begin]) / (all - here);
-  return std::pow(inside / std::max(outside, 1e-300), 2.0);
+  return std::clamp(std::pow(inside / std::max(outside, 1e-300), 2.0), 1.0 / kMostLoud, kMostLoud);
 }
 
 bool material(double times) { return times > kMaterial || times < 1.0 / kMaterial; }
@@ -294,12 +309,25 @@ void leave_out(const Found& found, std::vector<Loudness>& all) {
   }
 }
 
+// The longest of the held stretches that are no shorter than a time is.
+std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t samples, double period_s,
+                                      const std::function<double(std::size_t)>& time_s) {
+  std::erase_if(held, [&](const Stretch& each) { return each.size() * kTimes < samples; });
+  std::sort(held.begin(), held.end(), [](const Stretch& a, const Stretch& b) { return a.size() > b.size(); });
+  held.resize(std::min(held.size(), kMostChanges));
+  std::vector<NoiseChange> out;
+  for (const Stretch& each : held)
+    out.push_back({time_s(each.begin), time_s(each.end - 1), 0.0, {0.0, 0.5 / period_s}});
+  return out;
+}
+
 }  // namespace
 
 std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<const Stretch> parts,
                                        double period_s, const std::function<double(std::size_t)>& time_s) {
+  const HeldApart apart = apart_from_held(rate_radps, {parts.begin(), parts.end()});
   Pyramid pyramid(std::max<std::size_t>(1, rate_radps.size()));
-  for (const Stretch& part : parts) {
+  for (const Stretch& part : apart.moving) {
     pyramid.begin();
     for_each_piece(rate_radps, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
       for (std::size_t i = 0; i < values.size(); ++i) pyramid.take(values[i], first + i);
@@ -308,7 +336,7 @@ std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<c
   std::vector<Loudness> all;
   for (const Octave& octave : pyramid.octaves()) all.push_back(loudness_of(octave));
   while (!all.empty() && all.back().root.empty()) all.pop_back();
-  std::vector<NoiseChange> changes;
+  std::vector<NoiseChange> changes = stands_still(apart.held, rate_radps.size(), period_s, time_s);
   while (changes.size() < kMostChanges) {
     const Found found = surest(all);
     if (found.departure < kSurely) break;
@@ -328,8 +356,15 @@ std::string in_words(std::span<const NoiseChange> changes) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const NoiseChange& change = changes[i];
     std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), "%s %.2g times as loud in %.6g … %.6g s", i > 0 ? "," : "",
-                  change.times, change.from_s, change.to_s);
+    words += i > 0 ? "," : "";
+    if (!(change.times > 0.0)) {
+      std::snprintf(text.data(), text.size(), " it stands still in %.6g … %.6g s", change.from_s,
+                    change.to_s);
+      words += text.data();
+      continue;
+    }
+    std::snprintf(text.data(), text.size(), " %.2g times as loud in %.6g … %.6g s", change.times,
+                  change.from_s, change.to_s);
     words += text.data();
     if (change.range_hz.low > 0.0)
       std::snprintf(text.data(), text.size(), " (%.2g to %.3g Hz)", change.range_hz.low,

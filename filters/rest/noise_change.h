@@ -23,7 +23,9 @@ namespace ifog {
 
 struct NoiseChange {
   double from_s = 0.0, to_s = 0.0;  // the stretch
-  double times = 1.0;  // deviation of the noise there over that elsewhere, in the octave where it is most
+  // Deviation of the noise there over that elsewhere, in the octave where it is most, within 1e-6 and 1e6; 0
+  // where the value stands exactly still (filters/rest/held.h).
+  double times = 1.0;
   FrequencyRange range_hz;  // the octaves that changed, joined
 };
 

@@ -31,27 +31,36 @@ std::string too_few(std::size_t used) {
          std::to_string(used) + " found";
 }
 
-// Of a grid with too few blocks: that there are too few samples, or that holes take up nearly all of the
-// time.
+// Of a grid with too few blocks: that there are too few samples, that holes take up nearly all of the time,
+// or that most samples of every block are missing.
 std::string too_few(const std::vector<Record>& records, const BlockGrid& grid) {
   std::size_t samples = 0;
-  double hole_s = 0.0;
+  double hole_s = 0.0;  // the longest time between two that are there
   for (const Record& record : records) {
+    double last_s = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-      if (i > 0) hole_s = std::max(hole_s, record.time_s[i] - record.time_s[i - 1]);
-      if (std::isfinite(record.rate_radps[i]) &&
-          (record.reference_radps.empty() || std::isfinite(record.reference_radps[i])))
-        ++samples;
+      if (!std::isfinite(record.rate_radps[i]) ||
+          (!record.reference_radps.empty() && !std::isfinite(record.reference_radps[i])))
+        continue;
+      if (samples++ > 0 && std::isfinite(last_s)) hole_s = std::max(hole_s, record.time_s[i] - last_s);
+      last_s = record.time_s[i];
     }
   }
   if (samples < kLeastBlocks) return too_few(samples);
-  std::array<char, 256> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "%zu samples, but only %zu blocks of %.3g s have enough of them, as the longest hole is of %.6g s: "
-      "expected "
-      "at least %zu; each side of it by itself (--from, --to, or captures of their own) can be diagnosed",
-      samples, grid.used(), grid.block_s, hole_s, kLeastBlocks);
+  std::array<char, 320> text{};
+  if (hole_s > grid.block_s)
+    std::snprintf(
+        text.data(), text.size(),
+        "%zu samples, but only %zu blocks of %.3g s have enough of them, as the longest hole is of %.6g s: "
+        "expected at least %zu; each side of it by itself (--from, --to, or captures of their own) can be "
+        "diagnosed",
+        samples, grid.used(), grid.block_s, hole_s, kLeastBlocks);
+  else
+    std::snprintf(text.data(), text.size(),
+                  "%zu samples with a rate, and with a reference if there is one, but only %zu blocks of "
+                  "%.3g s have half "
+                  "of theirs: expected at least %zu; without the rows that lack one it can be diagnosed",
+                  samples, grid.used(), grid.block_s, kLeastBlocks);
   return text.data();
 }
 

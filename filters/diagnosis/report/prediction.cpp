@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/residual/hysteresis.h"
@@ -116,12 +117,15 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     const bool tangent = (power_of(candidate->form) > 1 && parameter(effect, kCurveReach) == 0.0) ||
                          candidate->form == Form::kLookup;
     on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
-    if (!(candidate->time_constant_s > 0.0)) continue;
+    // By the logarithm of a time constant, or of a transition's half width.
+    const double searched = candidate->is_transition() ? candidate->half_width : candidate->time_constant_s;
+    if (!(searched > 0.0)) continue;
+    const std::string_view name = candidate->is_transition() ? kHalfWidth : time_constant_name(effect);
     const Columns by_logarithm =
         searched_columns(next, {*candidate}, Eigen::VectorXd::Constant(1, coefficient), 0);
     for (std::size_t j = 1; j < effect.parameters.size(); ++j) {
-      if (effect.parameters[j].name == time_constant_name(effect))
-        on.gradient.col(at + static_cast<Eigen::Index>(j)) = by_logarithm.col(0) / candidate->time_constant_s;
+      if (effect.parameters[j].name == name)
+        on.gradient.col(at + static_cast<Eigen::Index>(j)) = by_logarithm.col(0) / searched;
     }
   }
   return on;

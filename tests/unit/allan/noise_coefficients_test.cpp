@@ -174,4 +174,19 @@ TEST(NoiseCoefficients, RefusesWhatCannotBeFitted) {
   EXPECT_THROW((void)fit(std::vector<double>(1000, 1.0)), std::invalid_argument);
 }
 
+// Whatever the unit: the figures are those of the same record in another, or there are none.
+TEST(NoiseCoefficients, ValuesNextToNothingAreRefused) {
+  const std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, 100.0, 6000, 3);
+  const auto fit = [&](double scale) {
+    std::vector<double> scaled = rate;
+    for (double& value : scaled) value *= scale;
+    const std::vector<ifog::Stretch> all{{0, scaled.size()}};
+    return ifog::noise_coefficients(ifog::AngleSum(scaled, all), 0.01);
+  };
+  const double N = fit(1.0).N.value;
+  for (const double scale : {1e-40, 1e-20, 1e20}) EXPECT_NEAR(fit(scale).N.value / (scale * N), 1.0, 1e-6);
+  for (const double scale : {1e-155, 1e-150, 1e-140, 1e-100, 1e-70})
+    EXPECT_THROW((void)fit(scale), std::invalid_argument) << scale;
+}
+
 }  // namespace

@@ -39,7 +39,7 @@ TEST(SampleClock, StampsThatScatterAreNoGaps) {
 TEST(SampleClock, HolesAmongStampsThatScatterAreFound) {
   const std::vector<int> holes{0, 100, 5000, 5020, 12000, 19990};
   for (const double jitter_s : {0.0, 1e-3, 3e-3, 4e-3}) {
-    for (const int missing : {2, 3, 50}) {
+    for (const int missing : {1, 2, 3, 50}) {
       const std::vector<double> time =
           stamps(jitter_s, missing < 10 ? holes : std::vector<int>{100, 5000, 12000}, missing, 2, 0.0);
       const SampleClock clock = sample_clock(time);
@@ -48,6 +48,76 @@ TEST(SampleClock, HolesAmongStampsThatScatterAreFound) {
       EXPECT_EQ(stretches(time, std::vector<double>(time.size(), 1.0), clock).size(), clock.gaps + 1);
     }
   }
+}
+
+// Single samples lost at random, as a line loses them: each is found, however close the next one is.
+TEST(SampleClock, SamplesLostAtRandomAmongStampsThatScatterAreFound) {
+  for (const double jitter : {0.05, 0.2, 0.3, 0.4}) {
+    for (const double lost : {0.001, 0.01, 0.02, 0.05, 0.1}) {
+      std::mt19937_64 engine(11);
+      std::uniform_real_distribution<double> uniform;
+      std::vector<double> time;
+      std::size_t gaps = 0, missing = 0;
+      bool hole = false;
+      for (int n = 0; n < 50000; ++n) {
+        if (n > 5 && n < 49990 && uniform(engine) < lost) {
+          ++missing;
+          hole = true;
+          continue;
+        }
+        time.push_back((n + jitter * (2.0 * uniform(engine) - 1.0)) * 0.01);
+        gaps += hole ? 1U : 0U;
+        hole = false;
+      }
+      const SampleClock clock = sample_clock(time);
+      EXPECT_EQ(clock.gaps, gaps) << jitter << ' ' << lost;
+      EXPECT_EQ(clock.missing, missing) << jitter << ' ' << lost;
+      EXPECT_EQ(clock.first_gap, holes(time, clock).front().after);
+      // Without scatter to speak of a hole's length is left out as it is, with the jitter of its two stamps.
+      EXPECT_NEAR(clock.period_s, 0.01, jitter < 0.1 ? 2e-6 : 2e-7) << jitter << ' ' << lost;
+    }
+  }
+}
+
+// 400 Hz in stamps of whole milliseconds: steps of 2 and of 3, as many of one as of the other.
+TEST(SampleClock, OfCoarseStampsALostSampleIsFoundWhereverItIs) {
+  for (const int samples : {20000, 20001}) {
+    for (const int lost : {5, 10, 15, 100, 5000}) {
+      std::vector<double> time;
+      for (int n = 0; n < samples; ++n)
+        if (n != lost) time.push_back(1e-3 * (5 * n / 2));
+      const SampleClock clock = sample_clock(time);
+      EXPECT_TRUE(clock.scatters());
+      EXPECT_EQ(clock.gaps, 1U) << samples << ' ' << lost;
+      EXPECT_EQ(clock.missing, 1U) << samples << ' ' << lost;
+      EXPECT_NEAR(clock.period_s, 2.5e-3, 1e-7) << samples << ' ' << lost;
+    }
+  }
+}
+
+// A device that begins anew behind a silence has another phase.
+TEST(SampleClock, BehindASilenceThePhaseIsAnother) {
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> off(-3e-3, 3e-3);
+  std::vector<double> time;
+  for (int part = 0; part < 10; ++part)
+    for (int n = 0; n < 2000; ++n) time.push_back(part * 31.4037 + n * 0.01 + off(engine));
+  const SampleClock clock = sample_clock(time);
+  EXPECT_EQ(clock.gaps, 9U);
+  EXPECT_NEAR(clock.period_s, 0.01, 1e-6);
+}
+
+// Twenty samples, then a silence: each burst has its own phase.
+TEST(SampleClock, BurstsArePartedBySilences) {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> off(-3e-3, 3e-3);
+  std::vector<double> time;
+  for (int burst = 0; burst < 500; ++burst)
+    for (int n = 0; n < 20; ++n) time.push_back(burst * 1.0037 + n * 0.01 + off(engine));
+  const SampleClock clock = sample_clock(time);
+  EXPECT_TRUE(clock.scatters());
+  EXPECT_EQ(clock.gaps, 499U);
+  EXPECT_NEAR(clock.period_s, 0.01, 1e-5);
 }
 
 }  // namespace

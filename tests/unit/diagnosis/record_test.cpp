@@ -75,6 +75,22 @@ TEST(Blocks, AHoleThatIsNearlyAllOfTheTimeIsSaid) {
   EXPECT_THROW(static_cast<void>(cut_to_blocks({arrays.record()}, 100)), std::invalid_argument);
 }
 
+// Two of three cells of the rate are empty: no hole is to blame, and no side of one can be diagnosed.
+TEST(Blocks, CellsThatAreMissingHereAndThereAreNoHole) {
+  Arrays arrays(6000);
+  for (std::size_t i = 0; i < 6000; ++i)
+    if (i % 3 != 0) arrays.rate[i] = kNan;
+  try {
+    static_cast<void>(cut_to_blocks({arrays.record()}, 100));
+    FAIL() << "was cut";
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    for (const char* part : {"2000 samples", "only 0 blocks of 7.5 s", "at least 32", "have half of theirs"})
+      EXPECT_NE(said.find(part), std::string::npos) << part << ": " << said;
+    for (const char* part : {"hole", "--from"}) EXPECT_EQ(said.find(part), std::string::npos) << said;
+  }
+}
+
 TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
   Arrays first(600);
   const Arrays second(400);

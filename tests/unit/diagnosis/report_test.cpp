@@ -251,6 +251,43 @@ TEST(Prediction, OfTheLongestRecordLeavesOutAlignedBias) {
   EXPECT_NEAR(predict_heading(diagnosis, longest, 100.0, {200.0}).sigma_rad[0], 0.03, 1e-4);
 }
 
+// A transition whose half width is known to a tenth of a degree: how far the heading of a capture is off by
+// it is the difference of the angles of two of them, their alignment taken out.
+TEST(Prediction, ATransitionsHalfWidthIsInDoubtToo) {
+  constexpr double kCoefficient = 1e-5, kMiddle = 27.0, kWidth = 1.5, kDoubt = 0.1;
+  std::vector<double> time, rate, temperature;
+  for (int i = 0; i < 1000; ++i) {
+    time.push_back(i);
+    rate.push_back(i % 2 ? 1e-9 : -1e-9);
+    temperature.push_back(25.0 + 0.004 * i);
+  }
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.channels = {{"temperature_degC", temperature}};
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(1);
+  Effect& effect = diagnosis.effects[0].effect;
+  effect.form = "transition";
+  effect.channel = "temperature_degC";
+  effect.reference = kMiddle;
+  effect.parameters = {{"coefficient", kCoefficient, 0.0, "rad/s"}, {"half_width", kWidth, kDoubt, "K"}};
+  diagnosis.covariance = {0.0, 0.0, 0.0, kDoubt * kDoubt};
+  const auto heading = [&](double width) {
+    double bias = 0.0, angle = 0.0;
+    for (std::size_t i = 0; i < 700; ++i) {
+      const double now = kCoefficient * std::tanh((temperature[i] - kMiddle) / width);
+      if (i < 100)
+        bias += now / 100.0;
+      else
+        angle += now - bias;
+    }
+    return angle;
+  };
+  const double expected = std::abs(heading(kWidth + 0.5 * kDoubt) - heading(kWidth - 0.5 * kDoubt));
+  EXPECT_NEAR(predict_heading(diagnosis, record, 100.0, {600.0}).sigma_rad[0] / expected, 1.0, 0.02);
+}
+
 // While the temperature only rises, a quadratic describes a loop as well as the loop itself.
 TEST(LoopRivals, ALoopThatTheRecordCannotExcludeIsSaid) {
   BlockData data = white_with_temperature(2000, 6);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -41,6 +42,47 @@ TEST(Glitches, NoiseStepsAndBlowsAreNone) {
   for (int k = 0; k < 40; ++k) rate[150000 + static_cast<std::size_t>(k)] += 0.01 * std::sin(0.3 * k);
   EXPECT_EQ(find_glitches(rate, all).count, 0U);
   EXPECT_EQ(find_glitches(std::vector<double>(1000, 1e-5), std::vector<Stretch>{{0, 1000}}).count, 0U);
+}
+
+// A motor that runs for a while, a sensor that is switched on halfway: the noise is another there.
+TEST(Glitches, LouderNoiseIsNone) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    for (const std::size_t loud : {100UL, 200UL, 1500UL}) {
+      std::vector<double> rate = white(4000, seed);
+      for (std::size_t i = 2000; i < 2000 + loud; ++i) rate[i] = 7e-5 + 40.0 * (rate[i] - 7e-5);
+      EXPECT_EQ(find_glitches(rate, std::vector<Stretch>{{0, rate.size()}}).count, 0U) << seed << ' ' << loud;
+      // One in it is found all the same.
+      rate[2050] = 1.0;
+      EXPECT_EQ(find_glitches(rate, std::vector<Stretch>{{0, rate.size()}}).count, 1U) << seed << ' ' << loud;
+    }
+    for (const bool first : {true, false}) {
+      std::vector<double> rate = white(60000, seed);
+      const auto middle = rate.begin() + 30011;
+      std::fill(first ? rate.begin() : middle, first ? middle : rate.end(), 0.0);
+      EXPECT_EQ(find_glitches(rate, std::vector<Stretch>{{0, rate.size()}}).count, 0U)
+          << seed << ' ' << first;
+    }
+  }
+}
+
+// Where most neighbours are the same, up to the rounding of a number times the sensor's step.
+TEST(Glitches, TheStepsOfACoarseSensorAreNone) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  for (const double step : {1e-5, 1e-6, 1.6e-6}) {
+    for (const double deviation : {0.2, 0.3, 0.4}) {
+      for (int record = 0; record < 100; ++record) {
+        const double level = std::round(10.0 * normal(engine)) + uniform(engine);
+        std::vector<double> rate(6000);
+        for (double& value : rate) value = step * std::round(level + deviation * normal(engine));
+        const std::vector<Stretch> all{{0, rate.size()}};
+        EXPECT_EQ(find_glitches(rate, all).count, 0U) << step << ' ' << deviation << ' ' << record;
+        rate[3333] = 1.0;
+        EXPECT_EQ(find_glitches(rate, all).count, 1U) << step << ' ' << deviation << ' ' << record;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/allan/scattered_stamps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kNext = 7;      // stamps whose median says that a hole is one
+constexpr std::size_t kSettle = 128;  // that say what the phase is
+constexpr double kHalf = 0.5;         // of a period
+// A loop of second order, critically damped: settled within a hundred samples, and with an error of a
+// twenty-fifth of a period by stamps that are off by up to half of one.
+constexpr double kPhaseGain = 1.0 / 32.0, kRateGain = kPhaseGain * kPhaseGain / 4.0;
+// Behind a silence of so many periods the device may have begun anew, at any phase.
+constexpr std::size_t kSilence = 8;
+constexpr double kMostLost = 1e15;
+
+// The clock that follows: how late a stamp is, in periods, by the clock and the numbers given so far.
+class Clock {
+ public:
+  explicit Clock(double period_s) : period_s_(period_s) {}
+
+  // times: the first stamp of all, or behind a silence, and those that follow it. Its phase is against the
+  // median of theirs, by the numbers that a clock gives them which begins with it.
+  void begin(std::span<const double> times) {
+    Clock trial(period_s_);
+    std::array<double, kSettle> late{};
+    std::size_t count = 1;
+    for (double numbers = 0.0; count < std::min(kSettle, times.size()); ++count) {
+      const std::size_t lost = trial.take(times[count - 1], times.subspan(count));
+      if (lost > kSilence) break;
+      numbers += 1.0 + static_cast<double>(lost);
+      late[count] = (times[count] - times[0]) / period_s_ - numbers;
+    }
+    late_ = -middle_of(std::span(late).first(count));
+    late_ -= std::round(late_);
+  }
+  // The next stamp and those that follow it; how many are lost before it.
+  std::size_t take(double last_s, std::span<const double> times) {
+    late_ += later(last_s, times[0], 1);
+    double lost = 0.0;
+    if (late_ > kHalf)
+      lost = std::max(0.0, std::round(std::min({late_, lateness_of_next(times), kMostLost})));
+    late_ -= lost;
+    const double off = std::clamp(late_, -kHalf, kHalf);
+    late_ -= kPhaseGain * off;
+    rate_ += kRateGain * off;
+    squares_ += off * off;
+    return static_cast<std::size_t>(lost);
+  }
+  [[nodiscard]] double squares() const { return squares_; }
+
+ private:
+  // How much later a stamp is than one that came so many samples before it.
+  [[nodiscard]] double later(double last_s, double time_s, std::size_t samples) const {
+    return (time_s - last_s) / period_s_ - static_cast<double>(samples) * (1.0 + rate_);
+  }
+  // The median, with the one that late_ is of.
+  [[nodiscard]] double lateness_of_next(std::span<const double> times) const {
+    std::array<double, kNext> late{};
+    const std::size_t count = std::min(kNext, times.size());
+    for (std::size_t k = 0; k < count; ++k) late[k] = late_ + later(times[0], times[k], k);
+    return middle_of(std::span(late).first(count));
+  }
+  // One of them and no mean of two, which may be either side of a hole.
+  static double middle_of(std::span<double> values) {
+    const auto middle = values.begin() + (std::ssize(values) - 1) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
+  double period_s_;
+  double late_ = 0.0, rate_ = 0.0;  // of the stamp taken last; by which the period is longer
+  double squares_ = 0.0;            // of how far stamps are off
+};
+
+}  // namespace
+
+double holes_of_scattered(const SeriesView& time_s, double period_s,
+                          const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found) {
+  const std::size_t samples = time_s.size();
+  Clock clock(period_s);
+  std::vector<double> room;
+  for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
+    const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
+    const std::span<const double> times =
+        time_s.piece(begin, std::min(end + 1 + kSettle, samples) - begin, room);
+    if (begin == 0) clock.begin(times);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::span<const double> next = times.subspan(i + 1 - begin);
+      const std::size_t lost = clock.take(times[i - begin], next);
+      if (lost == 0) continue;
+      found(i, lost, next[0] - times[i - begin]);
+      if (lost > kSilence) clock.begin(next);
+    }
+  }
+  return clock.squares() / static_cast<double>(std::max<std::size_t>(samples, 2) - 1);
+}
+
+}  // namespace ifog
