@@ -18,9 +18,11 @@ bool never_known(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
 }
 
+double period_of(const ifog_description& description) {
+  return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
+}
 DeviceCount counter_of(const ifog_description& description) {
-  return {std::max<std::uint32_t>(description.sequence_modulus, 1),
-          description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0};
+  return {std::max<std::uint32_t>(description.sequence_modulus, 1), period_of(description)};
 }
 
 // Of the frames: axes, then channels.
@@ -43,7 +45,7 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
-    : description_(description), counter_(counter_of(description)) {
+    : description_(description), counter_(counter_of(description)), clock_steps_(period_of(description)) {
   for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
   capture_.rate_radps.resize(description.axes);
   capture_.reference_rate_radps.resize(description.axes);
@@ -60,6 +62,7 @@ void CaptureBuilder::go_on_as(const ifog_description& description) {
   if (same_samples(description, description_)) return;
   description_ = description;
   counter_ = counter_of(description);
+  clock_steps_ = ClockSteps(period_of(description));
   clock_ = Clock::undecided;
   broken_ = true;
 }
@@ -114,6 +117,21 @@ double CaptureBuilder::seconds(const ifog_sample& sample) const {
     default:
       return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
   }
+}
+
+// Where the device's clock has stood still while it measured: by the sum of its steps.
+std::optional<double> CaptureBuilder::by_coarse_clock(const ifog_sample& sample, std::uint64_t steps) {
+  if (clock_ != Clock::device || (sample.flags & last_.flags & IFOG_SAMPLE_DEVICE_TIME) == 0) return {};
+  const std::int64_t passed_ns = sample.device_time_ns - last_.device_time_ns;
+  const bool same = same_values({sample.value, description_.axes}, {last_.value, description_.axes});
+  if (passed_ns < 0 || !(description_.nominal_rate_hz > 0.0) ||
+      (passed_ns == 0 && same && !clock_steps_.stood()))
+    return {};
+  const bool counts = description_.sequence_modulus > 0;
+  const double step_s = clock_steps_.take(passed_ns, counts ? steps : 0).dt_s;
+  if (!clock_steps_.stood()) return {};
+  offset_s_ += last_s_ + step_s - seconds(sample);
+  return last_s_ + step_s;
 }
 
 // The sample's clock is set so that it comes as much later than the one before as it arrived later.
@@ -195,10 +213,13 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   if (steps > 1) missing_ += steps - 1;
   if (anew) begin_anew(sample);
   broken_ = false;
-  double now = seconds(sample);
+  double now = first || anew ? seconds(sample) : by_coarse_clock(sample, steps).value_or(seconds(sample));
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
-    if (now == last_s_) return;
+    if (now == last_s_) {
+      ++repeated_;
+      return;
+    }
     anew = true;
     begin_anew(sample);
     now = seconds(sample);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "drivers/capture/capture.h"
 #include "drivers/capture/measurable.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/ifog/clock_steps.h"
 #include "drivers/ifog/device_count.h"
 #include "drivers/ifog/driver.h"
 
@@ -67,6 +69,7 @@ class CaptureBuilder {
   std::uint64_t steps_to(const ifog_sample& sample);
   [[nodiscard]] DeviceCount::Frame frame_of(const ifog_sample& sample) const;
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
+  std::optional<double> by_coarse_clock(const ifog_sample& sample, std::uint64_t steps);
   void begin_anew(const ifog_sample& sample);
   double believable(std::size_t channel, double value);
   void refuse(double now) const;
@@ -77,7 +80,8 @@ class CaptureBuilder {
   Capture capture_;
   Clock clock_ = Clock::undecided;
   ifog_sample last_{};
-  DeviceCount counter_;      // as the daemon counts
+  DeviceCount counter_;  // as the daemon counts
+  ClockSteps clock_steps_;
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
   std::size_t missing_ = 0, repeated_ = 0, impossible_ = 0, at_full_scale_ = 0, implausible_ = 0;

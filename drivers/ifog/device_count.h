@@ -151,9 +151,9 @@ class DeviceCount {
     const double claimed = counted + rounds * static_cast<double>(modulus_);
     const bool agrees = std::abs(claimed - samples) <= kClockSamples + kClockDoubt * std::abs(samples);
     const bool possible = elapsed_s < 0.0 || !ifog::restarted(passed_s, elapsed_s);
-    if (passed_s <= 0.0 || (!possible && difference != 1)) {
-      step.restarted = difference != 0 || passed_s < 0.0;
-      if (!step.restarted) return false;  // the same frame again
+    if (passed_s == 0.0) return false;  // the same frame again, or a clock of coarse ticks
+    if (passed_s < 0.0 || (!possible && difference != 1)) {
+      step.restarted = true;
       step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
       step.dt_s = static_cast<double>(step.samples) * nominal_s_;
       return true;

@@ -43,7 +43,8 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
       clock_(period_s_, clock_memory(facts.nominal_rate_hz)),
-      count_(std::max<std::uint32_t>(facts.sequence_modulus, 1), period_s_) {
+      count_(std::max<std::uint32_t>(facts.sequence_modulus, 1), period_s_),
+      clock_steps_(period_s_) {
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
@@ -85,17 +86,26 @@ Incrementer::Step Incrementer::step_by_counter(const Reading& reading,
   return step;
 }
 
-Incrementer::Step Incrementer::step_by_clock(const Reading& reading, double elapsed_s) const noexcept {
+Incrementer::Step Incrementer::step_by_clock(const Reading& reading, double elapsed_s) noexcept {
   Step step;
-  step.dt_s = static_cast<double>(reading.device_time_ns - last_.device_time_ns) * 1e-9;
-  if (step.dt_s <= 0.0 || (elapsed_s >= 0.0 && restarted(step.dt_s, elapsed_s))) {
+  const std::int64_t passed_ns = reading.device_time_ns - last_.device_time_ns;
+  const auto axes = static_cast<std::size_t>(facts_.axes);
+  if (passed_ns == 0 && !clock_steps_.stood() &&
+      same_values({reading.value.data(), axes}, {last_.value.data(), axes})) {
+    step.repeated = true;
+    return step;
+  }
+  if (passed_ns < 0 || (elapsed_s >= 0.0 && restarted(static_cast<double>(passed_ns) * 1e-9, elapsed_s))) {
+    clock_steps_.restart();
     step.restarted = true;
     step.gap = true;
     step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / period_s_) : 1;
     step.dt_s = static_cast<double>(step.samples) * period_s_;
     return step;
   }
-  step.samples = at_least_one(step.dt_s / period_s_);
+  const ClockSteps::Step passed = clock_steps_.take(passed_ns, 0);
+  step.samples = passed.samples;
+  step.dt_s = passed.dt_s;
   step.gap = step.samples > 1;
   return step;
 }
@@ -121,14 +131,20 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double el
 Incrementer::Step Incrementer::step(const Reading& reading) noexcept {
   const double elapsed = arrivals_.elapsed_s(reading.arrival_ns);
   Step step;
+  const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
   if (reading.has_sequence && facts_.sequence_modulus > 0) {
     const DeviceCount::Frame frame = frame_of(reading);
     step = step_by_counter(reading, frame);
+    if (step.restarted) clock_steps_.restart();
+    if (!step.repeated && !step.restarted && clocked && reading.device_time_ns >= last_.device_time_ns) {
+      const std::int64_t passed_ns = reading.device_time_ns - last_.device_time_ns;
+      const ClockSteps::Step passed = clock_steps_.take(passed_ns, step.samples);
+      if (clock_steps_.coarse()) step.dt_s = passed.dt_s;
+    }
     if (!step.repeated)
       count_.take(frame,
                   {step.samples, step.dt_s, step.gap, step.restarted, false, step.clock_moved, step.late_s});
   } else {
-    const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
     step = clocked ? step_by_clock(reading, elapsed) : step_by_arrival(reading, elapsed);
     late_s_ = step.late_s;
   }

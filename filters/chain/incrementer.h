@@ -14,6 +14,7 @@
 #include <cstdint>
 
 #include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/clock_steps.h"
 #include "drivers/ifog/device_count.h"
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
@@ -66,7 +67,7 @@ class Incrementer {
   [[nodiscard]] Step step(const Reading& reading) noexcept;
   [[nodiscard]] DeviceCount::Frame frame_of(const Reading& reading) const noexcept;
   [[nodiscard]] Step step_by_counter(const Reading& reading, const DeviceCount::Frame& frame) const noexcept;
-  [[nodiscard]] Step step_by_clock(const Reading& reading, double elapsed_s) const noexcept;
+  [[nodiscard]] Step step_by_clock(const Reading& reading, double elapsed_s) noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading, double elapsed_s) const noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
@@ -76,6 +77,7 @@ class Incrementer {
   double period_s_;
   FittedClock clock_;
   DeviceCount count_;  // of a device that counts
+  ClockSteps clock_steps_;
   bool started_ = false;
   bool reopened_ = false;
   // Of the reading before; its channels are kept below.

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples and time from the steps of a device's own clock, also of one that ticks hardly more often than the
+// device samples: its steps then are none, one or two ticks though nothing is lost, and only its sum says how
+// much has passed.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "drivers/ifog/arrivals.h"
+
+namespace ifog {
+
+class ClockSteps {
+ public:
+  struct Step {
+    std::uint64_t samples = 1;
+    double dt_s = 0.0;
+  };
+
+  // nominal_s > 0.
+  explicit ClockSteps(double nominal_s) noexcept : nominal_s_(nominal_s) {}
+  void restart() noexcept { *this = ClockSteps(nominal_s_); }
+
+  // passed_ns >= 0. counted: samples by the device's counter; 0: it has none.
+  Step take(std::int64_t passed_ns, std::uint64_t counted) noexcept {
+    const double passed_s = static_cast<double>(passed_ns) * 1e-9;
+    if (passed_ns == 0) stood_ = true;
+    // The first time it moves after it stood says nothing: where between two ticks it began nobody knows.
+    const bool first_tick = stood_ && tick_ns_ == 0;
+    if (passed_ns > 0) {
+      tick_ns_ = std::gcd(tick_ns_, passed_ns);
+      steps_ = std::min(steps_ + 1, kProof);
+    }
+    if (!coarse()) {
+      time_s_ = counted_s_ = 0.0;
+      samples_ = 0.0;
+      return {counted > 0 ? counted : at_least_one(passed_s / nominal_s_), passed_s};
+    }
+    const double period_s = this->period_s();
+    const double ahead_s = time_s_ - counted_s_ + passed_s;
+    Step step;
+    if (counted > 0)
+      step.samples = counted;
+    else if (!first_tick)
+      step.samples = at_least_one(ahead_s / period_s);
+    step.dt_s = static_cast<double>(step.samples) * period_s;
+    time_s_ += passed_s;
+    counted_s_ += step.dt_s;
+    samples_ += static_cast<double>(step.samples);
+    return step;
+  }
+  // Its single steps say less than the period does.
+  [[nodiscard]] bool coarse() const noexcept {
+    if (stood_) return true;
+    if (steps_ < kProof) return false;
+    const double ticks = nominal_s_ * 1e9 / static_cast<double>(std::max<std::int64_t>(tick_ns_, 1));
+    const bool beats = std::abs(ticks - std::round(ticks)) > kBeat;
+    return ticks < kFine && beats;
+  }
+  [[nodiscard]] bool stood() const noexcept { return stood_; }
+
+ private:
+  static constexpr double kFine = 4.0;   // ticks a period
+  static constexpr int kProof = 32;      // steps without a finer one
+  static constexpr double kBeat = 1e-7;  // of a tick
+
+  // The nominal one, as far as the sum of the steps allows, which is known to a tick.
+  [[nodiscard]] double period_s() const noexcept {
+    if (samples_ < 1.0 || tick_ns_ == 0) return nominal_s_;
+    const double tick_s = static_cast<double>(tick_ns_) * 1e-9;
+    return std::max(0.5 * nominal_s_,
+                    std::clamp(nominal_s_, (time_s_ - tick_s) / samples_, (time_s_ + tick_s) / samples_));
+  }
+
+  double nominal_s_;
+  std::int64_t tick_ns_ = 0;  // that all steps are multiples of
+  int steps_ = 0;
+  bool stood_ = false;
+  double time_s_ = 0.0, counted_s_ = 0.0, samples_ = 0.0;  // since the clock is known to be coarse
+};
+
+}  // namespace ifog
