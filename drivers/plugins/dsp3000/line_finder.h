@@ -17,7 +17,7 @@ class LineFinder {
     std::uint64_t good = 0;
     std::uint64_t malformed = 0;      // lines that have not the form
     std::uint64_t bytes_skipped = 0;  // bytes that are part of no good line
-    std::uint64_t bytes_framed = 0;   // bytes of good lines
+    std::uint64_t bytes_framed = 0;   // bytes of good lines, and of a line end in front of them
   };
 
   // Calls found(Reading) for each good line, in order. No allocation.
@@ -57,9 +57,11 @@ class LineFinder {
         return reading;
       }
     }
-    // What comes before the first line end is no fault of the line's.
+    // What comes before the first line end is no fault of the line's; and a line end alone, which a recording
+    // begins with where its first line is to be trusted, lacks nothing.
     if (whole) ++counters_.malformed;
-    counters_.bytes_skipped += length;
+    const bool only_an_end = !whole && length == 2 && line_[0] == '\r';
+    (only_an_end ? counters_.bytes_framed : counters_.bytes_skipped) += length;
     return {};
   }
 
