@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -208,6 +209,32 @@ TEST_F(Recording, TimeThatTheFormatCannotCarryIsKnown) {
     }
     EXPECT_NEAR(encoder.time_lost_s(), lost_s, 1e-9) << format;
   }
+}
+
+// A clock that counts in µs from 0 would show the last of its round.
+TEST_F(Recording, TimesBeforeZeroGoByWholeSecondsLaterAndSaySo) {
+  Capture early = wave({"x", "y", "z"});
+  for (double& time : early.time_s) time -= 1.25;
+  for (const char* driver : {"kvh1750", "sbgecom"}) {
+    const Capture back =
+        there_and_back(early, driver, driver[0] == 'k' ? DriverSettings{{"format", "b"}} : DriverSettings{});
+    EXPECT_NE(
+        std::find(notices_.begin(), notices_.end(),
+                  "begins at -1.25 s, and no clock of a device shows times before 0: all are sent 2 s later"),
+        notices_.end());
+    ASSERT_EQ(back.size(), early.size());
+    for (std::size_t i = 0; i < back.size(); ++i) ASSERT_NEAR(back.time_s[i], early.time_s[i] + 2.0, 1.01e-6);
+  }
+  Capture one = wave({""});
+  for (double& time : one.time_s) time -= 1.25;
+  const Capture back =
+      there_and_back(one, "dbc", {{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}});
+  ASSERT_EQ(back.size(), one.size());
+  for (std::size_t i = 0; i < back.size(); ++i)
+    ASSERT_NEAR(back.time_s[i], static_cast<double>(i) / 200.0, 1.01e-6);
+  // Format A has no time to show.
+  there_and_back(early, "kvh1750", {{"format", "a"}});
+  EXPECT_EQ(notices_.size(), 2U);
 }
 
 TEST_F(Recording, ACutOffFileIsCounted) {

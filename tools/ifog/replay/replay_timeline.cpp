@@ -108,9 +108,8 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;
   if (driver.takes_can() && (source.prefer_can || !driver.takes_bytes())) {
-    for (std::size_t begin = 0; encoder.next(timeline.frames); begin = timeline.frames.size())
-      for (std::size_t i = begin; i < timeline.frames.size(); ++i)
-        timeline.frames[i].arrival_ns = nanoseconds(capture.time_s[encoder.rows_done() - 1]);
+    while (encoder.next(timeline.frames)) {
+    }
   } else {
     while (encoder.next(timeline.bytes))
       if (timeline.bytes.size() > (timeline.blocks.empty() ? 0 : timeline.blocks.back().end))
