@@ -11,8 +11,10 @@
 // set) are told apart from data.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,11 +65,31 @@ class CandumpClock {
   std::int64_t now_ns_ = 0;
 };
 
+// On which interface each id was seen first: the same id on another is another device's. Of the first 64 ids;
+// names as far as an interface's goes.
+class CandumpBuses {
+ public:
+  // "" or the interface that frames of this one's id came on before.
+  std::string_view other(const ifog_can_frame& frame, std::string_view interface) noexcept;
+
+ private:
+  static constexpr std::size_t kLongestName = 15, kMost = 64;
+  struct Seen {
+    std::uint32_t id;
+    bool extended;
+    std::uint8_t length;
+    std::array<char, kLongestName> interface;
+  };
+  std::array<Seen, kMost> seen_{};
+  std::size_t count_ = 0;
+};
+
 struct Candump {
   std::vector<ifog_can_frame> frames;  // data frames, as in the log; arrival_ns 0 where lines have no time
-  std::string interface;               // of the first of them
-  std::size_t remote = 0, error = 0;   // frames passed over
-  bool cut_off = false;                // the last line has no end and is no whole frame: it was left out
+  std::vector<std::uint16_t> on;       // of each frame, which of the interfaces
+  std::vector<std::string> interfaces;
+  std::size_t remote = 0, error = 0;  // frames passed over
+  bool cut_off = false;               // the last line has no end and is no whole frame: it was left out
 };
 
 // Reads a whole log, plain or gzip, frames of one interface only unless `interface` is empty. Short times are
@@ -76,5 +98,9 @@ struct Candump {
 Candump read_candump(const std::string& path, std::string_view interface = {});
 // The same of a text already at hand; `path` stands for the file in messages.
 Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface = {});
+
+// The interface of the first frame that is wanted, of a log's beginning; "" where none is in it.
+std::string first_interface(std::string_view beginning,
+                            const std::function<bool(const ifog_can_frame&)>& wanted);
 
 }  // namespace ifog

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <string_view>
 
 #include "drivers/capture/candump.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 
@@ -62,6 +64,35 @@ FileKind file_kind(const InputFile& file) {
                                                                                           : FileKind::unknown;
 }
 
+namespace {
+
+// Two devices of one id would be taken for one.
+void expect_one_device(const Candump& log, const DriverInstance& driver, const std::string& path) {
+  if (log.interfaces.size() < 2) return;
+  CandumpBuses buses;
+  for (std::size_t i = 0; i < log.frames.size(); ++i) {
+    if (!wants(driver.description(), log.frames[i])) continue;
+    const std::string& interface = log.interfaces[log.on[i]];
+    if (const std::string_view other = buses.other(log.frames[i], interface); !other.empty())
+      throw std::runtime_error(two_interfaces(path, other, interface));
+  }
+}
+
+}  // namespace
+
+std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other) {
+  return path + ": frames of one id come on " + in_quotes(one) + " and on " + in_quotes(other) +
+         ", as from two devices, expected --channel with one of them";
+}
+
+bool wants(const ifog_description& description, const ifog_can_frame& frame) {
+  const bool extended = (frame.flags & IFOG_CAN_EXTENDED) != 0;
+  const auto* const end = description.can_id + description.can_ids;
+  return description.can_ids == 0 || std::any_of(description.can_id, end, [&](const auto& wanted) {
+           return wanted.id == frame.id && (wanted.extended != 0) == extended;
+         });
+}
+
 RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink) {
   RecordingCounts counts;
@@ -71,6 +102,7 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
   };
   if (driver.takes_can()) {
     const Candump log = parse_candump(file.text(), file.path(), interface);
+    expect_one_device(log, driver, file.path());
     counts.remote_frames = log.remote;
     counts.error_frames = log.error;
     counts.cut_off = log.cut_off;

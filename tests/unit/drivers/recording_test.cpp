@@ -211,6 +211,34 @@ TEST_F(Recording, TimeThatTheFormatCannotCarryIsKnown) {
   }
 }
 
+TEST_F(Recording, OneIdOnTwoInterfacesIsTwoDevices) {
+  const DriverSettings settings{{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}};
+  there_and_back(wave({""}), "dbc", settings);
+  std::ifstream one(path("frames.log"));
+  std::ofstream two(path("two.log"));
+  for (std::string line; std::getline(one, line);) {
+    two << line << "\n";
+    two << line.replace(line.find("vcan0"), 5, "vcan1") << "\n";
+  }
+  two << "(5.0) can9 7FF#00\n(5.0) can8 7FF#00\n";  // not the driver's
+  two.close();
+  const auto samples = [&](const std::string& interface) {
+    ifog::DriverInstance driver = ifog::make_driver("dbc", settings);
+    ifog::InputFile file(path("two.log"));
+    return ifog::decode_recording(file, driver, interface, [](const ifog_sample&) {}).samples;
+  };
+  EXPECT_EQ(samples("vcan0"), 1000U);
+  EXPECT_EQ(samples("vcan1"), 1000U);
+  try {
+    samples("");
+    ADD_FAILURE() << "taken for one";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), path("two.log") +
+                                ": frames of one id come on 'vcan0' and on 'vcan1', as from two devices, "
+                                "expected --channel with one of them");
+  }
+}
+
 // A clock that counts in µs from 0 would show the last of its round.
 TEST_F(Recording, TimesBeforeZeroGoByWholeSecondsLaterAndSaySo) {
   Capture early = wave({"x", "y", "z"});
