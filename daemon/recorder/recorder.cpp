@@ -6,6 +6,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -19,6 +20,13 @@ namespace {
 constexpr auto kTurn = std::chrono::milliseconds(50);
 // A trouble is over when nothing has been lost for so long: a disk that keeps up every other second is slow.
 constexpr std::int64_t kQuiet_ns = 10'000'000'000;
+
+std::string losses_in_words(std::uint64_t deliveries, std::int64_t within_ns) {
+  if (deliveries == 0) return "nothing is lost";
+  std::array<char, 32> seconds{};
+  std::snprintf(seconds.data(), seconds.size(), "%.1f", static_cast<double>(within_ns) * 1e-9);
+  return std::to_string(deliveries) + " deliveries are lost, all within " + seconds.data() + " s";
+}
 
 }  // namespace
 
@@ -72,13 +80,16 @@ void Recorder::stop() {
   lost_deliveries_.add(left.deliveries);
   lost_bytes_.add(left.bytes);
   judge(now_ns);
+  judge_the_end(archive_.not_taken().deliveries + left.deliveries);
 }
 
 void Recorder::publish_counters() {
   file_bytes_.set(archive_.bytes_written());
   files_removed_.set(archive_.files_removed());
-  lost_deliveries_.set(archive_.lost().deliveries);
-  lost_bytes_.set(archive_.lost().bytes);
+  FlightLoss lost = archive_.taken_away();
+  lost += archive_.not_taken();
+  lost_deliveries_.set(lost.deliveries);
+  lost_bytes_.set(lost.bytes);
 }
 
 void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
@@ -139,18 +150,21 @@ void Recorder::say(std::string message, bool good) {
 }
 
 void Recorder::judge(std::int64_t now_ns) {
-  const std::uint64_t gone = archive_.lost().deliveries;
+  const std::uint64_t gone = archive_.taken_away().deliveries;
   if (const std::uint64_t before = std::exchange(gone_seen_, gone); before != gone)
     say("recorder: " + archive_.path() + ": the recording in work has been taken away, " +
             std::to_string(gone - before) + " deliveries with it",
         false);
   const std::uint64_t lost = tape_.counters().lost_deliveries.value();
-  if (std::exchange(lost_seen_, lost) != lost) last_loss_ns_ = now_ns;
+  if (const std::uint64_t before = std::exchange(lost_seen_, lost); before != lost) {
+    if (before == lost_before_) first_loss_ns_ = judged_ns_;
+    last_loss_ns_ = now_ns;
+  }
+  judged_ns_ = now_ns;
   const int error = archive_.error();
   const bool losing = last_loss_ns_ != 0 && now_ns - last_loss_ns_ < kQuiet_ns;
   if (!troubled_ && (error != 0 || losing)) {
     troubled_ = true;
-    trouble_since_ns_ = now_ns;
     say("recorder: " + archive_.path() + ": " +
             (error != 0 ? archive_.complaint() + ", nothing is recorded until it takes more"
                         : std::string("slower than what is to be recorded, a part is left out")) +
@@ -158,12 +172,19 @@ void Recorder::judge(std::int64_t now_ns) {
         false);
   } else if (troubled_ && error == 0 && !losing) {
     troubled_ = false;
-    say("recorder: " + archive_.path() + ": all is recorded again, after " +
-            std::to_string((now_ns - trouble_since_ns_) / 1'000'000'000) + " s and " +
-            std::to_string(lost - lost_before_) + " deliveries lost",
+    say("recorder: " + archive_.path() + ": all is recorded again, " +
+            losses_in_words(lost - lost_before_, last_loss_ns_ - first_loss_ns_),
         true);
     lost_before_ = lost;
   }
+}
+
+// What waited for a disk that took nothing to the end.
+void Recorder::judge_the_end(std::uint64_t not_taken) {
+  if (not_taken == 0) return;
+  say("recorder: " + archive_.path() + ": " + archive_.complaint() + " to the end, the last " +
+          std::to_string(not_taken) + " deliveries are not recorded",
+      false);
 }
 
 std::string Recorder::take_message(bool& good) {

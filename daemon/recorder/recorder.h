@@ -55,6 +55,7 @@ class Recorder {
   bool begin_settings();
   void publish_counters();
   void judge(std::int64_t now_ns);
+  void judge_the_end(std::uint64_t not_taken);
   void say(std::string message, bool good);
 
   std::string name_;
@@ -63,9 +64,9 @@ class Recorder {
   std::vector<std::uint8_t> payload_;
   // Deliveries and bytes lost, by the entries that came off the tape.
   std::array<std::uint64_t, 2> told_{};
-  // A trouble: since when, and what had been lost before it.
+  // A trouble: what had been lost before it, and from when to when it lost, by the turns that saw it.
   bool troubled_ = false;
-  std::int64_t trouble_since_ns_ = 0, last_loss_ns_ = 0;
+  std::int64_t judged_ns_ = 0, first_loss_ns_ = 0, last_loss_ns_ = 0;
   std::uint64_t lost_before_ = 0, lost_seen_ = 0, gone_seen_ = 0;
   std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
 

@@ -10,6 +10,8 @@
 
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "drivers/capture/candump.h"
+#include "drivers/capture/recording.h"
 
 namespace ifog {
 namespace {
@@ -42,6 +44,19 @@ std::string source_of(const TransportConfig& transport) {
   return transport.path;
 }
 
+// Of a log that can be looked into before it is read: a FIFO cannot.
+std::string interface_of(const TransportConfig& transport, const DriverInstance& driver) {
+  std::error_code error;
+  if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.path, error))
+    return transport.interface;
+  try {
+    return first_interface(InputFile(transport.path).head(),
+                           [&](const ifog_can_frame& frame) { return wants(driver.description(), frame); });
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
@@ -54,6 +69,7 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
                    (transport.kind == TransportConfig::Kind::file && transport.candump);
   out.carries = can ? FlightHeader::Carries::can : FlightHeader::Carries::bytes;
   out.source = source_of(transport);
+  if (can) out.interface = interface_of(transport, driver);
   out.driver = sensor.driver;
   out.options = sensor.options;
   for (const ChannelConfig& channel : sensor.channels)

@@ -357,7 +357,47 @@ class Frames {
   bool any_ = false;
 };
 
+std::uint16_t number_of(std::vector<std::string>& interfaces, std::string_view interface) {
+  const auto found = std::find(interfaces.begin(), interfaces.end(), interface);
+  const auto number = static_cast<std::uint16_t>(found - interfaces.begin());
+  if (found == interfaces.end()) {
+    if (number == std::numeric_limits<std::uint16_t>::max())
+      throw std::runtime_error("more than 65535 interfaces, this is no candump log");
+    interfaces.emplace_back(interface);
+  }
+  return number;
+}
+
 }  // namespace
+
+std::string_view CandumpBuses::other(const ifog_can_frame& frame, std::string_view interface) noexcept {
+  interface = interface.substr(0, kLongestName);
+  const bool extended = (frame.flags & IFOG_CAN_EXTENDED) != 0;
+  auto* const end = seen_.begin() + count_;
+  auto* const found = std::find_if(
+      seen_.begin(), end, [&](const Seen& seen) { return seen.id == frame.id && seen.extended == extended; });
+  if (found != end) {
+    const std::string_view before(found->interface.data(), found->length);
+    return before == interface ? std::string_view() : before;
+  }
+  if (count_ == seen_.size()) return {};
+  Seen& seen = seen_[count_++];
+  seen = {frame.id, extended, static_cast<std::uint8_t>(interface.size()), {}};
+  std::copy(interface.begin(), interface.end(), seen.interface.begin());
+  return {};
+}
+
+std::string first_interface(std::string_view beginning,
+                            const std::function<bool(const ifog_can_frame&)>& wanted) {
+  std::string_view line;
+  bool ended = false;
+  while (next_line(beginning, line, ended) && ended) {
+    CandumpEntry entry;
+    if (parse_candump_line(line, entry) == CandumpLine::frame && wanted(entry.frame))
+      return std::string(entry.interface);
+  }
+  return {};
+}
 
 Candump read_candump(const std::string& path, std::string_view interface) {
   return parse_candump(read_text_file(path), path, interface);
@@ -371,19 +411,18 @@ Candump parse_candump(std::string_view text, const std::string& path, std::strin
     const Frames::Is is = frames.take(line, ended);
     if (is == Frames::Is::end) break;
     if (is == Frames::Is::nothing) continue;
-    if (log.frames.empty()) log.interface = frames.entry().interface;
     log.frames.push_back(frames.entry().frame);
+    log.on.push_back(number_of(log.interfaces, frames.entry().interface));
   }
   static_cast<CandumpLosses&>(log) = frames.losses();
   return log;
 }
 
-CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface,
-                                     const std::function<void(const ifog_can_frame&)>& sink) {
+CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
   std::optional<bool> differences = told_by(file.head());
   if (!differences && !file.reopens()) {
     const Candump log = parse_candump(file.text(), file.path(), interface);
-    for (const ifog_can_frame& frame : log.frames) sink(frame);
+    for (std::size_t i = 0; i < log.frames.size(); ++i) sink(log.frames[i], log.interfaces[log.on[i]]);
     return log;
   }
   if (!differences) {
@@ -396,7 +435,7 @@ CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface
   for (bool ended = false; lines.next(line, ended);) {
     const Frames::Is is = frames.take(line, ended);
     if (is == Frames::Is::end) break;
-    if (is == Frames::Is::frame) sink(frames.entry().frame);
+    if (is == Frames::Is::frame) sink(frames.entry().frame, frames.entry().interface);
   }
   return frames.losses();
 }

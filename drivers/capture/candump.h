@@ -11,6 +11,7 @@
 // set) are told apart from data.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -65,6 +66,25 @@ class CandumpClock {
   std::int64_t now_ns_ = 0;
 };
 
+// On which interface each id was seen first: the same id on another is another device's. Of the first 64 ids;
+// names as far as an interface's goes.
+class CandumpBuses {
+ public:
+  // "" or the interface that frames of this one's id came on before.
+  std::string_view other(const ifog_can_frame& frame, std::string_view interface) noexcept;
+
+ private:
+  static constexpr std::size_t kLongestName = 15, kMost = 64;
+  struct Seen {
+    std::uint32_t id;
+    bool extended;
+    std::uint8_t length;
+    std::array<char, kLongestName> interface;
+  };
+  std::array<Seen, kMost> seen_{};
+  std::size_t count_ = 0;
+};
+
 // What of a log was no frame of data.
 struct CandumpLosses {
   std::size_t remote = 0, error = 0;  // frames passed over
@@ -73,7 +93,8 @@ struct CandumpLosses {
 
 struct Candump : CandumpLosses {
   std::vector<ifog_can_frame> frames;  // data frames, as in the log; arrival_ns 0 where lines have no time
-  std::string interface;               // of the first of them
+  std::vector<std::uint16_t> on;       // of each frame, which of the interfaces
+  std::vector<std::string> interfaces;
 };
 
 // Reads a whole log, plain or gzip, frames of one interface only unless `interface` is empty. Short times are
@@ -83,9 +104,15 @@ Candump read_candump(const std::string& path, std::string_view interface = {});
 // The same of a text already at hand; `path` stands for the file in messages.
 Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface = {});
 
+// A frame, and the interface that it came on.
+using CandumpSink = std::function<void(const ifog_can_frame&, std::string_view)>;
+
 // The same of a log of any length, frame by frame, none of it kept; a log with short times is read twice, or
 // held in memory where it cannot be opened again. What is thrown may come behind frames that were handed on.
-CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface,
-                                     const std::function<void(const ifog_can_frame&)>& sink);
+CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink);
+
+// The interface of the first frame that is wanted, of a log's beginning; "" where none is in it.
+std::string first_interface(std::string_view beginning,
+                            const std::function<bool(const ifog_can_frame&)>& wanted);
 
 }  // namespace ifog

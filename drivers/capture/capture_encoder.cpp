@@ -64,6 +64,12 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   const ifog_description& d = driver.description();
   rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
   timed_ = d.has_device_time != 0 || driver.takes_can();
+  if (timed_ && capture.size() > 0 && capture.time_s.front() < 0.0) {
+    later_s_ = std::ceil(-capture.time_s.front());
+    notices_.push_back("begins at " + seven_digits(capture.time_s.front()) +
+                       " s, and no clock of a device shows times before 0: all are sent " +
+                       seven_digits(later_s_) + " s later");
+  }
   if (capture.axes.size() == 1) {
     const std::string& own = capture.axes.front();
     const bool by_own_name = axis.empty() && !own.empty() && d.axes > 1;
@@ -118,7 +124,7 @@ ifog_sample CaptureEncoder::next_sample() {
     told_s_ += static_cast<double>(shown) / rate_hz_;
   }
 
-  sample_.arrival_ns = std::llround(now * 1e9);
+  sample_.arrival_ns = std::llround((now + later_s_) * 1e9);
   sample_.device_time_ns = sample_.arrival_ns;
   sample_.flags = IFOG_SAMPLE_DEVICE_TIME;
   if (d.sequence_modulus != 0) {

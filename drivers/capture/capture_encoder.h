@@ -24,7 +24,8 @@ DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings se
 
 // Rows become samples in order. The rate is turned into the driver's kind: a delta angle over the sample
 // period, or an angle that sums up and wraps. The counter counts sample periods, so that missing rows are a
-// gap in it. Environment columns go by their name; what is missing in a row is held from the row before.
+// gap in it. A first time before 0, which no device's clock and no log shows, moves all by whole seconds; a
+// notice says so. Environment columns go by their name; what is missing in a row is held from the row before.
 class CaptureEncoder {
  public:
   // A capture of one axis goes to the driver's axis `axis`, or to its first when that is empty; several axes
@@ -68,6 +69,7 @@ class CaptureEncoder {
   std::vector<const std::vector<double>*> channels_;  // by the driver's environment channel, null: not there
   std::vector<std::string> notices_;
   std::vector<double> angle_;  // by the capture's axis
+  double later_s_ = 0.0;       // whole seconds that are added to every time, for none to be before 0
   ifog_sample sample_{};
   std::size_t row_ = 0;
   std::size_t rows_before_ = 0;            // in pieces before this one

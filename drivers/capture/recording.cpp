@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <string_view>
 
 #include "drivers/capture/candump.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 
@@ -62,6 +64,31 @@ FileKind file_kind(const InputFile& file) {
                                                                                           : FileKind::unknown;
 }
 
+namespace {
+
+// Two devices of one id would be taken for one.
+void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const ifog_can_frame& frame,
+                       std::string_view interface, const std::string& path) {
+  if (!wants(driver.description(), frame)) return;
+  if (const std::string_view other = buses.other(frame, interface); !other.empty())
+    throw std::runtime_error(two_interfaces(path, other, std::string(interface)));
+}
+
+}  // namespace
+
+std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other) {
+  return path + ": frames of one id come on " + in_quotes(one) + " and on " + in_quotes(other) +
+         ", as from two devices, expected --channel with one of them";
+}
+
+bool wants(const ifog_description& description, const ifog_can_frame& frame) {
+  const bool extended = (frame.flags & IFOG_CAN_EXTENDED) != 0;
+  const auto* const end = description.can_id + description.can_ids;
+  return description.can_ids == 0 || std::any_of(description.can_id, end, [&](const auto& wanted) {
+           return wanted.id == frame.id && (wanted.extended != 0) == extended;
+         });
+}
+
 RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink) {
   RecordingCounts counts;
@@ -70,8 +97,12 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     sink(sample);
   };
   if (driver.takes_can()) {
-    const CandumpLosses lost = for_each_candump_frame(
-        file, interface, [&](const ifog_can_frame& frame) { driver.decode_can(frame, take); });
+    CandumpBuses buses;
+    const CandumpLosses lost =
+        for_each_candump_frame(file, interface, [&](const ifog_can_frame& frame, std::string_view from) {
+          expect_one_device(buses, driver, frame, from, file.path());
+          driver.decode_can(frame, take);
+        });
     counts.remote_frames = lost.remote;
     counts.error_frames = lost.error;
     counts.cut_off = lost.cut_off;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/capture/input_file.h"
@@ -45,10 +46,15 @@ struct RecordingCounts {
 // "3 frames with a wrong checksum", … : one line for each counter that says something was lost.
 std::vector<std::string> losses(const RecordingCounts& counts);
 
+// Whether a driver is to get this frame.
+bool wants(const ifog_description& description, const ifog_can_frame& frame);
+// The line for a candump log in which frames of one id come on two interfaces.
+std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other);
+
 // Feeds the whole recording to the driver, as `candump` if the driver takes CAN frames, else as bytes; of a
 // candump log only one interface's frames unless `interface` is empty. A log's frames arrive at their
-// recorded times; raw bytes have none and arrive at 0. Throws std::runtime_error with one line (file, line,
-// what was expected).
+// recorded times; raw bytes have none and arrive at 0. Frames of one id that the driver wants, on two
+// interfaces, are refused. Throws std::runtime_error with one line (file, line, what was expected).
 RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink);
 

@@ -194,7 +194,7 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns) {
 // The open file has been taken away, and what it held with it.
 void FlightArchive::forget_file() {
   folder_->leave();
-  lost_ += std::exchange(file_load_, {});
+  taken_away_ += std::exchange(file_load_, {});
   open_ = looked_ = false;
   file_bytes_ = 0;
 }
@@ -271,7 +271,7 @@ std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
   if (open_) error_ = end_file(now_ns, wall_ns);
   waiting_.clear();
-  lost_ += std::exchange(waiting_load_, {});
+  not_taken_ += std::exchange(waiting_load_, {});
   return std::exchange(entries_waiting_, 0);
 }
 

@@ -62,8 +62,10 @@ class FlightArchive {
   // errno of the disk's last answer, 0 while it is well; and in words, with what was expected.
   [[nodiscard]] int error() const { return error_; }
   [[nodiscard]] std::string complaint() const;
-  // With files that were taken away while they were written, and when it was closed.
-  [[nodiscard]] const FlightLoss& lost() const { return lost_; }
+  // What is in no recording: with files that were taken away while they were written, and what waited when it
+  // was closed and no disk took.
+  [[nodiscard]] const FlightLoss& taken_away() const { return taken_away_; }
+  [[nodiscard]] const FlightLoss& not_taken() const { return not_taken_; }
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
   [[nodiscard]] std::uint64_t files_removed() const { return files_removed_; }
   [[nodiscard]] std::uint64_t entries_waiting() const { return entries_waiting_; }
@@ -114,7 +116,7 @@ class FlightArchive {
   std::map<std::pair<FlightKind, std::uint16_t>, std::vector<std::uint8_t>> state_;
 
   FlightLoss waiting_load_, file_load_;  // deliveries that wait, and in the open file
-  FlightLoss lost_;
+  FlightLoss taken_away_, not_taken_;
   int error_ = 0;
   std::uint64_t bytes_written_ = 0, files_removed_ = 0;
 };

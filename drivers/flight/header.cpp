@@ -80,6 +80,8 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
     out.sensor = std::move(value);
   else if (key == "source")
     out.source = std::move(value);
+  else if (key == "interface")
+    out.interface = std::move(value);
   else if (key == "driver")
     out.driver = std::move(value);
   else if (key == "channel")
@@ -117,6 +119,7 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   add("sensor", header.sensor);
   add("carries", kCarries[static_cast<int>(header.carries)]);
   add("source", header.source);
+  if (!header.interface.empty()) add("interface", header.interface);
   add("driver", header.driver);
   add_named("option.", header.options);
   for (const std::string& channel : header.channels) add("channel", channel);

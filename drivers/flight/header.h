@@ -27,8 +27,9 @@ struct FlightHeader {
   std::string program;         // version of what recorded
   std::string sensor;
   Carries carries = Carries::bytes;
-  std::string source;                          // of the bytes, in words: "/dev/ttyUSB0", "can0"
-  std::string driver;                          // "" for messages
+  std::string source;     // of the bytes, in words: "/dev/ttyUSB0", "can0"
+  std::string interface;  // that CAN frames came on, by a log of candump too; "": not known
+  std::string driver;     // "" for messages
   std::map<std::string, std::string> options;  // of the driver
   std::vector<std::string> channels;           // those that came from elsewhere, by their index
   std::optional<std::int64_t> powered_ns;      // arrival clock when the sensor was switched on

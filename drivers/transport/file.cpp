@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -212,14 +213,19 @@ class CandumpFile final : public FileTransport {
     overlong_ = false;
     shift_ns_ = 0;
     clock_ = CandumpClock();
+    buses_ = CandumpBuses();
+    refused_ = false;
   }
   Delivery take(std::int64_t until_ns) noexcept override;
   bool next_frame(std::int64_t until_ns) noexcept;
   bool wanted(const CandumpEntry& entry) const noexcept;
+  bool of_one_device() noexcept;
   bool next_line(std::string_view& line, std::int64_t until_ns) noexcept;
 
   CandumpEntry entry_;
   CandumpClock clock_;
+  CandumpBuses buses_;
+  bool refused_ = false;   // frames of two devices under one id: nothing more is read
   bool pending_ = false;   // entry_ is read and not yet delivered
   bool overlong_ = false;  // in a line longer than the buffer, reported already
   std::uint64_t line_ = 0;
@@ -233,6 +239,22 @@ bool CandumpFile::wanted(const CandumpEntry& entry) const noexcept {
   const bool extended = (entry.frame.flags & IFOG_CAN_EXTENDED) != 0;
   return std::any_of(settings().ids.begin(), settings().ids.end(),
                      [&](const CanId& id) { return id.id == entry.frame.id && id.extended == extended; });
+}
+
+// Of entry_: nothing else of its id has come on another interface.
+bool CandumpFile::of_one_device() noexcept {
+  const std::string_view other = buses_.other(entry_.frame, entry_.interface);
+  if (other.empty()) return true;
+  std::array<char, 60> both{};
+  const int n =
+      std::snprintf(both.data(), both.size(), "%.*s and %.*s", static_cast<int>(other.size()), other.data(),
+                    static_cast<int>(entry_.interface.size()), entry_.interface.data());
+  report(
+      "frames of one id come on two interfaces, as from two devices, and nothing more is read; expected "
+      "sensor.transport.interface with one of them",
+      line_, {both.data(), std::min(static_cast<std::size_t>(n), both.size() - 1)});
+  refused_ = true;
+  return false;
 }
 
 // The line's bytes stay where they are until the next fill().
@@ -261,7 +283,7 @@ bool CandumpFile::next_line(std::string_view& line, std::int64_t until_ns) noexc
 
 bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
   std::string_view line;
-  while (!pending_ && next_line(line, until_ns)) {
+  while (!pending_ && !refused_ && next_line(line, until_ns)) {
     const CandumpLine kind = parse_candump_line(line, entry_);
     if (kind != CandumpLine::blank && kind != CandumpLine::malformed) {
       const bool known = clock_.differences();
@@ -271,7 +293,7 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
     }
     switch (kind) {
       case CandumpLine::frame:
-        pending_ = wanted(entry_);
+        pending_ = wanted(entry_) && of_one_device();
         break;
       case CandumpLine::error:
         error_frames_.add(1);
@@ -304,6 +326,7 @@ Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
     ++n;
     pending_ = false;
   }
+  if (n == 0 && refused_) end(0);
   Delivery delivery;
   delivery.frames = std::span<const ifog_can_frame>(batch_).first(n);
   return delivery;

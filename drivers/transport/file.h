@@ -27,8 +27,9 @@ struct FileSettings {
   std::uint32_t block_bytes =
       0;                     // recorded bytes come in blocks of this, a device's frame; 0: what 1 ms brings
   bool await_writer = true;  // a FIFO whose writer goes away waits for the next one; false: it has ended
-  std::string interface;     // candump: frames of this interface only; empty: all
-  std::vector<CanId> ids;    // candump: frames of these ids only; empty: all
+  // candump: frames of this interface only; empty: all, until frames of one id come on two, where it ends.
+  std::string interface;
+  std::vector<CanId> ids;  // candump: frames of these ids only; empty: all
 };
 
 // Arrival times: a candump log's own, at recorded pace moved so that the first frame is now; bytes, and

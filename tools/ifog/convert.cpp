@@ -6,8 +6,10 @@
 #include <string>
 
 #include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
+#include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
@@ -32,6 +34,12 @@ void Convert::run() const {
       file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_columns && input.has_driver()));
   if (from_columns && !to_columns)
     return write_recording(input.read_long_columns(file), from, to, input, axis);
+  if (!to_columns && file_kind(file) == FileKind::flight && !recorded_messages(file))
+    throw CLI::ValidationError(
+        to,
+        "expected a .csv, .csv.gz or .h5 file of a flight recording; its bytes or frames as "
+        "they came are written by: ifog replay " +
+            printable(from) + " --speed 0 --to file:" + printable(to));
   if (!to_columns)
     throw CLI::ValidationError(to,
                                "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");

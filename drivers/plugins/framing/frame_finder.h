@@ -27,9 +27,11 @@ namespace ifog::framing {
 
 struct FrameCounters {
   std::uint64_t intact = 0;
-  std::uint64_t checksum_failed = 0;  // a header, but the checksum of what follows does not fit
-  std::uint64_t bytes_skipped = 0;    // bytes that are part of no intact frame
-  std::uint64_t bytes_framed = 0;     // bytes of intact frames
+  // A header, but the checksum of what follows does not fit. Within an intact frame it is none: payload may
+  // look like one.
+  std::uint64_t checksum_failed = 0;
+  std::uint64_t bytes_skipped = 0;  // bytes that are part of no intact frame
+  std::uint64_t bytes_framed = 0;   // bytes of intact frames
 };
 
 // What a header says.
@@ -64,7 +66,7 @@ class FrameFinder {
 
   // Forgets what is half read; the bytes count as skipped.
   void reset() noexcept {
-    counters_.bytes_skipped += waiting();
+    pass_over(end_);
     forget();
   }
 
@@ -91,6 +93,7 @@ class FrameFinder {
     if (kBuffer - end_ < bytes.size() && begin_ != 0) {
       std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
       failed_ >>= begin_;
+      sum_failed_ >>= begin_;
       end_ -= begin_;
       begin_ = 0;
     }
@@ -119,12 +122,18 @@ class FrameFinder {
         keep = std::min(keep, at);
       }
     }
-    counters_.bytes_skipped += keep - begin_;
+    pass_over(keep);
     begin_ = keep;
     if (begin_ == end_) forget();
     return std::nullopt;
   }
 
+  // What is before it and not yet taken is part of no intact frame.
+  void pass_over(std::size_t upto) noexcept {
+    counters_.bytes_skipped += upto - begin_;
+    if (!any_failed_) return;
+    for (std::size_t at = begin_; at < upto; ++at) counters_.checksum_failed += sum_failed_.test(at) ? 1 : 0;
+  }
   void fail(std::size_t at) noexcept {
     failed_.set(at);
     any_failed_ = true;
@@ -132,13 +141,15 @@ class FrameFinder {
   void forget() noexcept {
     begin_ = end_ = 0;
     // Frame by frame, as from a line, there is seldom anything to clear.
-    if (std::exchange(any_failed_, false)) failed_.reset();
+    if (!std::exchange(any_failed_, false)) return;
+    failed_.reset();
+    sum_failed_.reset();
   }
 
   // The sum of a frame is tried once, however the stream comes in portions.
   bool intact(std::size_t at, std::size_t length) noexcept {
     if (protocol_.intact({buffer_.data() + at, length})) return true;
-    ++counters_.checksum_failed;
+    sum_failed_.set(at);
     fail(at);
     return false;
   }
@@ -170,7 +181,7 @@ class FrameFinder {
   }
 
   void accept(std::size_t at, std::size_t length) noexcept {
-    counters_.bytes_skipped += at - begin_;
+    pass_over(at);
     counters_.bytes_framed += length;
     ++counters_.intact;
   }
@@ -179,7 +190,8 @@ class FrameFinder {
   static constexpr std::size_t kBuffer = 2 * Protocol::kLongest + 4096;
   Protocol protocol_;
   std::array<std::uint8_t, kBuffer> buffer_{};
-  std::bitset<kBuffer> failed_;  // positions known to begin no frame
+  std::bitset<kBuffer> failed_;      // positions known to begin no frame
+  std::bitset<kBuffer> sum_failed_;  // those of them with a header
   bool any_failed_ = false;
   std::size_t begin_ = 0, end_ = 0;
   FrameCounters counters_;

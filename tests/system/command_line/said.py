@@ -252,6 +252,16 @@ class Checks:
             missing = [i for i, value in enumerate(columns(file)[column]) if math.isnan(value)]
             assert missing == list(range(1000, 1100)), f"{file}: {missing[:3]} … {len(missing)}"
 
+    def check_what_makes_bytes_of_a_flight_recording_is_named(self):
+        """And does: what comes out is the samples of the recording."""
+        recording, to = SOURCE / "tests/stable/0.1.0/recording.ifr", self.folder / "flight.bin"
+        result = ran("convert", recording, to)
+        assert result.returncode == 2, f"exit {result.returncode}: {result.stderr}"
+        command = result.stderr.split("ifog replay ")[1].splitlines()[0].split()
+        assert command == [str(recording), "--speed", "0", "--to", f"file:{to}"], result.stderr
+        said("replay", *command)
+        assert to.stat().st_size > 0
+
     def check_a_record_counts_once(self):
         copy, packed = self.folder / "copy.csv", self.folder / "copy.csv.gz"
         copy.write_bytes(self.one.read_bytes())

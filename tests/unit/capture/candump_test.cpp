@@ -87,7 +87,7 @@ TEST(CandumpFile, RefusesWithFileAndLine) {
   const ifog::Candump log = ifog::read_candump(path, "can0");
   ASSERT_EQ(log.frames.size(), 1U);
   EXPECT_EQ(log.frames[0].data[0], 0x11);
-  EXPECT_EQ(log.interface, "can0");
+  EXPECT_EQ(log.interfaces, std::vector<std::string>{"can0"});
   EXPECT_EQ(log.remote, 1U);
   EXPECT_EQ(log.error, 1U);
   std::ofstream(path) << "(1.0) can0 123#11\n(1.1) can0 123#2\n";
@@ -101,6 +101,30 @@ TEST(CandumpFile, RefusesWithFileAndLine) {
                   "or 'interface id [length] bytes'");
   }
   fs::remove(path);
+}
+
+TEST(CandumpFile, EachFrameKeepsItsInterface) {
+  const ifog::Candump log = ifog::parse_candump(
+      "(1.0) vcan1 123#11\n(1.1) can0 124#22\n(1.2) vcan1 123#33\n(1.3) any 123#R\n", "log");
+  EXPECT_EQ(log.interfaces, (std::vector<std::string>{"vcan1", "can0"}));
+  EXPECT_EQ(log.on, (std::vector<std::uint16_t>{0, 1, 0}));
+  const auto second = [](const ifog_can_frame& frame) { return frame.id == 0x124; };
+  EXPECT_EQ(ifog::first_interface("# x\n(1.0) vcan1 123#11\n(1.1) can0 124#22\n", second), "can0");
+  EXPECT_EQ(ifog::first_interface("(1.0) vcan1 123#11\n(1.1) can0 124#2", second), "");
+}
+
+// The same number is another id where it is extended.
+TEST(CandumpBuses, AnIdIsOfOneInterface) {
+  ifog::CandumpBuses buses;
+  ifog_can_frame frame{};
+  frame.id = 0x123;
+  EXPECT_EQ(buses.other(frame, "vcan0"), "");
+  EXPECT_EQ(buses.other(frame, "vcan0"), "");
+  EXPECT_EQ(buses.other(frame, "vcan1"), "vcan0");
+  frame.flags = IFOG_CAN_EXTENDED;
+  EXPECT_EQ(buses.other(frame, "vcan1"), "");
+  EXPECT_EQ(buses.other(frame, "vcan0"), "vcan1");
+  for (frame.id = 1000; frame.id < 1100; ++frame.id) EXPECT_EQ(buses.other(frame, "vcan0"), "");
 }
 
 // What candump 2020.11 prints: candump [-t a|d|z] [-a] [-x] [-e] can0.

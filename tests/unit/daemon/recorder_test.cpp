@@ -218,21 +218,29 @@ TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   seconds(3);
   EXPECT_TRUE(messages.empty());
   disk.refuses = ENOSPC;
-  for (std::size_t n = 2000; n <= 20'000; n += 1000) {
+  int losing_turns = 0;
+  const Counter& lost_deliveries = recorder.tape().counters().lost_deliveries;
+  for (std::size_t n = 2000; n <= 21'000; n += 1000) {
+    const std::uint64_t before = lost_deliveries.value();
+    if (n == 21'000) disk.refuses = 0;
     give(n);
     seconds(1);
+    losing_turns += lost_deliveries.value() != before ? 1 : 0;
   }
+  const std::uint64_t lost_at_the_end = lost_deliveries.value();
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(
       messages[0].first,
       "recorder: memory: No space left on device, nothing is recorded until it takes more; what is lost is "
       "counted");
-  disk.refuses = 0;
-  give(21'000);
   seconds(15);
   ASSERT_EQ(messages.size(), 2U);
   EXPECT_TRUE(messages[1].second);
-  EXPECT_NE(messages[1].first.find("all is recorded again"), std::string::npos);
+  // It lost in the turns whose 1000 frames, and what waited, found no room: the first of them to the last.
+  EXPECT_EQ(messages[1].first.substr(0, messages[1].first.find(" deliveries")),
+            "recorder: memory: all is recorded again, " + std::to_string(lost_at_the_end));
+  EXPECT_EQ(messages[1].first.substr(messages[1].first.find(" deliveries")),
+            " deliveries are lost, all within " + std::to_string(losing_turns) + ".0 s");
   rig.transport->allowed_ = ~std::size_t{0};
   while (!rig.pipeline->ended()) {
     seconds(1);
@@ -311,6 +319,26 @@ TEST(Recorder, AFolderThatNeverWorksLosesAllAndSaysSo) {
   EXPECT_EQ(recorder.lost_deliveries(), recorder.tape().counters().deliveries.value());
   EXPECT_EQ(recorder.lost_bytes(), 20'000 * kFrame);
   EXPECT_EQ(rig.publisher->messages().size(), 20'000U);
+}
+
+// Nobody took anything away: the last word is of the disk, and of what waited for it.
+TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
+  MemoryDisk disk;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  recorder.tape().put(delivery(bytes, 1), 1, {}, 0);
+  recorder.turn(1 * kSecond, kWall);
+  recorder.turn(3 * kSecond, kWall);
+  disk.refuses = ENOSPC;
+  recorder.start();
+  for (int n = 2; n < 12; ++n) recorder.tape().put(delivery(bytes, n), n, {}, 0);
+  recorder.stop();
+  bool good = true;
+  EXPECT_EQ(recorder.take_message(good),
+            "recorder: memory: No space left on device to the end, the last 10 deliveries are not recorded");
+  EXPECT_FALSE(good);
+  EXPECT_EQ(recorder.lost_deliveries(), 10U);
+  EXPECT_EQ(recorder.lost_bytes(), 30U);
 }
 
 TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {

@@ -33,6 +33,9 @@ TEST(Dsp3000, LinesByHand) {
   EXPECT_DOUBLE_EQ(s[2].value[0], 359.999999 * kDegree);
   EXPECT_EQ(s[2].valid_axes, 0U);
   EXPECT_EQ(driver.counters().frames_good, 3U);
+  // The line end in front is what makes the first line one, and no loss.
+  EXPECT_EQ(driver.counters().bytes_skipped, 0U);
+  EXPECT_EQ(driver.counters().bytes_framed, 3U * 14U + 2U);
   EXPECT_EQ(driver.description().baud, 38400U);
   EXPECT_EQ(driver.description().sequence_modulus, 0U);
 }
@@ -58,6 +61,7 @@ TEST(Dsp3000, APieceOfALineIsNoReading) {
   driver.reset();
   EXPECT_EQ(decode(driver, "3.500000 1\r\n").size(), 0U);
   EXPECT_EQ(driver.counters().frames_format, 0U);
+  EXPECT_EQ(driver.counters().bytes_skipped, 12U + 2U + 12U);
 }
 
 TEST(Dsp3000, OnlyTheMakersFormIsAccepted) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -208,6 +209,60 @@ TEST_F(Recording, TimeThatTheFormatCannotCarryIsKnown) {
     }
     EXPECT_NEAR(encoder.time_lost_s(), lost_s, 1e-9) << format;
   }
+}
+
+TEST_F(Recording, OneIdOnTwoInterfacesIsTwoDevices) {
+  const DriverSettings settings{{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}};
+  there_and_back(wave({""}), "dbc", settings);
+  std::ifstream one(path("frames.log"));
+  std::ofstream two(path("two.log"));
+  for (std::string line; std::getline(one, line);) {
+    two << line << "\n";
+    two << line.replace(line.find("vcan0"), 5, "vcan1") << "\n";
+  }
+  two << "(5.0) can9 7FF#00\n(5.0) can8 7FF#00\n";  // not the driver's
+  two.close();
+  const auto samples = [&](const std::string& interface) {
+    ifog::DriverInstance driver = ifog::make_driver("dbc", settings);
+    ifog::InputFile file(path("two.log"));
+    return ifog::decode_recording(file, driver, interface, [](const ifog_sample&) {}).samples;
+  };
+  EXPECT_EQ(samples("vcan0"), 1000U);
+  EXPECT_EQ(samples("vcan1"), 1000U);
+  try {
+    samples("");
+    ADD_FAILURE() << "taken for one";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), path("two.log") +
+                                ": frames of one id come on 'vcan0' and on 'vcan1', as from two devices, "
+                                "expected --channel with one of them");
+  }
+}
+
+// A clock that counts in µs from 0 would show the last of its round.
+TEST_F(Recording, TimesBeforeZeroGoByWholeSecondsLaterAndSaySo) {
+  Capture early = wave({"x", "y", "z"});
+  for (double& time : early.time_s) time -= 1.25;
+  for (const char* driver : {"kvh1750", "sbgecom"}) {
+    const Capture back =
+        there_and_back(early, driver, driver[0] == 'k' ? DriverSettings{{"format", "b"}} : DriverSettings{});
+    EXPECT_NE(
+        std::find(notices_.begin(), notices_.end(),
+                  "begins at -1.25 s, and no clock of a device shows times before 0: all are sent 2 s later"),
+        notices_.end());
+    ASSERT_EQ(back.size(), early.size());
+    for (std::size_t i = 0; i < back.size(); ++i) ASSERT_NEAR(back.time_s[i], early.time_s[i] + 2.0, 1.01e-6);
+  }
+  Capture one = wave({""});
+  for (double& time : one.time_s) time -= 1.25;
+  const Capture back =
+      there_and_back(one, "dbc", {{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}});
+  ASSERT_EQ(back.size(), one.size());
+  for (std::size_t i = 0; i < back.size(); ++i)
+    ASSERT_NEAR(back.time_s[i], static_cast<double>(i) / 200.0, 1.01e-6);
+  // Format A has no time to show.
+  there_and_back(early, "kvh1750", {{"format", "a"}});
+  EXPECT_EQ(notices_.size(), 2U);
 }
 
 TEST_F(Recording, ACutOffFileIsCounted) {

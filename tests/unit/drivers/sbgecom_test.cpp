@@ -136,6 +136,29 @@ TEST(SbgEcom, OneOfTwoLogsIsChosen) {
   EXPECT_EQ(brief.counters().bytes_skipped, 0U);
 }
 
+// The two sync bytes, the class and the length of an IMU_SHORT, all by chance in its own values.
+TEST(SbgEcom, AHeaderAmongTheValuesIsNoFrame) {
+  Bytes frame = hex_bytes(kShort);
+  const Bytes header = hex_bytes("FF5A 01 00 0100");
+  std::copy(header.begin(), header.end(), frame.begin() + 13);
+  const std::uint16_t crc = by_bits(std::span(frame).subspan(2, 36));
+  frame[38] = static_cast<std::uint8_t>(crc & 0xFFU);
+  frame[39] = static_cast<std::uint8_t>(crc >> 8U);
+  for (const std::size_t portion : {std::size_t{1}, std::size_t{7}, std::size_t{123}}) {
+    Bytes stream;
+    for (int i = 0; i < 3; ++i) stream.insert(stream.end(), frame.begin(), frame.end());
+    stream[41 + 20] ^= 1U;  // of the second, which so is none, and what looks like a header in it is one
+    DriverInstance driver = make_driver("sbgecom", {});
+    std::size_t samples = 0;
+    for (std::size_t at = 0; at < stream.size(); at += portion)
+      driver.decode_bytes(std::span(stream).subspan(at, std::min(portion, stream.size() - at)), 0,
+                          [&](const ifog_sample&) { ++samples; });
+    EXPECT_EQ(samples, 2U);
+    EXPECT_EQ(driver.counters().frames_crc, 2U) << portion;
+    EXPECT_EQ(driver.counters().bytes_skipped, frame.size()) << portion;
+  }
+}
+
 TEST(SbgEcom, TheStampRunsOnOverItsWrap) {
   DriverInstance driver = make_driver("sbgecom", {});
   ifog_sample sample{};

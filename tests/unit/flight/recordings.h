@@ -131,6 +131,7 @@ inline FlightHeader some_header() {
   out.program = "1";
   out.sensor = "nose";
   out.source = "/dev/ttyUSB0";
+  out.interface = "vcan1";
   out.driver = "kvh1750";
   out.options = {{"format", "b"}, {"rate_hz", "200"}};
   out.channels = {"supply_V", "coil_degC"};

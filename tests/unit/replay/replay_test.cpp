@@ -109,6 +109,22 @@ TEST_F(Replay, WritesTheSameLogNeverEarly) {
   EXPECT_LE(report["lateness_us"]["p99"], report["lateness_us"]["max"]);
 }
 
+TEST_F(Replay, EachFrameGoesToALogWithItsInterfaceAndTwoDevicesNotOntoOneBus) {
+  std::ofstream(path("two.log"))
+      << "(1.000000) vcan0 123#11\n(1.000000) vcan1 123#22\n(1.001000) vcan0 123#33\n";
+  ASSERT_EQ(ifog(path("two.log") + " --speed 0 --to file:" + path("again.log")), 0) << content("out");
+  EXPECT_EQ(content("again.log"),
+            "(0000000001.000000) vcan0 123#11\n(0000000001.000000) vcan1 123#22\n(0000000001.001000) vcan0 "
+            "123#33\n");
+  ASSERT_EQ(ifog(path("two.log") + " --channel vcan1 --speed 0 --to file:" + path("again.log")), 0);
+  EXPECT_EQ(content("again.log"), "(0000000001.000000) vcan1 123#22\n");
+  EXPECT_EQ(ifog(path("two.log") + " --to can:vcan0"), 1);
+  EXPECT_EQ(content("out"),
+            "ifog: " + path("two.log") +
+                ": frames of one id come on 'vcan0' and on 'vcan1', as from two devices, expected "
+                "--channel with one of them\n");
+}
+
 TEST_F(Replay, LoopsAndScales) {
   ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --loop 3 --speed 20"), 0) << content("out");
   EXPECT_EQ(content("again.log"), content("gyro.log") + content("gyro.log") + content("gyro.log"));

@@ -199,6 +199,33 @@ TEST_F(FileTransport, PassesOnlyWantedFramesAndCountsTheRest) {
   EXPECT_STREQ(transport->fault().what, "the log is cut off here");
 }
 
+// Two gyros with one id on two buses are two: what the second sent is not mixed into the first's.
+TEST_F(FileTransport, AnIdThatComesOnTwoInterfacesEndsIt) {
+  candump(
+      "(1.0) vcan1 124#00\n(1.0) vcan0 123#01\n(1.1) vcan0 123#02\n(1.2) vcan1 123#03\n(1.3) vcan0 123#04\n");
+  settings_.ids = {{0x123, false}};
+  const auto transport = opened();
+  const std::vector<ifog_can_frame> frames = all_frames(*transport);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].data[0], 2);
+  EXPECT_EQ(transport->reason(), 0);
+  EXPECT_EQ(transport->fault().line, 4U);
+  EXPECT_EQ(transport->fault().text, "vcan0 and vcan1");
+  EXPECT_NE(std::string(transport->fault().what).find("expected sensor.transport.interface"),
+            std::string::npos);
+  for (const auto& [interface, first] : {std::pair{"vcan0", 1}, {"vcan1", 3}}) {
+    settings_.interface = interface;
+    const auto one = opened();
+    EXPECT_EQ(all_frames(*one).at(0).data[0], first);
+    EXPECT_EQ(one->fault().what, nullptr);
+  }
+  // Different ids on two buses may well be one device's.
+  settings_.interface.clear();
+  settings_.ids = {{0x123, false}, {0x124, false}};
+  candump("(1.0) vcan1 124#00\n(1.0) vcan0 123#01\n(1.1) vcan0 123#02\n");
+  EXPECT_EQ(all_frames(*opened()).size(), 3U);
+}
+
 // Where to begin to look: the first of many, with what stands there.
 TEST_F(FileTransport, OfManyBadLinesTheFirstIsTold) {
   std::string log = "(1.0) can0 123#01\n";

@@ -81,7 +81,7 @@ class ByteTarget final : public ReplayTarget {
   bool send(std::size_t i) override {
     if (timeline_.is_can()) {
       std::array<char, kCandumpLineMax> line{};
-      const std::size_t n = format_candump_line(timeline_.frames[i], timeline_.interface, line.data());
+      const std::size_t n = format_candump_line(timeline_.frames[i], timeline_.interface(i), line.data());
       return put(reinterpret_cast<const std::uint8_t*>(line.data()), n);
     }
     const std::size_t begin = i == 0 ? 0 : timeline_.blocks[i - 1].end;

@@ -41,8 +41,17 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
     warn("%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(), log.remote, log.error);
   if (log.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
   ReplayTimeline timeline;
+  if (source.prefer_can && log.interfaces.size() > 1) {
+    CandumpBuses buses;
+    for (std::size_t i = 0; i < log.frames.size(); ++i)
+      if (const std::string& interface = log.interfaces[log.on[i]];
+          !buses.other(log.frames[i], interface).empty())
+        throw std::runtime_error(
+            two_interfaces(source.path, buses.other(log.frames[i], interface), interface));
+  }
   timeline.frames = std::move(log.frames);
-  timeline.interface = std::move(log.interface);
+  timeline.on = std::move(log.on);
+  timeline.interfaces = std::move(log.interfaces);
   return timeline;
 }
 
@@ -108,9 +117,8 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;
   if (driver.takes_can() && (source.prefer_can || !driver.takes_bytes())) {
-    for (std::size_t begin = 0; encoder.next(timeline.frames); begin = timeline.frames.size())
-      for (std::size_t i = begin; i < timeline.frames.size(); ++i)
-        timeline.frames[i].arrival_ns = nanoseconds(capture.time_s[encoder.rows_done() - 1]);
+    while (encoder.next(timeline.frames)) {
+    }
   } else {
     while (encoder.next(timeline.bytes))
       if (timeline.bytes.size() > (timeline.blocks.empty() ? 0 : timeline.blocks.back().end))
@@ -140,7 +148,8 @@ ReplayTimeline from_flight(const ReplaySource& source, InputFile& file) {
   if (flight.header().carries == FlightHeader::Carries::messages)
     throw std::runtime_error(source.path + ": is a recording of LCM messages, expected one of a device");
   const SensorConfig sensor = flight.sensor();
-  if (!sensor.transport.interface.empty()) timeline.interface = sensor.transport.interface;
+  if (!sensor.transport.interface.empty()) timeline.interfaces = {sensor.transport.interface};
+  if (!flight.header().interface.empty()) timeline.interfaces = {flight.header().interface};
   // The line's speed as it was; a driver that is not here leaves it to --baud.
   timeline.baud = sensor.transport.serial.baud;
   if (timeline.baud == 0 && plugin_is_there(flight.header().driver))
@@ -176,6 +185,7 @@ ReplayTimeline read_timeline(const ReplaySource& source) {
           "its name and first bytes; "
           "--format says which");
   }
+  if (timeline.on.empty() && !source.input.channel.empty()) timeline.interfaces = {source.input.channel};
   if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");
   return timeline;
 }

@@ -21,11 +21,16 @@ struct ReplayTimeline {
   std::vector<ifog_can_frame> frames;  // arrival_ns is the recorded time
   std::vector<std::uint8_t> bytes;     // either these or frames
   std::vector<Block> blocks;
-  std::string interface = "can0";  // the log's, for writing a log again
-  std::uint32_t baud = 0;          // what the driver's maker prescribes; 0: unknown
+  // For writing a log again: the log's, and of each frame which of them, or else the first of all.
+  std::vector<std::string> interfaces{"can0"};
+  std::vector<std::uint16_t> on;
+  std::uint32_t baud = 0;  // what the driver's maker prescribes; 0: unknown
 
   [[nodiscard]] bool is_can() const { return blocks.empty() && !frames.empty(); }
   [[nodiscard]] std::size_t size() const { return is_can() ? frames.size() : blocks.size(); }
+  [[nodiscard]] const std::string& interface(std::size_t i) const {
+    return interfaces[on.empty() ? 0 : on[i]];
+  }
   [[nodiscard]] std::int64_t time_ns(std::size_t i) const {
     return is_can() ? frames[i].arrival_ns : blocks[i].time_ns;
   }
@@ -37,7 +42,7 @@ struct ReplaySource {
   std::size_t block_bytes{};  // raw bytes: sent together, one frame of the device
   double rate_hz{};           // raw bytes: blocks a second
   // csv: whose frames the rows become; raw bytes: whose frames and times they are, instead of the two above;
-  // of a candump log the channel is the interface.
+  // the channel is the interface: of a candump log that which is sent, of others that which a log is to name.
   CaptureInput input;
   std::string axis;
   bool prefer_can = false;  // csv: for a driver that speaks both
