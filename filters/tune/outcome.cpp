@@ -36,26 +36,33 @@ RateFigures figures_of(std::span<const double> rate, double period_s) {
   return out;
 }
 
-}  // namespace
-
-Outcome::Ratios Outcome::against(const Outcome& other) const {
-  Ratios ratios;
-  double sum = 0.0, count = 0.0;
-  const auto take = [&](double mine, double others) {
-    if (!(mine > 0.0 && others > 0.0)) return;
-    ratios.largest = std::max(ratios.largest, mine / others);
-    sum += std::log(mine / others);
-    count += 1.0;
-  };
-  for (std::size_t a = 0; a < after.size(); ++a) {
-    take(after[a].rms_radps, other.after[a].rms_radps);
-    for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t)
-      if (after[a].adev_radps[t] && other.after[a].adev_radps[t])
-        take(*after[a].adev_radps[t], *other.after[a].adev_radps[t]);
+std::vector<double> ahead_of(std::span<const double> measured, std::span<const double> published) {
+  constexpr std::size_t kWindows = 8;
+  const std::size_t n = measured.size();
+  const auto measurement =
+      std::find_if(measured.begin(), measured.end(), [](double v) { return std::isfinite(v); });
+  const double level = measurement == measured.end() ? 0.0 : *measurement;
+  std::vector<double> sum(n + 1, 0.0), count(n + 1, 0.0), out;
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool there = std::isfinite(measured[k]);
+    sum[k + 1] = sum[k] + (there ? measured[k] - level : 0.0);
+    count[k + 1] = count[k] + (there ? 1.0 : 0.0);
   }
-  if (count > 0.0) ratios.mean = std::exp(sum / count);
-  return ratios;
+  for (std::size_t m = 1; kWindows * m <= n; m *= 4) {
+    double square = 0.0, terms = 0.0;
+    for (std::size_t k = 0; k + m < n; ++k) {
+      const double in_window = count[k + 1 + m] - count[k + 1];
+      if (2.0 * in_window < static_cast<double>(m) || !std::isfinite(published[k])) continue;
+      const double miss = (sum[k + 1 + m] - sum[k + 1]) / in_window + level - published[k];
+      square += miss * miss;
+      terms += 1.0;
+    }
+    out.push_back(terms > 0.0 ? square / terms : 0.0);
+  }
+  return out;
 }
+
+}  // namespace
 
 Outcome outcome_of(const FilterSettings& settings, std::span<const std::span<const double>> axes,
                    double period_s, std::size_t first) {
@@ -64,7 +71,7 @@ Outcome outcome_of(const FilterSettings& settings, std::span<const std::span<con
   std::vector<std::vector<double>> published(axes.size());
   EstimatorInput in;
   EstimatorOutput out;
-  in.dt_s = period_s;
+  std::size_t last = 0;
   for (std::size_t k = 0; k < n; ++k) {
     in.sequence = k;
     in.valid_axes = 0;
@@ -73,14 +80,22 @@ Outcome outcome_of(const FilterSettings& settings, std::span<const std::span<con
       in.rate_radps[a] = axes[a][k];
       in.valid_axes |= 1U << a;
     }
-    estimator.step(in, out);
+    // Where nothing was measured nothing is published; the next sample comes after a gap.
+    if (in.valid_axes != 0) {
+      in.dt_s = k == 0 ? period_s : period_s * static_cast<double>(k - last);
+      in.covered_s.fill(period_s);
+      estimator.step(in, out);
+      last = k;
+    }
     if (k < first) continue;
-    for (std::size_t a = 0; a < axes.size(); ++a) published[a].push_back(out.denoised_radps[a]);
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      published[a].push_back(in.valid_axes != 0 ? out.denoised_radps[a] : std::nan(""));
   }
   Outcome outcome;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     outcome.before.push_back(figures_of(axes[a].subspan(first), period_s));
     outcome.after.push_back(figures_of(published[a], period_s));
+    outcome.ahead.push_back(ahead_of(axes[a].subspan(first), published[a]));
   }
   return outcome;
 }

@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -12,6 +11,8 @@
 
 #include "filters/threads/share_out.h"
 #include "filters/tune/candidate.h"
+#include "filters/tune/choice.h"
+#include "filters/tune/hidden_walk.h"
 #include "filters/tune/maximum.h"
 #include "filters/tune/spectrum.h"
 #include "filters/tune/whittle.h"
@@ -26,9 +27,6 @@ constexpr std::size_t kDraws = 30;
 constexpr std::size_t kLooked = 8;
 constexpr std::size_t kFollowed = 3;
 constexpr double kFar = 30.0;
-// A figure that much above another model's makes a model worse. Figures of one record through two filters
-// share its noise.
-constexpr double kWorse = 1.05;
 
 struct Data {
   std::vector<std::vector<double>> axes;  // scaled
@@ -160,7 +158,6 @@ Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& s
   const RecordObjective objective(candidate, record, data.period_s);
   Fit found = fit(candidate, spectrum, objective);
   TunedModel model;
-  model.settings = candidate.settings(found.theta, data.scale);
   model.parameters = candidate.size();
   const auto count = static_cast<double>(data.samples);
   // Back to the density of the data in rad/s, so that likelihoods can be set beside those of other programs.
@@ -169,7 +166,12 @@ Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& s
   std::vector<bool> known;
   const Eigen::MatrixXd errors =
       covariance_at(objective, found.information, candidate.reach(spectrum.samples), found.theta, known);
+  model.walk_is_bound = bound_hidden_walk(objective, found.theta);
+  model.settings = candidate.settings(found.theta, data.scale);
   model.figures = figures_with_errors(candidate, found.theta, data.scale, errors, known);
+  TunedFigure& walk = model.figures.front();
+  // From none to the bound is one standard deviation.
+  if (model.walk_is_bound) walk.std_error = walk.value;
   return {std::move(model), std::move(found.theta), std::move(found.information)};
 }
 
@@ -180,6 +182,7 @@ Outcome held_out(const Candidate& candidate, const Data& data, const Fitted& fit
   std::vector<double> theta = fitted.theta;
   const std::size_t half = data.axes[0].size() / 2;
   find_maximum(objective, 0.5 * fitted.information, candidate.reach(half), theta);
+  (void)bound_hidden_walk(objective, theta);
   return outcome_of(candidate.settings(theta, data.scale), axes, data.period_s, half);
 }
 
@@ -191,22 +194,6 @@ std::pair<double, bool> rank(const TunedModel& model, double period_s) {
   const bool only_a_name = model.settings.state == "random-walk + gauss-markov" &&
                            model.settings.state_parameters[0] < kShort * period_s;
   return {std::round(2.0 * model.bic), only_a_name};
-}
-
-// The likeliest of the models that leave nothing above the random walk's in the published rate and, taken
-// together, hardly more than the best of them. models: by BIC; all tried.
-std::size_t choose(const std::vector<TunedModel>& models) {
-  const auto walk = std::find_if(models.begin(), models.end(),
-                                 [](const TunedModel& m) { return m.settings.state == "random-walk"; });
-  if (walk == models.end()) return 0;
-  std::vector<double> left;
-  for (const TunedModel& model : models) {
-    const Outcome::Ratios ratios = model.held_out->against(*walk->held_out);
-    left.push_back(ratios.largest <= kWorse ? ratios.mean : std::numeric_limits<double>::infinity());
-  }
-  const double least = *std::min_element(left.begin(), left.end());
-  return static_cast<std::size_t>(
-      std::find_if(left.begin(), left.end(), [&](double l) { return l <= kWorse * least; }) - left.begin());
 }
 
 }  // namespace
@@ -250,7 +237,7 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   Tuning result;
   result.samples = data.samples;
   for (const std::size_t i : order) result.models.push_back(std::move(fitted[i].model));
-  if (options.hold_out) result.chosen = choose(result.models);
+  if (options.hold_out) result.chosen = choose(result.models, period_s, static_cast<double>(length));
   return result;
 }
 

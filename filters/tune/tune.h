@@ -9,8 +9,7 @@
 //
 // The likelihood says which model describes the record. What a model does to the rate that is published is
 // another question, and is tried: fitted to the first half of the record, the estimator run with it, judged
-// on the second half. A model that leaves more there than the random walk alone is passed over, and so is one
-// that leaves more than a less likely one.
+// on the second half by what the published rate foretells of the measurements to come (choice.h).
 #pragma once
 
 #include <functional>
@@ -35,8 +34,12 @@ struct TunedModel {
   std::vector<TunedFigure> figures;
   int parameters = 0;
   double log_likelihood = 0.0;
-  double bic = 0.0;                 // parameters × ln n − 2 ln L; smaller is better
+  double bic = 0.0;  // parameters × ln n − 2 ln L; smaller is better
+  // The record does not tell the walk from none: process_noise is the quickest that it might hide
+  // (hidden_walk.h), where the figures of this struct but the likelihood are.
+  bool walk_is_bound = false;
   std::optional<Outcome> held_out;  // of the models that were tried
+  std::string passed_over;          // why, of a model that is likelier than the one chosen
 };
 
 struct TuneOptions {
@@ -49,7 +52,7 @@ struct TuneOptions {
 struct Tuning {
   std::vector<TunedModel> models;  // best by BIC first
   std::size_t samples = 0;         // used, all axes together
-  std::size_t chosen = 0;          // of `models`: the likeliest that holds out
+  std::size_t chosen = 0;          // of `models`: by choose()
 };
 
 // axes: rad/s, NaN where missing, evenly spaced at period_s; they share one model because they will share one

@@ -122,12 +122,14 @@ json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
     figures[f.name] = {{"value", f.value},
                        {"std_error", f.std_error ? json(*f.std_error) : json(nullptr)},
                        {"unit", f.unit}};
+  if (model.walk_is_bound) figures["process_noise"]["bound"] = true;
   return {{"state", model.settings.state},
           {"state_parameters", model.settings.state_parameters},
           {"parameters", model.parameters},
           {"log_likelihood", model.log_likelihood},
           {"bic", model.bic},
           {"figures", figures},
+          {"passed_over", model.passed_over},
           {"held_out", model.held_out ? outcome_json(*model.held_out, axes) : json(nullptr)}};
 }
 
@@ -138,6 +140,9 @@ void print(const Tuning& tuning) {
         model.bic - tuning.models.front().bic);
   const TunedModel& chosen = tuning.models[tuning.chosen];
   say("\n%s\n", chosen.settings.state.c_str());
+  for (std::size_t i = 0; i < tuning.chosen; ++i)
+    say("  %s is likelier: passed over, %s\n", tuning.models[i].settings.state.c_str(),
+        tuning.models[i].passed_over.c_str());
   for (const TunedFigure& f : chosen.figures) {
     if (f.std_error)
       say("  %-30s %12.5g ± %-9.2g %-18s%s\n", f.name.c_str(), f.value, *f.std_error, f.unit.c_str(),
@@ -146,6 +151,9 @@ void print(const Tuning& tuning) {
       say("  %-30s %12.5g   %-9s %-18s%s\n", f.name.c_str(), f.value, "unknown", f.unit.c_str(),
           in_field_units(f).c_str());
   }
+  if (chosen.walk_is_bound)
+    say("  the record shows no random walk: process_noise is the quickest that it might hide, a bound of one "
+        "sigma\n");
 }
 
 // One line a figure: measured, published with the chosen model, and with the random walk alone.
@@ -175,12 +183,6 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
                    *after.adev_radps[t],
                    walk && walk->after[a].adev_radps[t] ? &*walk->after[a].adev_radps[t] : nullptr);
     }
-  }
-  for (std::size_t i = 0; i < tuning.chosen; ++i) {
-    const TunedModel& passed = tuning.models[i];
-    say("%s is likelier but leaves up to %.3g times what %s leaves: passed over\n",
-        passed.settings.state.c_str(), passed.held_out->against(*chosen.held_out).largest,
-        chosen.settings.state.c_str());
   }
 }
 
