@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <span>
 #include <string>
@@ -41,6 +42,14 @@ std::unique_ptr<ifog::Publisher> publish_nowhere(const std::string&) {
   return std::make_unique<NowherePublisher>();
 }
 
+// What was asked for and cannot be written has failed.
+int said(int code) {
+  std::cout.flush();
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr, "ifogd: cannot write standard output\n");
+  return 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,7 +66,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return app.exit(error) == 0 ? said(0) : 2;
   }
   try {
     ifog::Config config = ifog::read_config(file);
@@ -66,7 +75,7 @@ int main(int argc, char** argv) {
     ifog::Housekeeping housekeeping(std::move(config), check ? publish_nowhere : ifog::make_lcm_publisher);
     if (check) {
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
-      return 0;
+      return said(0);
     }
     return housekeeping.run();
   } catch (const ifog::ConfigError& error) {

@@ -69,6 +69,8 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
                                                          .channels = ChannelWatch(sensor)}));
       for (const std::string& absent : sensors_.back()->channels.absent())
         sensors_.back()->log->warn("{}", absent);
+      for (const std::string& remark : sensors_.back()->parts.remarks)
+        sensors_.back()->log->warn("{}: {}", sensor.model, remark);
       for (const std::string& warning : sensors_.back()->parts.pipeline->reader().driver().warnings())
         sensors_.back()->log->warn("{}", warning);
     } catch (const std::exception& error) {

@@ -12,6 +12,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "filters/model_file/model_axes.h"
 
 namespace ifog {
 namespace {
@@ -55,6 +56,7 @@ Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fr
   settings.learned = sensor.snapshot.learned ? sensor.snapshot.learned : sensor.parts.noise.recalled();
   settings.powered_ns = powered_ns(out.config);
   out.parts = make_chain_parts(out.config, settings);
+  if (model != nullptr) out.remarks = remarks_on_axes(*model, settings.axes);
   out.noise = sensor.parts.noise.text(settings.learned);
   return out;
 }
@@ -66,6 +68,7 @@ void Housekeeping::use(Renewed renewed) {
     sensor.log->info("reloaded: nothing changed, the filter goes on");
     return;
   }
+  for (const std::string& remark : renewed.remarks) sensor.log->warn("{}: {}", sensor.config.model, remark);
   for (const std::string& effect : renewed.parts->left_out()) sensor.log->warn("not corrected: {}", effect);
   sensor.log->info("reloaded: model {}, filter settings",
                    sensor.config.model.empty() ? "none" : sensor.config.model);

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <utility>
 
+#include "daemon/health/wrong_rate.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/transport.h"
@@ -250,14 +250,7 @@ std::string StatusReport::nothing_of_it() const {
 
 std::string StatusReport::wrong_rate() const {
   if (std::abs(interval_error_) < kWrongRate || std::abs(interval_error_before_) >= kWrongRate) return "";
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
-                "rate, are %.2g %% "
-                "too %s",
-                nominal_rate_hz_ / (1.0 + interval_error_), nominal_rate_hz_,
-                100.0 * std::abs(interval_error_), interval_error_ > 0.0 ? "small" : "large");
-  return text.data();
+  return wrong_rate_in_words(nominal_rate_hz_, interval_error_, now_.input_rate_hz);
 }
 
 std::string StatusReport::moved() const {

@@ -9,6 +9,7 @@
 #include "daemon/sensor/flight_header.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/model_file/model_axes.h"
 #include "msgs/channel_name.h"
 
 namespace ifog {
@@ -50,6 +51,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   settings.powered_ns = powered_ns(sensor);
   std::unique_ptr<ChainParts> parts = make_chain_parts(sensor, settings);
   out.left_out = parts->left_out();
+  if (model != nullptr) out.remarks = remarks_on_axes(*model, settings.axes);
   out.recorder = make_recorder(sensor, config, driver, out.noise);
   PipelinePlan plan;
   if (out.recorder != nullptr) plan.tape = &out.recorder->tape();

@@ -23,6 +23,7 @@ struct AssembledSensor {
   NoiseMemory noise;
   ChainChoice choice;                 // in use, or offered to the filter
   std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
+  std::vector<std::string> remarks;   // on the model's axes beside the sensor's
 };
 
 // Throws std::runtime_error with one line.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/csv_layout.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 
@@ -33,6 +34,11 @@ std::string shortest(double value) {
 
 void fail_at(const std::string& path, std::size_t line, const std::string& what) {
   throw std::runtime_error(path + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what);
+}
+
+std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option) {
+  return in_quotes(header) + " is in " + in_quotes(unit) +
+         " by its name, and no unit was told; to read it so: " + option;
 }
 
 void refuse_header(const std::string& path, std::size_t line_number, const std::string& what,

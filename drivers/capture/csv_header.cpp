@@ -2,6 +2,7 @@
 #include "drivers/capture/csv_header.h"
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 #include <stdexcept>
 
@@ -22,7 +23,18 @@ std::vector<std::string> split(std::string_view line, char separator) {
   }
 }
 
+bool is_number(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  return read.ec == std::errc() && read.ptr == end;
+}
+
 void check_names(const std::vector<std::string>& names, const std::string& path, std::size_t line) {
+  if (std::all_of(names.begin(), names.end(), is_number))
+    fail_at(path, line,
+            "begins with numbers, " + in_quotes(names.front()) +
+                ", …, expected a header before them: 'time_s,rate_radps,…'");
   if (names.front() != "time_s")
     refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names);
   std::set<std::string> seen;
@@ -51,6 +63,8 @@ void choose(const std::vector<std::string>& names, const CsvLayout& layout, cons
   header.cells.resize(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) header.cells[i].name = names[i];
   const CsvTime time = layout.time.value_or(CsvTime{});
+  if (const std::string unit = time.other_unit(); !unit.empty())
+    fail_at(path, header.line, unit_by_name(time.header, unit, option_for(time, unit)));
   header.time_place = place_of(time.header, names, path, header.line);
   CsvCell& time_cell = header.cells[header.time_place];
   time_cell.range = measurable_in_file(time);
@@ -69,6 +83,8 @@ void choose(const std::vector<std::string>& names, const CsvLayout& layout, cons
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const CsvColumn& column = columns[i];
     CsvCell& chosen = header.cells[place_of(column.header, names, path, header.line)];
+    if (const std::string unit = column.other_unit(); !unit.empty())
+      fail_at(path, header.line, unit_by_name(column.header, unit, option_for(column, unit)));
     if (chosen.column != CsvCell::kPassedOver)
       fail_at(path, header.line, "column " + in_quotes(column.header) + " is chosen twice");
     chosen.range = measurable_in_file(column);

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "drivers/capture/measurable.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/units/units.h"
 
@@ -62,8 +63,10 @@ Parts parts_of(const std::string& header) {
   const std::string last = header.substr(underscore + 1);
   const bool unit = angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty();
   // A lone letter is an axis rather than coulombs.
-  if (!unit || (last.size() == 1 && last != "s")) return {lower(header), ""};
-  return {lower(header.substr(0, underscore)), last};
+  const std::string base = lower(header.substr(0, underscore));
+  if (last == "s" || last == "S") return {base, "s"};
+  if (!unit || (last.size() == 1 && stated_unit(base + "_" + last).empty())) return {lower(header), ""};
+  return {base, last};
 }
 
 // The axis that a rate's header ends in, if its beginning speaks of a rate; `raw` is what `ifog denoise`
@@ -105,6 +108,24 @@ std::string typed(const std::string& text) {
   return bare ? text : in_quotes(text);
 }
 
+// What another column than the sensor's rate would be called in a capture, by the first unit of its quantity:
+// temperature_degC for degF. "" where its unit says nothing, or it is a rate that is no reference: made of
+// the sensor's own, it would explain that away.
+std::string channel_name(const Parts& parts) {
+  const bool rate = angle_unit(parts.unit, true, false).has_value();
+  const std::string known = rate ? std::string(kRateUnit) : units_beside(parts.unit);
+  std::string name;
+  for (const char c : parts.base) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  if (known.empty() || name.empty() || time_unit(parts.unit)) return "";
+  if (rate && !name.starts_with("reference_rate")) return "";
+  return name + "_" + known.substr(0, known.find(','));
+}
+
+bool is_another(const std::string& unit, const std::string& wanted) {
+  const auto by = convert_unit(unit, wanted);
+  return by && (by->scale != 1.0 || by->offset != 0.0);
+}
+
 }  // namespace
 
 CsvColumn CsvColumn::parse(const std::string& text) {
@@ -130,6 +151,24 @@ bool CsvColumn::is_angle() const {
   return is_rate() && !angle_unit(unit, true, false) && angle_unit(unit, false, false).has_value();
 }
 
+std::string CsvColumn::other_unit() const {
+  if (!unit.empty()) return "";
+  std::string stated = parts_of(header).unit;
+  // A rate that ends in an angle's unit is often one a second: here it is no guess but a question. "rads" is
+  // both.
+  if (stated.empty() && is_rate() && unit_of_name(header) != "rads") stated = unit_of_name(header);
+  if (stated.empty()) return "";
+  CsvColumn told = *this;
+  told.unit = stated;
+  return told.is_angle() || is_another(stated, unit_of_name(name)) ? stated : "";
+}
+
+std::string CsvTime::other_unit() const {
+  if (told || unit_s != 1.0) return "";
+  const std::string stated = parts_of(header).unit;
+  return time_unit(stated).value_or(1.0) != 1.0 ? stated : "";
+}
+
 CsvTime CsvTime::parse(const std::string& text) {
   const auto [header, unit] = header_and_unit(text);
   CsvTime out;
@@ -137,6 +176,7 @@ CsvTime CsvTime::parse(const std::string& text) {
   const auto seconds = unit.empty() ? std::optional(1.0) : time_unit(unit);
   if (header.empty() || !seconds) refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, ns, min, h");
   out.unit_s = *seconds;
+  out.told = !unit.empty();
   return out;
 }
 
@@ -149,26 +189,39 @@ char CsvLayout::parse_separator(const std::string& text) {
   return text[0];
 }
 
+std::string option_for(const CsvColumn& column, const std::string& unit) {
+  return "--column " + typed(column.name + "=" + column.header + ":" + unit);
+}
+
+std::string option_for(const CsvTime& time, const std::string& unit) {
+  return "--time " + typed(time.header + ":" + unit);
+}
+
 std::string suggested_options(const std::vector<std::string>& headers) {
   std::string time, columns;
   bool timed = false, renamed = false;
-  std::vector<std::string> taken;
+  std::vector<std::string> taken, named;
   for (const std::string& header : headers) {
     if (header.empty()) continue;
     const Parts parts = parts_of(header);
     if (!timed && is_time(parts.base)) {
       timed = true;
       const bool known = time_unit(parts.unit).has_value();
-      if (header != "time_s") time = " --time " + typed(header + ":" + (known ? parts.unit : "UNIT"));
+      if (header != "time_s") time = " " + option_for(CsvTime{header}, known ? parts.unit : "UNIT");
       continue;
     }
     const auto axis = rate_axis(parts.base);
     const bool fits = parts.unit.empty() || angle_unit(parts.unit, true, false);
-    if (!axis || !fits || std::find(taken.begin(), taken.end(), *axis) != taken.end()) continue;
-    taken.push_back(*axis);
-    const std::string name = axis->empty() ? "rate_radps" : "rate_" + *axis + "_radps";
-    renamed = renamed || name != header;
-    columns += " --column " + typed(name + "=" + header + ":" + (parts.unit.empty() ? "UNIT" : parts.unit));
+    const bool rate = axis && fits && std::find(taken.begin(), taken.end(), *axis) == taken.end();
+    std::string name = channel_name(parts);
+    if (rate) {
+      taken.push_back(*axis);
+      name = axis->empty() ? "rate_radps" : "rate_" + *axis + "_radps";
+    }
+    if (name.empty() || std::find(named.begin(), named.end(), name) != named.end()) continue;
+    named.push_back(name);
+    renamed = renamed || (rate && name != header);
+    columns += " " + option_for({name, header, ""}, parts.unit.empty() ? "UNIT" : parts.unit);
   }
   // Half of it would only lead to the next message.
   if (!timed || taken.empty()) return "";

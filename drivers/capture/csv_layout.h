@@ -19,6 +19,8 @@ struct CsvColumn {
   static CsvColumn parse(const std::string& text);
   [[nodiscard]] bool is_rate() const;
   [[nodiscard]] bool is_angle() const;
+  // The unit that the header names where none was told, and that is not the name's; "" for none.
+  [[nodiscard]] std::string other_unit() const;
 };
 
 struct CsvTime {
@@ -27,6 +29,8 @@ struct CsvTime {
 
   // "t:ms" or "t", which is in seconds. Throws likewise.
   static CsvTime parse(const std::string& text);
+  bool told = false;                             // the unit was
+  [[nodiscard]] std::string other_unit() const;  // likewise
 };
 
 struct CsvLayout {
@@ -41,7 +45,10 @@ struct CsvLayout {
 };
 
 // The options with which a file of these headers may be read, "" if nothing in them looks like a gyro's:
-// "--time Time:ms --column rate_x_radps=GyroX:deg/s". UNIT stands where the header names none.
+// "--time Time:ms --column rate_x_radps=GyroX:deg/s". UNIT stands where the header names none. Of the other
+// columns those whose unit is known.
+std::string option_for(const CsvColumn& column, const std::string& unit);
+std::string option_for(const CsvTime& time, const std::string& unit);
 std::string suggested_options(const std::vector<std::string>& headers);
 // The separator that the line may have been meant with: "--separator ';'", "" for none.
 std::string suggested_separator(const std::string& header_line);

@@ -48,7 +48,15 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLette
                                                                                       {"A", "current"},
                                                                                       {"g", "accel"}}};
 
-// The unit that a column's name ends in; empty where it may be no unit at all.
+// Of the capture's column, before its conversion.
+Measurable before(const Measurable& range, const UnitConversion& conversion) {
+  const double a = (range.least - conversion.offset) / conversion.scale;
+  const double b = (range.most - conversion.offset) / conversion.scale;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+}  // namespace
+
 std::string_view stated_unit(std::string_view column) {
   const std::size_t line = column.rfind('_');
   if (line == std::string_view::npos) return {};
@@ -58,15 +66,6 @@ std::string_view stated_unit(std::string_view column) {
     if (unit == letter && stem.find(what) != std::string_view::npos) return unit;
   return {};
 }
-
-// Of the capture's column, before its conversion.
-Measurable before(const Measurable& range, const UnitConversion& conversion) {
-  const double a = (range.least - conversion.offset) / conversion.scale;
-  const double b = (range.most - conversion.offset) / conversion.scale;
-  return {std::min(a, b), std::max(a, b)};
-}
-
-}  // namespace
 
 Measurable measurable(const std::string& column) {
   if (column == "time_s") return {-kMostTime_s, kMostTime_s};

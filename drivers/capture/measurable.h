@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "drivers/capture/csv_layout.h"
 
@@ -16,6 +17,9 @@ struct Measurable {
 
   [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
 };
+
+// The unit that a column's name ends in; empty where it may be no unit at all.
+std::string_view stated_unit(std::string_view column);
 
 // In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
 // can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.

@@ -7,6 +7,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
+#include "filters/model_file/effect_parameters.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
@@ -159,6 +160,8 @@ class Table {
 
 void read_noise(Table table, Model& model) {
   const std::string axis = table.words("axis");
+  if (model.noise.contains(axis))
+    table.fail("axis", table.find("axis"), "expected one table [[noise]] for each axis, this is its second");
   NoiseTerms& noise = model.noise[axis];
   const auto term = [&](const char* key, std::optional<double>& value) {
     if (!table.find(key)) return;
@@ -193,11 +196,64 @@ std::string channel_of(Table& table, const std::string& key, const std::string& 
   return difference_of(channel, less);
 }
 
+// A parameter's name is one of the form's, and there is one of it.
+void check_name(Table& item, const std::string& name, const std::vector<ParameterRule>& rules,
+                const Effect& effect) {
+  for (const ModelParameter& other : effect.parameters)
+    if (other.name == name) item.fail("name", item.find("name"), "this is the effect's second of that name");
+  if (rules_of_form(effect.form)->open) return;
+  std::vector<std::string_view> known;
+  std::string list;
+  for (const ParameterRule& rule : rules) {
+    if (rule.name == name) return;
+    known.push_back(rule.name);
+    list += (list.empty() ? "" : ", ") + std::string(rule.name);
+  }
+  item.fail("name", item.find("name"),
+            "form " + effect.form + " has no such parameter" + did_you_mean(name, known) +
+                (known.empty() ? "" : "; it has: " + list));
+}
+
+void read_parameters(Table& table, Effect& effect) {
+  const std::vector<ParameterRule> rules = parameters_of(effect.form, effect.with_form);
+  for (Table& item : table.tables("parameter")) {
+    ModelParameter parameter;
+    parameter.name = item.words("name");
+    if (parameter.name.empty()) item.fail("name", nullptr, "expected the name of a parameter");
+    check_name(item, parameter.name, rules, effect);
+    parameter.value = item.required("value");
+    for (const ParameterRule& rule : rules)
+      if (rule.name == parameter.name && !allows(rule, parameter.value))
+        item.fail("value", item.find("value"), "expected " + expected(rule));
+    parameter.std_error = item.number_or_unknown("std_error", 0.0);
+    if (parameter.std_error < 0.0) item.fail("std_error", item.find("std_error"), "expected at least 0");
+    parameter.unit = item.words("unit");
+    item.done();
+    effect.parameters.push_back(std::move(parameter));
+  }
+}
+
+void require_parameters(Table& table, const Effect& effect) {
+  for (const ParameterRule& rule : parameters_of(effect.form, effect.with_form)) {
+    bool there = !rule.needed;
+    for (const ModelParameter& parameter : effect.parameters) there = there || parameter.name == rule.name;
+    if (!there)
+      table.fail("parameter", nullptr,
+                 "form " + effect.form + " needs [[effect.parameter]] name = \"" + std::string(rule.name) +
+                     "\", " + expected(rule));
+  }
+}
+
 Effect read_effect(Table table) {
   Effect effect;
   effect.line = table.line();
   effect.form = table.words("form");
   if (effect.form.empty()) table.fail("form", nullptr, "expected the name of a form");
+  if (rules_of_form(effect.form) == nullptr) {
+    std::vector<std::string_view> known;
+    for (const FormRules& rules : form_rules()) known.push_back(rules.form);
+    table.fail("form", table.find("form"), "unknown form" + did_you_mean(effect.form, known));
+  }
   effect.channel = channel_of(table, "channel", "minus_channel");
   effect.with_form = table.words("with_form");
   effect.with_channel = channel_of(table, "with_channel", "with_minus_channel");
@@ -217,18 +273,9 @@ Effect read_effect(Table table) {
       table.fail("table_x", table.find("table_x"), "expected knots that increase");
     }
   }
-  for (Table& item : table.tables("parameter")) {
-    ModelParameter parameter;
-    parameter.name = item.words("name");
-    if (parameter.name.empty()) item.fail("name", nullptr, "expected the name of a parameter");
-    parameter.value = item.required("value");
-    parameter.std_error = item.number_or_unknown("std_error", 0.0);
-    if (parameter.std_error < 0.0) item.fail("std_error", item.find("std_error"), "expected at least 0");
-    parameter.unit = item.words("unit");
-    item.done();
-    effect.parameters.push_back(std::move(parameter));
-  }
+  read_parameters(table, effect);
   table.done();
+  require_parameters(table, effect);
   return effect;
 }
 

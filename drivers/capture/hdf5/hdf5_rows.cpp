@@ -51,12 +51,17 @@ std::vector<std::string> wanted_of(const CsvLayout& layout, const std::string& p
 }
 
 // What the attributes say where the layout is silent.
-CsvLayout completed(CsvLayout layout, const Hdf5Header& header) {
+CsvLayout completed(CsvLayout layout, const Hdf5Header& header, const std::string& path) {
+  if (layout.time)
+    if (const std::string unit = layout.time->other_unit(); !unit.empty())
+      refuse(path, unit_by_name(layout.time->header, unit, option_for(*layout.time, unit)));
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     CsvColumn& column = layout.columns[i];
     if (!column.unit.empty()) continue;
     column.unit = header.units[i + 1];
     if (!column.is_angle() && !convert_unit(column.unit, unit_of_name(column.name))) column.unit.clear();
+    if (const std::string unit = column.other_unit(); !unit.empty())
+      refuse(path, unit_by_name(column.header, unit, option_for(column, unit)));
   }
   return layout;
 }
@@ -116,7 +121,7 @@ Hdf5Rows::Hdf5Rows(InputFile& file, const std::string& group, const CsvLayout& a
     : file_(file),
       path_(file.path()),
       input_(file, group, wanted_of(asked, path_)),
-      layout_(completed(asked, input_.header())),
+      layout_(completed(asked, input_.header(), path_)),
       time_(place_of_time(input_.header(), layout_, path_)),
       time_range_(measurable_in_file(layout_.time.value_or(CsvTime{}))),
       sink_(sink) {

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -18,7 +19,11 @@
 namespace ifog {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// Of those that are measured; 0 when none is.
 double median(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -32,7 +37,8 @@ std::string text(const char* format, Values... values) {
   return line.data();
 }
 
-// Energy of differences within short pieces, so that slow changes of the rate do not count.
+// Energy of differences within short pieces, so that slow changes of the rate do not count. NaN for a piece
+// with a hole in it: of few differences the energy scatters more than that of the others.
 std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   std::vector<double> found;
   for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
@@ -44,7 +50,7 @@ std::vector<double> energies(std::span<const double> left, std::size_t piece) {
       square += d * d;
       n += 1.0;
     }
-    found.push_back(n > 0.0 ? square / n : 0.0);
+    found.push_back(3.0 * n >= 2.0 * static_cast<double>(piece - 1) ? square / n : kNaN);
   }
   return found;
 }
@@ -58,24 +64,32 @@ double burst_level(std::size_t piece, std::size_t pieces) {
   return std::max(6.0, quantile(complement(energy, chance)) / median(energy));
 }
 
+std::size_t measured_of(std::span<const double> energy) {
+  return static_cast<std::size_t>(
+      std::count_if(energy.begin(), energy.end(), [](double value) { return std::isfinite(value); }));
+}
+
 // By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
+// A minute of which little was measured has no usual energy of its own. 0 where nothing was measured.
 std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
+  const double of_all = median(energy);
   const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
   const std::size_t parts = std::max<std::size_t>(1, energy.size() / minute);
   std::vector<double> over;
   for (std::size_t p = 0; p < parts; ++p) {
     const std::size_t from = p * minute;
     const std::size_t to = p + 1 == parts ? energy.size() : from + minute;
-    const double usual = median({energy.begin() + static_cast<std::ptrdiff_t>(from),
-                                 energy.begin() + static_cast<std::ptrdiff_t>(to)});
-    for (std::size_t i = from; i < to; ++i) over.push_back(usual > 0.0 ? energy[i] / usual : 0.0);
+    const std::span<const double> mine(energy.data() + from, to - from);
+    const double usual = measured_of(mine) >= 16 ? median({mine.begin(), mine.end()}) : of_all;
+    for (const double each : mine) over.push_back(usual > 0.0 && std::isfinite(each) ? each / usual : 0.0);
   }
   return over;
 }
 
 // Where more than a tenth of the pieces is above the level of white noise, the strongest hundredth counts, if
-// it is far above the rest.
+// it is far above the rest. over: 0 where nothing was measured.
 double heavy_level(std::vector<double> over, double level) {
+  std::erase(over, 0.0);
   const auto count = static_cast<std::size_t>(
       std::count_if(over.begin(), over.end(), [&](double value) { return value >= level; }));
   if (count * 10 < over.size()) return level;
@@ -129,6 +143,7 @@ void describe_peak(const SpectralLine& peak, Unexplained& found) {
 bool describe_bursts(const std::vector<double>& energy, std::size_t piece, double start_s, double period_s,
                      Unexplained& found) {
   const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
+  const std::size_t measured = measured_of(energy);
   const double level = heavy_level(over, burst_level(piece, energy.size()));
   std::size_t bursts = 0;
   std::size_t strongest = 0;
@@ -140,7 +155,7 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
     if (over[i] > over[strongest]) strongest = i;
     if (times.empty() || time_of(i) - times.back() > 2.0) times.push_back(time_of(i));
   }
-  if (bursts == 0 || bursts * 10 >= over.size()) return false;
+  if (bursts == 0 || bursts * 10 >= measured) return false;
   found.kind = "bursts";
   found.hint = text(
       "%zu bursts, the first at %.4g s, the strongest at %.5g s: knocks, radio keying or supply dips. "
@@ -159,8 +174,7 @@ bool describe_changing_variance(const std::vector<double>& energy, Unexplained& 
   for (std::size_t p = 0; p < 8; ++p) {
     std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
                                  energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
-    std::erase(measured, 0.0);  // gaps
-    if (2 * measured.size() < part || measured.empty()) continue;
+    if (2 * measured_of(measured) < part || part == 0) continue;
     const double typical = median(std::move(measured));
     least = std::min(least, typical);
     most = std::max(most, typical);

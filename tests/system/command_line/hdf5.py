@@ -221,6 +221,8 @@ class Checks:
         self.refused(file, "'rate_radps' is in 'deg/s' by its attribute", "--column rate_radps=rate_radps:deg/s")
         for options in (["--column", "rate_radps=rate_radps"], ["--column", "rate_radps=rate_radps:deg/s"]):
             assert abs(self.converted(file, *options)["rate_radps"][0] - numpy.radians(1)) < 1e-16, options
+        named = write(self.folder / "named.h5", {"time_s": numpy.arange(3.0), "rate_dps": numpy.array([1.0, 2, 3])})
+        self.refused(named, "'rate_dps' is in 'dps' by its name", "--column rate_radps=rate_dps:dps", options=["--column", "rate_radps=rate_dps"])
         with h5py.File(file, "a") as inside:
             inside["rate_radps"].attrs["units"] = numpy.bytes_(b"rad/s")
         assert self.converted(file)["rate_radps"] == [1, 2, 3]

@@ -260,7 +260,8 @@ TEST_F(CandumpScreen, AFileOfAnyLengthGivesTheSameFramesOneByOne) {
       for (ifog::InputFile* each : {&file, &at_hand}) {
         std::vector<ifog_can_frame> frames;
         const ifog::CandumpLosses lost = ifog::for_each_candump_frame(
-            *each, interface, [&](const ifog_can_frame& frame) { frames.push_back(frame); });
+            *each, interface,
+            [&](const ifog_can_frame& frame, std::string_view) { frames.push_back(frame); });
         ASSERT_EQ(frames.size(), whole.frames.size());
         EXPECT_EQ(lost.cut_off, whole.cut_off);
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -277,7 +278,7 @@ TEST_F(CandumpScreen, OfAFaultyLineAndOneTooLongTheNumberIsSaid) {
     std::ofstream(path_) << text;
     try {
       ifog::InputFile file(path_);
-      ifog::for_each_candump_frame(file, {}, [](const ifog_can_frame&) {});
+      ifog::for_each_candump_frame(file, {}, [](const ifog_can_frame&, std::string_view) {});
     } catch (const std::runtime_error& error) {
       return std::string(error.what()).substr(path_.string().size());
     }

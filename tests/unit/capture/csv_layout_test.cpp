@@ -119,7 +119,7 @@ TEST(CsvLayout, AHeaderThatIsNearlyRightGetsTheOptionsToType) {
   EXPECT_EQ(
       told("Time [s],GyroX (deg/s),AccX (g),T"),
       "a.csv:1: first column is 'Time [s]', expected 'time_s'; to read it as it is: --time 'Time [s]:s' "
-      "--column 'rate_x_radps=GyroX (deg/s):deg/s'");
+      "--column 'rate_x_radps=GyroX (deg/s):deg/s' --column 'accx_mps2=AccX (g):g'");
   EXPECT_EQ(
       told("time_s,wx,wy,wz"),
       "a.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …; to read it as it is: --column "
@@ -131,6 +131,19 @@ TEST(CsvLayout, AHeaderThatIsNearlyRightGetsTheOptionsToType) {
       told("time_s,raw_x_radps,denoised_x_radps,raw_z_radps"),
       "a.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …; to read it as it is: --column "
       "rate_x_radps=raw_x_radps:radps --column rate_z_radps=raw_z_radps:radps");
+  // The channels stay, as far as their units are known; what is made of the rate is none.
+  EXPECT_EQ(told("time_ms,rate_dps,temperature_degF,mode"),
+            "a.csv:1: first column is 'time_ms', expected 'time_s'; to read it as it is: --time time_ms:ms "
+            "--column rate_radps=rate_dps:dps --column temperature_degC=temperature_degF:degF");
+  EXPECT_EQ(told("Time_s,Rate_radps,Temperature_degC,Supply_V"),
+            "a.csv:1: first column is 'Time_s', expected 'time_s'; to read it as it is: --time Time_s:s "
+            "--column rate_radps=Rate_radps:radps --column temperature_degC=Temperature_degC:degC --column "
+            "supply_V=Supply_V:V");
+  EXPECT_EQ(told("TIME_S,RATE_RADPS,reference_rate_dps,variance_rad2ps2"),
+            "a.csv:1: first column is 'TIME_S', expected 'time_s'; to read it as it is: --time TIME_S:s "
+            "--column rate_radps=RATE_RADPS:RADPS --column reference_rate_radps=reference_rate_dps:dps");
+  EXPECT_EQ(told("0.00,1e-5,25,-3"),
+            "a.csv:1: begins with numbers, '0.00', …, expected a header before them: 'time_s,rate_radps,…'");
   EXPECT_EQ(told("a,b,c,d"), "a.csv:1: first column is 'a', expected 'time_s'");
   EXPECT_EQ(told("time_s;rate_radps"),
             "a.csv:1: no comma in the header 'time_s;rate_radps'; expected commas, or --separator ';'");
@@ -143,6 +156,31 @@ TEST(CsvLayout, TheSuggestionReadsTheFile) {
             "--time 'Time [ms]:ms' --column 'rate_x_radps=GyroX (deg/s):deg/s'");
   EXPECT_DOUBLE_EQ(parse_capture("Time [ms],GyroX (deg/s)\n0,0\n5,1\n", "a.csv", by).rate_radps[0][1],
                    kDegree);
+}
+
+// Without a unit the cells were taken for what they were to become, against their own name.
+TEST(CsvLayout, AHeaderOfAnotherUnitIsNotTakenForTheTargets) {
+  const std::string text =
+      "time_s,rate_dps,temperature_degF,angle_deg,t_ms,supply_V\n0,1,77,0,0,12\n1,1,77,1,5,12\n";
+  const auto read = [&](const std::string& column, const std::string& time = "") {
+    return refusal([&] {
+      parse_capture(text, "a.csv", layout({column, "rate_y_radps=rate_dps:dps"}, time));
+    });
+  };
+  const auto said = [](const std::string& header, const std::string& unit, const std::string& option) {
+    return "a.csv:1: '" + header + "' is in '" + unit +
+           "' by its name, and no unit was told; to read it so: " + option;
+  };
+  EXPECT_EQ(refusal([&] { parse_capture(text, "a.csv", layout({"rate_radps=rate_dps"})); }),
+            said("rate_dps", "dps", "--column rate_radps=rate_dps:dps"));
+  EXPECT_EQ(read("temperature_degC=temperature_degF"),
+            said("temperature_degF", "degF", "--column temperature_degC=temperature_degF:degF"));
+  EXPECT_EQ(read("rate_x_radps=angle_deg"), said("angle_deg", "deg", "--column rate_x_radps=angle_deg:deg"));
+  EXPECT_EQ(read("supply_V=supply_V", "t_ms"), said("t_ms", "ms", "--time t_ms:ms"));
+  EXPECT_EQ(read("supply_mV=supply_V"), said("supply_V", "V", "--column supply_mV=supply_V:V"));
+  // Who says the unit is believed, and so is who names the header's own.
+  EXPECT_EQ(read("temperature_degC=temperature_degF:degC"), "accepted");
+  EXPECT_EQ(read("coil_degF=temperature_degF", "t_ms:ms"), "accepted");
 }
 
 TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {

@@ -156,6 +156,30 @@ TEST_F(Ifogd, WhatShowsOnlyInThePartsIsToldByItsKeysLine) {
     }
 }
 
+// Every sensor here has three axes.
+TEST_F(Ifogd, ACheckSaysThatAModelIsOfASensorWithOneAxis) {
+  write("model.toml",
+        "version = 1\n[[noise]]\naxis = \"q\"\nN = 1e-6\n[[effect]]\nform = \"linear\"\nchannel = "
+        "\"temperature_degC\"\n[[effect.parameter]]\nname = \"coefficient\"\nvalue = 1e-6\n");
+  configure("model = \"model.toml\"\n" + std::string(kFile));
+  EXPECT_EQ(ifogd("--check"), 0) << all_said();
+  EXPECT_EQ(lines_with("subtracted from each of x, y, z"), 1) << all_said();
+  EXPECT_EQ(lines_with("the noise of an axis 'q'"), 1) << all_said();
+}
+
+TEST_F(Ifogd, WhatCannotBeSaidHasFailed) {
+  configure(kFile);
+  const std::string daemon = IFOG_BINARY_DIR "/daemon/ifogd ";
+  for (const std::string& how :
+       {"--config " + path("ifogd.toml") + " --check", std::string("--help"), std::string("--version")}) {
+    const auto ended = [&](const char* to) {
+      return WEXITSTATUS(std::system((daemon + how + " >" + to + " 2>/dev/null").c_str()));
+    };
+    EXPECT_EQ(ended("/dev/null"), 0) << how;
+    EXPECT_EQ(ended("/dev/full"), 1) << how;
+  }
+}
+
 TEST_F(Ifogd, ACheckOpensNothing) {
   configure(std::string(kFile) +
             "[[sensor.channel]]\nname = \"hull_degC\"\nsource = \"lcm\"\nlcm_channel = \"HULL\"\n");

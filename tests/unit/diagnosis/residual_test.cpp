@@ -2,7 +2,9 @@
 // The room `residual`: what effects leave, as lines, as lines that move, and in words.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "filters/diagnosis/residual/lines.h"
@@ -15,6 +17,7 @@ namespace ifog {
 namespace {
 
 constexpr double kPeriod = 0.01;
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> white(std::size_t n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -140,6 +143,34 @@ Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>&
   NoiseFit noise;
   noise.white_variance = kPeriod;  // of a mean of one second of unit noise
   return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks);
+}
+
+// Holes of every length and place against the minutes in which the usual energy is taken.
+TEST(Unexplained, AHoleInWhiteNoiseMakesNoBursts) {
+  std::uint64_t seed = 100;
+  for (const std::size_t hole : {700U, 2990U, 4000U, 5003U, 5990U, 8000U})
+    for (const std::size_t from : {0U, 1511U, 5000U, 14000U, 19999U - 700U}) {
+      std::vector<double> holed = white(20000, ++seed);
+      for (std::size_t i = from; i < std::min(from + hole, holed.size()); ++i) holed[i] = kMissing;
+      EXPECT_NE(of(holed).kind, "bursts") << hole << " from " << from;
+      EXPECT_NE(of(holed).kind, "changing_variance") << hole << " from " << from;
+      // And a knock beside the hole stays one.
+      for (std::size_t i = 10500; i < 10530; ++i) holed[i] += i % 2 ? 15.0 : -15.0;
+      const bool measured = 10500 > from + hole || 10530 < from;
+      EXPECT_EQ(of(holed).kind == "bursts", measured) << hole << " from " << from;
+    }
+}
+
+// Of a piece with a hole few differences are left, and they scatter more than all would.
+TEST(Unexplained, WhatIsLeftOfAPieceBesideAHoleIsNoBurst) {
+  int bursts = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    std::vector<double> holed = white(4000, 500 + seed);
+    for (std::size_t i = 0; i < holed.size(); ++i)
+      if (i % 25 > 1 && (i / 25) % 2 == 1) holed[i] = kMissing;
+    bursts += of(holed).kind == "bursts";
+  }
+  EXPECT_LE(bursts, 5);  // 1 expected
 }
 
 TEST(Unexplained, SaysWhatTheRestLooksLike) {

@@ -13,6 +13,7 @@
 
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
+#include "filters/model_file/model_axes.h"
 #include "filters/model_file/sha256.h"
 
 namespace ifog {
@@ -43,7 +44,7 @@ Model full_model() {
   lookup.table_y = {0.0, 3e-9, 1e-9};
   lookup.period = 32768.0;
   lookup.angle = true;
-  lookup.parameters = {{"rms_angle", 1e-9, 1e-11, "rad"}};
+  lookup.parameters = {{"angle_rms", 1e-9, 1e-11, "rad"}};
   model.effects = {linear, lookup};
   model.covariance = {1.0, 0.5, 0.5, 2.0};
   model.ranges = {{"temperature_degC", -10.5, 41.0}};
@@ -181,6 +182,69 @@ TEST(ModelFile, ACovarianceMustBeOne) {
         complaint(with("covariance = [1, 0.5, 0.5, 2]", std::string("covariance = ") + values));
     EXPECT_NE(said.find(flaw), std::string::npos) << values << ": " << said;
   }
+}
+
+// What a form does not know would correct nothing, in silence.
+TEST(ModelFile, TheParametersAreThoseOfTheForm) {
+  const auto effect = [](const std::string& keys, std::initializer_list<const char*> parameters) {
+    std::string text = "version = 1\n[[effect]]\n" + keys + "channel = \"t_degC\"\n";
+    for (const char* parameter : parameters)
+      text += std::string("[[effect.parameter]]\nname = ") + parameter + "\n";
+    return complaint(text);
+  };
+  const std::string linear = "form = \"linear\"\n", lagged = "form = \"lagged\"\n";
+  const char* const coefficient = "\"coefficient\"\nvalue = 1";
+  EXPECT_EQ(
+      effect(linear, {"\"coeficient\"\nvalue = 1"}),
+      "m.toml:6: effect[1].parameter[1].name = 'coeficient': form linear has no such parameter, did you "
+      "mean 'coefficient'?; it has: coefficient");
+  EXPECT_EQ(effect(linear, {}),
+            "m.toml:2: effect[1].parameter: form linear needs [[effect.parameter]] name = \"coefficient\", a "
+            "number");
+  EXPECT_EQ(
+      effect(linear, {coefficient, coefficient}),
+      "m.toml:9: effect[1].parameter[2].name = 'coefficient': this is the effect's second of that name");
+  EXPECT_EQ(effect(linear, {coefficient, "\"lag_s\"\nvalue = 3"}),
+            "m.toml:9: effect[1].parameter[2].name = 'lag_s': form linear has no such parameter; it has: "
+            "coefficient");
+  EXPECT_EQ(
+      effect(lagged, {coefficient}),
+      "m.toml:2: effect[1].parameter: form lagged needs [[effect.parameter]] name = \"lag_s\", a number "
+      "above 0");
+  EXPECT_EQ(effect(lagged, {coefficient, "\"lag_s\"\nvalue = 0"}),
+            "m.toml:10: effect[1].parameter[2].value = 0: expected a number above 0");
+  EXPECT_EQ(effect(lagged, {coefficient, "\"lag_s\"\nvalue = 3"}), "accepted");
+  EXPECT_EQ(effect("form = \"lineer\"\n", {}),
+            "m.toml:3: effect[1].form = 'lineer': unknown form, did you mean 'linear'?");
+  // A product has its second form's as well, and the lag of no other.
+  const std::string product = "form = \"product\"\nwith_channel = \"u_V\"\nwith_form = ";
+  EXPECT_EQ(effect(product + "\"lagged\"\n", {coefficient, "\"lag_s\"\nvalue = 3"}), "accepted");
+  EXPECT_NE(effect(product + "\"linear\"\n", {coefficient, "\"lag_s\"\nvalue = 3"}), "accepted");
+  EXPECT_NE(effect(product + "\"lagged\"\n", {coefficient}), "accepted");
+  EXPECT_EQ(effect("form = \"outliers\"\n", {"\"of_any_name\"\nvalue = 1"}), "accepted");
+}
+
+TEST(ModelFile, NoiseIsOneTableAnAxis) {
+  EXPECT_EQ(complaint("version = 1\n[[noise]]\naxis = \"x\"\nN = 1\n[[noise]]\naxis = \"x\"\nN = 2\n"),
+            "m.toml:6: noise[2].axis = 'x': expected one table [[noise]] for each axis, this is its second");
+}
+
+TEST(ModelAxes, WhatIsOfNoAxisHereIsTold) {
+  Model model;
+  model.effects.resize(2);
+  model.effects[1].axis = "y";
+  model.noise["q"] = {};
+  const std::vector<std::string> one = {""}, three = {"x", "y", "z"};
+  EXPECT_EQ(
+      remarks_on_axes(model, three),
+      (std::vector<std::string>{"1 of its effects are of a sensor with one axis and are subtracted from "
+                                "each of x, y, z; expected effects with an axis",
+                                "has the noise of an axis 'q', of which there is none here, but x, y, z"}));
+  EXPECT_EQ(remarks_on_axes(model, one),
+            (std::vector<std::string>{"has the noise of an axis 'q', of which there is none here"}));
+  model.noise = {{"x", {}}};
+  model.effects[0].axis = "x";
+  EXPECT_TRUE(remarks_on_axes(model, three).empty());
 }
 
 TEST(ModelFile, CorrelationsThatContradictEachOtherAreNoCovariance) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "filters/effects/form.h"
+#include "filters/model_file/effect_parameters.h"
 #include "filters/model_file/model.h"
 #include "filters/settings/filter_table.h"
 
@@ -71,7 +72,24 @@ TEST(Forms, TheTableHasEachByItsName) {
     listed.insert((*found)[1]);
   for (int i = 0; !name_of(static_cast<Form>(i)).empty(); ++i) known.emplace(name_of(static_cast<Form>(i)));
   EXPECT_EQ(listed, known);
+  std::set<std::string> with_rules;
+  for (const FormRules& rules : form_rules()) with_rules.emplace(rules.form);
+  EXPECT_EQ(with_rules, known);
   EXPECT_TRUE(known.contains("quantisation"));
+}
+
+// The page says the parameters' names, the program takes no others.
+TEST(Forms, ThePageNamesTheParametersThatAFormNeeds) {
+  const std::string text = text_of("effects/forms.md");
+  for (const FormRules& rules : form_rules()) {
+    const std::size_t at = text.find("| `" + std::string(rules.form) + "` |");
+    ASSERT_NE(at, std::string::npos);
+    const std::string row = text.substr(at, text.find('\n', at) - at);
+    for (const ParameterRule& rule : rules.parameters) {
+      const bool named = row.find("`" + std::string(rule.name) + "`") != std::string::npos;
+      EXPECT_TRUE(named || !rule.needed || rule.name == "coefficient") << rules.form << rule.name;
+    }
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filters/model_file/model.h"
+#include "filters/model_file/model_axes.h"
 
 namespace ifog::tools {
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which parameters the effect of a form has in a model file. What a form does not know would be read and
+// correct nothing, in silence.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ifog {
+
+struct ParameterRule {
+  enum class Values { kAny, kNotNegative, kPositive, kNotZero };
+  std::string_view name;
+  bool needed = false;
+  Values values = Values::kAny;
+};
+
+struct FormRules {
+  std::string_view form;
+  std::vector<ParameterRule> parameters;
+  bool open = false;  // what it says of the noise is for people: parameters of any name
+};
+
+const std::vector<FormRules>& form_rules();
+// Null for a form that nobody knows.
+const FormRules* rules_of_form(std::string_view form);
+
+// Of an effect; a product has its second form's beside its coefficient.
+std::vector<ParameterRule> parameters_of(std::string_view form, std::string_view with_form);
+
+[[nodiscard]] bool allows(const ParameterRule& rule, double value);
+std::string expected(const ParameterRule& rule);  // of its value: "a number above 0"
+
+}  // namespace ifog

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/model_file/model_axes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+
+namespace {
+
+std::string listed(std::span<const std::string> axes) {
+  std::string list;
+  for (const std::string& axis : axes) list += (list.empty() ? "" : ", ") + axis;
+  return list;
+}
+
+}  // namespace
+
+std::string effects_of_no_axis(const Model& model, std::span<const std::string> axes) {
+  const auto nameless = std::count_if(model.effects.begin(), model.effects.end(),
+                                      [](const Effect& effect) { return effect.axis.empty(); });
+  if (nameless == 0 || axes.size() < 2) return "";
+  return std::to_string(nameless) +
+         " of its effects are of a sensor with one axis and are subtracted from each of " + listed(axes) +
+         "; expected effects with an axis";
+}
+
+std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std::string> axes) {
+  std::vector<std::string> remarks;
+  if (std::string remark = effects_of_no_axis(model, axes); !remark.empty())
+    remarks.push_back(std::move(remark));
+  const std::string here = listed(axes);
+  for (const auto& [axis, noise] : model.noise)
+    if (!axis.empty() && std::find(axes.begin(), axes.end(), axis) == axes.end())
+      remarks.push_back("has the noise of an axis " + in_quotes(axis) + ", of which there is none here" +
+                        (here.empty() ? "" : ", but " + here));
+  return remarks;
+}
+
+}  // namespace ifog
