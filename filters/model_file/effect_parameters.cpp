@@ -9,6 +9,8 @@ using Values = ParameterRule::Values;
 constexpr ParameterRule kCoefficient{"coefficient", true, Values::kAny};
 // 0: not smoothed.
 constexpr ParameterRule kBandwidth{"bandwidth_s", true, Values::kNotNegative};
+// How far a power is followed beyond its range before its tangent goes on (filters/effects/curve_reach.h).
+constexpr ParameterRule kCurve{"curve_reach", false, Values::kNotNegative};
 constexpr ParameterRule kRmsOfTable{"angle_rms", false, Values::kNotNegative};
 
 }  // namespace
@@ -16,10 +18,10 @@ constexpr ParameterRule kRmsOfTable{"angle_rms", false, Values::kNotNegative};
 const std::vector<FormRules>& form_rules() {
   static const std::vector<FormRules> rules = {
       {"linear", {kCoefficient}},
-      {"quadratic", {kCoefficient}},
-      {"cubic", {kCoefficient}},
-      {"quintic", {kCoefficient}},
-      {"septic", {kCoefficient}},
+      {"quadratic", {kCoefficient, kCurve}},
+      {"cubic", {kCoefficient, kCurve}},
+      {"quintic", {kCoefficient, kCurve}},
+      {"septic", {kCoefficient, kCurve}},
       {"rate", {kCoefficient, kBandwidth}},
       {"second_rate", {kCoefficient, kBandwidth}},
       {"lagged",
