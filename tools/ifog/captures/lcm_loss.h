@@ -38,21 +38,22 @@ class LcmLoss {
   struct Place {
     std::int64_t seq, utime, sensor_time_ns;
   };
-  static constexpr double kLongestStep_s = 100.0;
+  static constexpr double kShortestStep_s = 1e-5, kLongestStep_s = 100.0;
   // Steps are a mean and times of samples are fitted ones.
   static constexpr double kTimes = 2.0, kSlack_s = 1.0;
 
   // Samples that fit in between at the sensor's rate, by the clock that tells of more; both go back where one
   // of them is set.
   [[nodiscard]] double most_since_last(const rate_t& message) const {
-    if (!last_ || steps_ == 0) return 0.0;
+    if (!last_) return 0.0;
     const auto since = [](std::int64_t now, std::int64_t before) {
       return static_cast<double>(now) - static_cast<double>(before);
     };
     double elapsed_s = since(message.utime, last_->utime) * 1e-6;
     if (message.sensor_time_ns >= 0 && last_->sensor_time_ns >= 0)
       elapsed_s = std::max(elapsed_s, since(message.sensor_time_ns, last_->sensor_time_ns) * 1e-9);
-    return kTimes * (std::max(elapsed_s, 0.0) + kSlack_s) * static_cast<double>(steps_) / steps_s_;
+    const double step_s = steps_ > 0 ? steps_s_ / static_cast<double>(steps_) : kShortestStep_s;
+    return kTimes * (std::max(elapsed_s, 0.0) + kSlack_s) / step_s;
   }
 
   std::optional<Place> last_;
