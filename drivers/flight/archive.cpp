@@ -269,7 +269,9 @@ void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) 
 
 std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
-  if (open_) error_ = end_file(now_ns, wall_ns);
+  // Of a full disk the end, which is small, may still be taken: the error is that of what was not.
+  if (open_)
+    if (const int ended = end_file(now_ns, wall_ns); entries_waiting_ == 0) error_ = ended;
   waiting_.clear();
   not_taken_ += std::exchange(waiting_load_, {});
   return std::exchange(entries_waiting_, 0);

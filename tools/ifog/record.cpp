@@ -132,11 +132,18 @@ void LcmRecorder::run() {
   }
   if (lost_here_ > 0) add_lost(lost_here_, lost_here_bytes_);
   const std::uint64_t unwritten = archive_.close(arrival_clock_ns(), realtime_ns());
-  std::int64_t on_the_way = 0;
-  for (const auto& [channel, way] : ways_) on_the_way += way.lost();
+  std::int64_t on_the_way = 0, anew = 0;
+  for (const auto& [channel, way] : ways_) {
+    on_the_way += way.lost();
+    anew += way.began_anew();
+  }
   say("%s: %llu messages, %llu bytes written, %llu lost here, %lld lost on LCM\n", options_.folder.c_str(),
       static_cast<unsigned long long>(messages_), static_cast<unsigned long long>(archive_.bytes_written()),
       static_cast<unsigned long long>(lost_total_) + unwritten, static_cast<long long>(on_the_way));
+  if (anew > 0)
+    warn(
+        "%s: %lld times a message's seq was beyond what its sensor can have counted: taken for a new count\n",
+        options_.folder.c_str(), static_cast<long long>(anew));
   if (messages_ == 0) throw Failed("nothing heard");
   if (archive_.error() != 0) throw std::runtime_error(options_.folder + ": " + archive_.complaint());
 }

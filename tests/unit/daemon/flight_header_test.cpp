@@ -32,7 +32,9 @@ TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
   sensor.transport.kind = TransportConfig::Kind::file;
   sensor.transport.candump = true;
   sensor.transport.path = log.string();
-  const auto interface = [&] { return flight_header(sensor, Config{}, driver, "").interface; };
+  Config config;
+  config.file = "ifogd.toml";
+  const auto interface = [&] { return flight_header(sensor, config, driver, "").interface; };
   EXPECT_EQ(interface(), "vcan3");
   sensor.transport.interface = "can1";
   EXPECT_EQ(interface(), "can1");

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is lost on LCM by the messages' numbers, and which numbers are believed.
+#include "tools/ifog/captures/lcm_loss.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+
+// Sample n of a sensor of 100 Hz.
+rate_t sample(std::int64_t n) {
+  rate_t out{};
+  out.seq = n;
+  out.utime = 1'700'000'000'000'000 + n * 10'000;
+  out.sensor_time_ns = -1;
+  out.dt = 0.01;
+  return out;
+}
+
+TEST(LcmLoss, WhatIsPassedOverWithoutAWordIsLost) {
+  LcmLoss way;
+  EXPECT_EQ(way.take(sample(10)), 0);
+  EXPECT_EQ(way.take(sample(11)), 0);
+  EXPECT_EQ(way.take(sample(15)), 3);
+  rate_t told = sample(400);
+  told.flags = rate_t::FLAG_GAP;
+  EXPECT_EQ(way.take(told), 0);
+  // A day without the network.
+  EXPECT_EQ(way.take(sample(400 + 8'640'000)), 8'639'999);
+  EXPECT_EQ(way.take(sample(5)), 0);  // the daemon has begun again
+  EXPECT_EQ(way.lost(), 3 + 8'639'999);
+  EXPECT_EQ(way.began_anew(), 0);
+}
+
+// One message of somebody else's among those of a sensor, with any number.
+TEST(LcmLoss, ANumberThatNoSampleCanHaveIsNoLoss) {
+  for (const std::int64_t forged :
+       {kMost, kMost / 2, -kMost - 1, std::int64_t{-7}, std::int64_t{1'000'000}}) {
+    LcmLoss way;
+    for (std::int64_t n = 0; n < 400; ++n) {
+      rate_t message = sample(n);
+      if (n == 200) message.seq = forged;
+      EXPECT_EQ(way.take(message), 0) << forged << " at " << n;
+    }
+    EXPECT_EQ(way.lost(), 0);
+    EXPECT_EQ(way.began_anew(), forged > 0 ? 1 : 0);
+  }
+}
+
+// The wall clock, which labels utime, is set back while messages are lost: the sensor's own tells.
+TEST(LcmLoss, AClockThatIsSetHidesNoLoss) {
+  LcmLoss way;
+  for (const std::int64_t n : {0, 1, 2, 5002}) {
+    rate_t message = sample(n);
+    message.sensor_time_ns = n * 10'000'000;
+    if (n > 2) message.utime -= 3'600'000'000;
+    way.take(message);
+  }
+  EXPECT_EQ(way.lost(), 4999);
+}
+
+TEST(LcmLoss, StepsThatCannotBeDoNotCount) {
+  LcmLoss way;
+  way.take(sample(0));
+  way.take(sample(1));
+  for (const double step : {1e300, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    rate_t message = sample(2);
+    message.dt = step;
+    way.take(message);
+  }
+  EXPECT_EQ(way.take(sample(102)), 99);
+}
+
+}  // namespace
+}  // namespace ifog::tools
