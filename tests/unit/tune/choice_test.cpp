@@ -190,7 +190,7 @@ TEST(TuneChoice, WhatIsForetoldOfWhiteNoiseIsItsVarianceOverTheSamples) {
 TEST(TuneChoice, WhereNothingWasMeasuredNothingIsJudged) {
   auto record = walk_under_white_noise(5, 20000, 0.0);
   ifog::FilterSettings settings;
-  settings.process_noise = 0.1 * kSigma * kSigma / kPeriod;
+  settings.process_noise = 10.0 * kSigma * kSigma / kPeriod;
   settings.measurement_noise = kSigma * kSigma;
   const std::span<const double> axes[] = {record.rate};
   const ifog::Outcome whole = ifog::outcome_of(settings, axes, kPeriod, 10000);
