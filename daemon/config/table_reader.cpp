@@ -77,7 +77,7 @@ std::optional<std::string> TableReader::text(std::string_view key) {
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;
   if (const auto* value = node->as_string(); value != nullptr && !value->get().empty()) return value->get();
-  wrong(key, *node, "a text in quotes");
+  wrong(key, *node, node->is_string() ? "a text that is not empty" : "a text in quotes");
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <span>
 
 namespace ifog {
 namespace {
@@ -20,6 +21,22 @@ void fill_in_means(TypeEffect& effect) {
   effect.effect.parameters.front().std_error = effect.prior.mean_std_error;
 }
 
+// Members that have the effect by this prior, and stand out of those that do: one such would be the spread
+// of all.
+std::vector<bool> standing_apart(std::span<const Estimate> estimates, const TypePrior& prior) {
+  std::vector<double> having;
+  for (const Estimate& each : estimates)
+    if (probability(prior, each) > 0.5) having.push_back(each.value);
+  std::vector<bool> apart(estimates.size(), false);
+  if (having.size() < kFewestOfType) return apart;
+  const RobustSpread spread = robust_spread(having);
+  for (std::size_t i = 0; i < estimates.size(); ++i)
+    apart[i] = probability(prior, estimates[i]) > 0.5 &&
+               std::abs(estimates[i].value - spread.median) >
+                   kStandsOut * std::hypot(spread.sigma, estimates[i].std_error);
+  return apart;
+}
+
 }  // namespace
 
 void judge(TypeEffect& effect, double level) {
@@ -33,12 +50,19 @@ void judge(TypeEffect& effect, double level) {
     measured.push_back(&each);
   }
   if (estimates.size() < 2) return;
-  effect.prior = fit_two_groups(estimates);
+  const TypePrior with_all = fit_two_groups(estimates);
+  const std::vector<bool> apart = standing_apart(estimates, with_all);
+  std::vector<Estimate> typical;
+  for (std::size_t i = 0; i < estimates.size(); ++i)
+    if (!apart[i]) typical.push_back(estimates[i]);
+  effect.set_aside = estimates.size() - typical.size();
+  effect.prior = effect.set_aside > 0 ? fit_two_groups(typical) : with_all;
   effect.all = random_effects(estimates);
   fill_in_means(effect);
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
+  for (std::size_t i = 0, of_typical = 0; i < estimates.size(); ++i) {
     EffectInGyro& each = *measured[i];
-    each.others = without_member(estimates, i, effect.prior);
+    // Who stands out is of the type by so wide a spread only: the others' would pull it to their mean.
+    each.others = apart[i] ? with_all : without_member(typical, of_typical++, effect.prior);
     each.probability = probability(each.others, estimates[i]);
     each.chance = chance_without(each.others, estimates[i]);
     each.found = kCare * each.chance <= level && each.probability > 0.5;

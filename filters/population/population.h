@@ -36,8 +36,9 @@ struct TypeEffect {
   Effect effect;                // its coefficient the mean of those that have it, with the error of that
   std::size_t found_alone = 0;  // gyros
   std::size_t found = 0;        // gyros
-  TypePrior prior;
-  RandomEffects all;  // of all gyros, with the effect or without
+  TypePrior prior;              // of those that do not stand out
+  std::size_t set_aside = 0;    // gyros that have the effect and stand out of those that have it
+  RandomEffects all;            // of all gyros, with the effect or without
   std::vector<EffectInGyro> gyros;
 };
 

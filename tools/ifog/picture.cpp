@@ -50,8 +50,9 @@ void run(const Arguments& a) {
     if (column.name.starts_with("raw")) ++axes;
     if (!raw && !denoised) continue;
     ++curves;
-    rate.line(raw ? report::Role::kRaw : report::Role::kAfter, raw ? "raw" : "denoised",
-              from_first(table.time_s, 1.0 / unit.seconds), from_first(column.values, 1.0 / kDegreePerHour));
+    rate.line_in_time(raw ? report::Role::kRaw : report::Role::kAfter, raw ? "raw" : "denoised",
+                      from_first(table.time_s, 1.0 / unit.seconds),
+                      from_first(column.values, 1.0 / kDegreePerHour));
   }
   if (curves != 2)
     throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +

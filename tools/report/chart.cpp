@@ -123,6 +123,12 @@ void Chart::line(Role role, const std::string& label, std::vector<double> x, std
   series_.push_back({Kind::line, role, label, std::move(x), std::move(y), {}, {}});
 }
 
+void Chart::line_in_time(Role role, const std::string& label, std::vector<double> time,
+                         std::vector<double> y) {
+  open_at_holes(time, y);
+  line(role, label, std::move(time), std::move(y));
+}
+
 void Chart::points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y) {
   series_.push_back({Kind::points, role, label, std::move(x), std::move(y), {}, {}});
 }

@@ -24,6 +24,8 @@ class Chart {
 
   // x ascending. Where there are more points than pixels the stroke covers the extremes of each pixel column.
   void line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
+  // Of samples in time: open where there is a hole, and nothing was measured.
+  void line_in_time(Role role, const std::string& label, std::vector<double> time, std::vector<double> y);
   void points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high);
   // A thin dashed curve that is no data and does not widen the axes, with a word of its colour at a place of

@@ -110,7 +110,9 @@ std::string effect_section(const TypeEffect& effect) {
   const auto spread = [&](double v) { return number(v * unit.scale, 3) + " " + escaped(unit.unit); };
   std::string rows =
       row("mean of those that have it", {value(effect.prior.mean, effect.prior.mean_std_error)}) +
-      row("spread from gyro to gyro", {spread(effect.prior.spread)}) +
+      row("likeliest spread from gyro to gyro", {spread(effect.prior.likeliest_spread)}) +
+      row("spread that is reckoned with, by so few gyros", {spread(effect.prior.spread)}) +
+      row("left out of these, for they stand out", {count(effect.set_aside, effect.gyros.size())}) +
       row("share of the type that has it", {number(100.0 * effect.prior.share, 3) + " %"}) +
       row("found by a gyro's own diagnosis", {count(effect.found_alone, effect.gyros.size())}) +
       row("found with the type's prior", {count(effect.found, effect.gyros.size())}) +
@@ -237,13 +239,23 @@ std::string account(const Population& p) {
   return "<div class=\"account\">" + out + "</div>\n";
 }
 
+// The likeliest; what is reckoned with is more where few gyros cannot exclude it.
+std::string spread_in_words(const TypeEffect& effect, double scale) {
+  const double likeliest = effect.prior.likeliest_spread, most = effect.prior.spread;
+  return ", from gyro to gyro ± " + number(likeliest * scale, 2) +
+         (likeliest < most ? " (by so few gyros ± " + number(most * scale, 2) + " is reckoned with)" : "") +
+         (effect.set_aside > 0
+              ? ", without " + count(effect.set_aside, effect.gyros.size()) + " that stand out"
+              : "");
+}
+
 }  // namespace
 
 std::string in_words(const TypeEffect& effect) {
   const FieldUnit unit = field_unit(effect.effect.parameters.front().unit);
   return "the type has an effect " + effect_words(effect.effect) + on_axis(effect.effect.axis) + ": " +
          with_error(effect.prior.mean * unit.scale, effect.prior.mean_std_error * unit.scale) + " " +
-         unit.unit + ", from gyro to gyro ± " + number(effect.prior.spread * unit.scale, 2) + "; found in " +
+         unit.unit + spread_in_words(effect, unit.scale) + "; found in " +
          std::to_string(effect.found_alone) + " gyros by themselves, in " +
          count(effect.found, effect.gyros.size()) + " with what the type says";
 }

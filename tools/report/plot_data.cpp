@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace ifog::report {
@@ -36,6 +38,27 @@ Thinned thinned(std::span<const double> x, std::span<const double> y) {
     }
   }
   return out;
+}
+
+void open_at_holes(std::vector<double>& time, std::vector<double>& y) {
+  constexpr double kHole = 10.0;
+  if (time.size() < 3) return;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double most = kHole * *middle;
+  std::vector<double> open_time, open_y;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (i > 0 && time[i] - time[i - 1] > most) {
+      open_time.push_back(0.5 * (time[i] + time[i - 1]));
+      open_y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    open_time.push_back(time[i]);
+    open_y.push_back(y[i]);
+  }
+  time = std::move(open_time);
+  y = std::move(open_y);
 }
 
 std::string packed(std::span<const double> values) {

@@ -184,6 +184,24 @@ class Checks:
         ifog("allan", self.capture, denoised, "--plot", picture)
         assert picture.read_text().rstrip().endswith("</svg>")
 
+    def check_allan_leaves_out_the_start_of_a_filter(self):
+        """Loud as the sensor for 4 s, and then a hundredth of it: the figures are those of the filter that runs."""
+        random.seed(11)
+        path = self.folder / "started.csv"
+        rows = []
+        for i in range(20000):
+            z = random.gauss(0.0, 1e-5)
+            out = z if i < 400 else random.gauss(0.0, 1e-7)
+            rows.append(f"{i / 100},{z!r},{z!r},{out!r}\n")
+        path.write_text("time_s,raw_radps,compensated_radps,denoised_radps\n" + "".join(rows))
+        done = subprocess.run([IFOG, "allan", path, "--tau", "0.01", "--json", self.folder / "started.json"], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        said = done.stdout + done.stderr
+        assert "denoised_radps: until 4 s the filter had not started" in said and "leap" not in said, said
+        found = {axis["signal"]: axis for axis in json.loads((self.folder / "started.json").read_text())["axes"]}
+        near(found["denoised"]["adev_radps"][0], 1e-7, 3e-9, "deviation of the filter that runs")
+        near(found["compensated"]["adev_radps"][0], 1e-5, 3e-7, "deviation of what it is given")
+
     def sequence_of_a_part(self):
         """Cut out and told where it was, a part draws the whole's weights, and has its bits once its beginning is forgotten."""
         random.seed(5)

@@ -145,6 +145,7 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
       {"speed = \"fast\"\n", "f.toml:8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
       {"speed = -1\n", "f.toml:8: sensor.transport.speed = -1: expected a number 0.001 ... 1e+06"},
       {"pace = \"slow\"\n", "f.toml:8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
+      {"interface = \"\"\n", "f.toml:8: sensor.transport.interface = '': expected a text that is not empty"},
       {"await_writer = 1\n", "f.toml:8: sensor.transport.await_writer = 1: expected true or false"},
       {"[sensor.filter]\nwindow = 1\n",
        "f.toml:9: sensor.filter.window = 1: expected a whole number 2 ... 100000"},

@@ -203,6 +203,39 @@ TEST(JudgedEffect, FoundInThoseThatHaveItAndNotInTheOthers) {
   EXPECT_LE(static_cast<double>(false_alarms), 0.01 * static_cast<double>(1600 - of_them));
 }
 
+// Seven alike and one of seven times as much: it is named as standing out, and is not the type's spread.
+TEST(JudgedEffect, OneFarOutIsNotTheSpreadOfTheType) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  TypeEffect effect;
+  effect.effect.parameters = {{"coefficient", 0.0, 0.0, "rad/s"}};
+  for (std::size_t i = 0; i < 8; ++i) {
+    EffectInGyro each;
+    each.gyro = i;
+    each.own = Estimate{(i == 4 ? 41.0 : 6.0) + 0.4 * normal(random), 0.4};
+    effect.gyros.push_back(each);
+  }
+  judge(effect, 0.01);
+  EXPECT_EQ(effect.set_aside, 1U);
+  EXPECT_NEAR(effect.prior.mean, 6.0, 0.5);
+  EXPECT_LT(effect.prior.spread, 1.0);
+  EXPECT_EQ(effect.found, 8U);
+  // And it is not pulled to what the others have: by less than its own error.
+  EXPECT_NEAR(shrunk(effect.gyros[4].others, *effect.gyros[4].own).value, effect.gyros[4].own->value, 0.4);
+  // A few that have it among many that have not are no such members.
+  TypeEffect few = effect;
+  few.gyros.clear();
+  for (std::size_t i = 0; i < 12; ++i) {
+    EffectInGyro each;
+    each.gyro = i;
+    each.own = Estimate{(i < 3 ? 6.0 : 0.0) + 0.4 * normal(random), 0.4};
+    few.gyros.push_back(each);
+  }
+  judge(few, 0.01);
+  EXPECT_EQ(few.set_aside, 0U);
+  EXPECT_EQ(few.found, 3U);
+}
+
 TEST(JudgedEffect, NobodyHasWhatIsNoise) {
   std::mt19937 random(2);
   std::size_t of_type = 0;

@@ -83,6 +83,29 @@ TEST(ReportChart, GapsAndImpossibleValuesAreLeftOut) {
 }
 
 // A band is drawn from its lower to its upper edge and widens the axis; a guide does not.
+// Nothing is drawn across a hole in the rows; a sample or two that are missing are none.
+TEST(ReportChart, ALineInTimeIsOpenWhereThereIsAHole) {
+  std::vector<double> time, y;
+  for (int i = 0; i < 200; ++i) {
+    if (i == 20 || (i >= 60 && i < 140)) continue;
+    time.push_back(0.01 * i);
+    y.push_back(i % 3);
+  }
+  const auto strokes = [&](bool in_time) {
+    Chart chart("t", "d", {"x", false, {}, {}}, {"y", false, {}, {}});
+    if (in_time)
+      chart.line_in_time(Role::kAfter, "", time, y);
+    else
+      chart.line(Role::kAfter, "", time, y);
+    const std::string svg = chart.svg();
+    const std::size_t at = svg.find("class=\"line after");
+    const std::string path = svg.substr(at, svg.find("/>", at) - at);
+    return std::count(path.begin(), path.end(), 'M');
+  };
+  EXPECT_EQ(strokes(true), 2);
+  EXPECT_EQ(strokes(false), 1);
+}
+
 TEST(ReportChart, BandsWidenTheAxesAndGuidesDoNot) {
   Chart chart("t", "d", {"x", false, 0.0, 10.0}, {"y", false, {}, {}});
   chart.line(Role::kAfter, "", {0.0, 10.0}, {1.0, 1.0});

@@ -14,6 +14,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/rest/glitches.h"
 #include "filters/rest/rest.h"
+#include "tools/ifog/allan/filter_start.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
@@ -210,8 +211,10 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
                            " stretches; averages never reach across a hole, the longest stretch is " +
                            number(static_cast<double>(record.longest) * period) + " s");
 
-  if (const std::string leaps =
-          in_words(find_glitches(rate, parts), [&](std::size_t i) { return time_s.at(i); });
+  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
+  if (const std::string leaps = signal == "denoised" ? ""
+                                                     : in_words(find_glitches(rate, parts),
+                                                                [&](std::size_t i) { return time_s.at(i); });
       !leaps.empty())
     record.notes.push_back(name + ": " + column + ": " + leaps);
 
@@ -260,6 +263,20 @@ LongSeries less_reference(const std::string& name, const LongTable& table, const
   return error;
 }
 
+// Rows of the table, from its first on, in which a denoised rate is the compensated one; 0 for other signals
+// and where it never is another.
+std::size_t start_of_filter(const LongTable& table, const LongColumn& column, const std::string& signal,
+                            const std::string& axis) {
+  if (signal != "denoised") return 0;
+  const std::string wanted = "compensated" + (axis.empty() ? "" : "_" + axis) + "_radps";
+  for (const LongColumn& other : table.columns) {
+    if (other.name != wanted) continue;
+    const std::size_t same = rows_before_the_filter(column.values, other.values);
+    return same < table.size() ? same : 0;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::string AllanRecord::label() const {
@@ -305,8 +322,18 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
       rate = error;
       signal = "error";
     }
+    // A part that ends before the filter has started has nothing else to show.
+    const std::size_t started = start_of_filter(table, column, signal, axis);
+    const bool later = started > rows.begin && started < rows.end;
+    const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
+    Rest analysed = rest;
+    analysed.at_rest = common(rest.at_rest, running);
     records.push_back(
-        analyse(name, signal, axis, time_s, rate.part(rows.begin, rows.end), clock, gaps, rest, options));
+        analyse(name, signal, axis, time_s, rate.part(rows.begin, rows.end), clock, gaps, analysed, options));
+    if (later)
+      records.back().notes.push_back(
+          name + ": " + column.name + ": until " + number(time_s.at(started - rows.begin)) +
+          " s the filter had not started and this is the compensated rate: left out");
     if (const std::string motion = in_words(rest, clock.period_s, time_s.at(0)); !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }

@@ -103,7 +103,7 @@ class AxisRows {
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool last = r + 1 == rules_.size();
       Chart rate(prefix_ + rules_[r], "Denoised rate over time.", time_axis(last), rate_);
-      rate.line(Role::kAfter, "", outputs_[r].x, outputs_[r].y);
+      rate.line_in_time(Role::kAfter, "", outputs_[r].x, outputs_[r].y);
       rows.push_back({last ? kRow + kNumbers : kRow,
                       {{std::move(rate), 2.0}, {allan_chart(rules_[r], &allan_[r], last), 1.0}}});
     }
@@ -116,7 +116,7 @@ class AxisRows {
   [[nodiscard]] Chart raw_chart() const {
     Chart chart(prefix_ + "raw, in a range of its own", "Raw rate over time.", time_axis(false),
                 {"°/h", false, {}, {}});
-    chart.line(Role::kRaw, "", raw_.x, raw_.y);
+    chart.line_in_time(Role::kRaw, "", raw_.x, raw_.y);
     return chart;
   }
   // The raw rate's curve under each: how far the noise falls, and where it comes back.

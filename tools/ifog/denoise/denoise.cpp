@@ -100,8 +100,9 @@ void draw(const std::string& path, const DenoisedColumns& columns, const Offline
     report::Chart chart(
         title, "The rate before and after the filter, over time.",
         {last ? std::string("time (") + unit.name + ")" : "", false, time.front(), time.back(), last}, rate);
-    chart.line(report::Role::kRaw, noisy, time, report::scaled(values, 1.0 / kDegreePerHour));
-    chart.line(report::Role::kAfter, "denoised", time, report::scaled(axis.denoised, 1.0 / kDegreePerHour));
+    chart.line_in_time(report::Role::kRaw, noisy, time, report::scaled(values, 1.0 / kDegreePerHour));
+    chart.line_in_time(report::Role::kAfter, "denoised", time,
+                       report::scaled(axis.denoised, 1.0 / kDegreePerHour));
     rows.push_back({last ? 320.0 : 270.0, {{std::move(chart)}}});
   };
   const bool corrected = !result.model.empty();

@@ -44,7 +44,9 @@ Json type_effect_json(const Population& population, const TypeEffect& effect) {
                    {"mean", number(effect.prior.mean)},
                    {"mean_std_error", number(effect.prior.mean_std_error)},
                    {"spread", number(effect.prior.spread)},
+                   {"likeliest_spread", number(effect.prior.likeliest_spread)},
                    {"likelihood_ratio", number(effect.prior.likelihood_ratio)}};
+  json["set_aside"] = effect.set_aside;
   json["all"] = spread_json(effect.all);
   json["gyros"] = Json::array();
   for (const EffectInGyro& each : effect.gyros) json["gyros"].push_back(gyro_json(population, each));
