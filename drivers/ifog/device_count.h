@@ -4,10 +4,10 @@
 //
 // The counter goes round. How often it did, the device's clock says; else the times of arrival, where whole
 // rounds fit the time to what those times and the rate are worth: behind a gap that shows, and behind a
-// silence of more than kLongSilence_s. What else comes late and continues the count is only late, until it
-// has not drained for kStands_s: then whole rounds that fit were lost, and are told with the frame that shows
-// it. The other way round a delay that is a whole number of rounds and stays, or lasts beyond kLongSilence_s,
-// is taken for a loss.
+// silence of more than kLongSilence_s. What else comes late and continues the count is only late; where it
+// has not drained for kStands_s, the labels follow it. So exactly whole rounds that are lost within that time
+// cannot be told from a late delivery or a pause and are taken for one, and the other way round a delay
+// beyond it that is a whole number of rounds for a loss.
 #pragma once
 
 #include <algorithm>
@@ -217,11 +217,9 @@ class DeviceCount {
       if (rounds > 0.0) step.late_s = 0.0;
     }
     if (stands(frame, step.late_s)) {
-      // What does not drain was no delivery. That a line takes longer from now on by just a round is the less
-      // likely.
-      const double rounds = rounds_in(step.late_s, elapsed_s);
-      step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
-      step.clock_moved = rounds < 1.0 && step.late_s > kLate_s;
+      // What does not drain was no delivery: a pause, or rounds that were lost. Which of them nothing says,
+      // but the labels follow.
+      step.clock_moved = step.late_s > kLate_s || rounds_in(step.late_s, elapsed_s) >= 1.0;
       step.late_s = 0.0;
     } else if (late_s_ > 0.0 ? over(frame, step.late_s)
                              : step.late_s < std::max(kLate_s, 3.0 * period) &&
