@@ -172,11 +172,15 @@ TEST_F(Replay, AnInterruptEndsItWithTheReport) {
           "--loop", "0", "--json", path("report.json").c_str(), nullptr);
     _exit(127);
   }
-  // Until it is whole the file has no name: it is seen among what the process has open.
-  const auto written = [child] {
+  // Until it is whole the file has no name: it is seen among what the process has open, in the folder that it
+  // will be in. Elsewhere there are others, as the copy of a plugin.
+  const std::string folder = fs::path(path("again.log")).parent_path().string();
+  const auto written = [&] {
     std::uintmax_t most = 0;
     for (const auto& open : fs::directory_iterator("/proc/" + std::to_string(child) + "/fd")) {
       struct stat file {};
+      std::error_code gone;
+      if (!fs::read_symlink(open.path(), gone).string().starts_with(folder)) continue;
       if (stat(open.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 0)
         most = std::max(most, static_cast<std::uintmax_t>(file.st_size));
     }
