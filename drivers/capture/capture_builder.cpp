@@ -167,7 +167,8 @@ void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double
         const double wrap = description_.angle_wrap_rad;
         const std::vector<double>& before = capture_.rate_radps[i];
         const double rate_before = before.empty() || std::isnan(before.back()) ? 0.0 : before.back();
-        if (elapsed <= kGap * period || turn_is_known(rate_before, elapsed, wrap))
+        const double usual = description_.nominal_rate_hz > 0.0 ? period_of(description_) : period;
+        if (elapsed <= kGap * usual || turn_is_known(rate_before, elapsed, wrap))
           rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
       }
     }

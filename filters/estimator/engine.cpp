@@ -101,6 +101,7 @@ void Engine::restart() noexcept {
   knowledge_ = Knowledge::nothing;
   motion_ = Motion::at_rest;
   untested_ = {};
+  unmeasured_ = {};
   since_moved_ = at_rest_for_ = 0.0;
   lag_turn_ = kNoTurn;
 }

@@ -125,8 +125,11 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   const Series t = since_start(s.time_s, unit);
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
-  Series with(effect);
-  for (std::size_t k = 0; k < with.size(); ++k) with[k] += after[k];
+  Series with(effect), drawn(effect);
+  for (std::size_t k = 0; k < with.size(); ++k) {
+    with[k] += after[k];
+    if (std::isnan(with[k])) drawn[k] = with[k];  // over a hole the channel is a guess
+  }
   std::size_t turns = 0;  // an effect faster than a pixel is only a bar of ink
   for (std::size_t k = 2; k < part.size(); ++k)
     if ((effect[k] - effect[k - 1]) * (effect[k - 1] - effect[k - 2]) < 0.0) ++turns;
@@ -134,7 +137,7 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   Chart chart("The effect over time", "The error without the other effects, and this effect's part of it.",
               {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
   chart.line(Role::kBefore, "measured", t, scaled(with, 1.0 / kDegreePerHour));
-  chart.line(Role::kFit, "fitted", t, scaled(effect, 1.0 / kDegreePerHour));
+  chart.line(Role::kFit, "fitted", t, scaled(drawn, 1.0 / kDegreePerHour));
   return figure_html(chart.svg(480, 320), "The same over time, " + block_words(s) + ".");
 }
 

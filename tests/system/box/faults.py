@@ -51,7 +51,9 @@ class Faults:
     def same_process(self, pid):
         now = self.machine.run("systemctl show -P MainPID ifogd").strip()
         if now != pid:
-            raise Failure(f"process {pid} has become {now}: {self.machine.run('journalctl -u ifogd -n 20 -o cat --no-pager')}")
+            # Why, in one line and in systemd's own words; then what the daemon said last.
+            why = self.machine.run("journalctl -u ifogd _PID=1 -n 8 -o cat --no-pager").strip().replace("\n", "; ")
+            raise Failure(f"process {pid} has become {now}: {why}\n{self.machine.run('journalctl -u ifogd -n 20 -o cat --no-pager')}")
 
     def all_come(self, name, count, hertz=100):
         """Sends some samples to one sensor: each must be published."""

@@ -95,26 +95,26 @@ TEST(SampleClock, OfCoarseStampsALostSampleIsFoundWhereverItIs) {
   }
 }
 
-// A device that begins anew behind a silence has another phase.
-TEST(SampleClock, BehindASilenceThePhaseIsAnother) {
-  std::mt19937_64 engine(5);
+// Runs of samples at 100 Hz whose stamps are off by up to 3 ms, each begun so long after the one before.
+SampleClock clock_of_runs(unsigned seed, int runs, int samples, double apart_s) {
+  std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> off(-3e-3, 3e-3);
   std::vector<double> time;
-  for (int part = 0; part < 10; ++part)
-    for (int n = 0; n < 2000; ++n) time.push_back(part * 31.4037 + n * 0.01 + off(engine));
-  const SampleClock clock = sample_clock(time);
+  for (int run = 0; run < runs; ++run)
+    for (int n = 0; n < samples; ++n) time.push_back(run * apart_s + n * 0.01 + off(engine));
+  return sample_clock(time);
+}
+
+// A device that begins anew behind a silence has another phase.
+TEST(SampleClock, BehindASilenceThePhaseIsAnother) {
+  const SampleClock clock = clock_of_runs(5, 10, 2000, 31.4037);
   EXPECT_EQ(clock.gaps, 9U);
   EXPECT_NEAR(clock.period_s, 0.01, 1e-6);
 }
 
 // Twenty samples, then a silence: each burst has its own phase.
 TEST(SampleClock, BurstsArePartedBySilences) {
-  std::mt19937_64 engine(7);
-  std::uniform_real_distribution<double> off(-3e-3, 3e-3);
-  std::vector<double> time;
-  for (int burst = 0; burst < 500; ++burst)
-    for (int n = 0; n < 20; ++n) time.push_back(burst * 1.0037 + n * 0.01 + off(engine));
-  const SampleClock clock = sample_clock(time);
+  const SampleClock clock = clock_of_runs(7, 500, 20, 1.0037);
   EXPECT_TRUE(clock.scatters());
   EXPECT_EQ(clock.gaps, 499U);
   EXPECT_NEAR(clock.period_s, 0.01, 1e-5);

@@ -61,6 +61,20 @@ TEST(CsvLayout, ATimeAloneLeavesTheOtherColumnsTheirNames) {
   EXPECT_EQ(c.channels.at(0).name, "supply_V");
 }
 
+// At 100 °/s through a hole of 5 s, and at rest through one of half a second.
+TEST(CsvLayout, OverAHoleInWhichAnAngleMayHaveGoneRoundNoRateIsMadeUp) {
+  const auto rates = [](const std::string& rows) {
+    return parse_capture("time_s,heading\n" + rows, "a.csv", layout({"rate_z_radps=heading:deg"}))
+        .rate_radps[0];
+  };
+  const std::vector<double> turning = rates("0,0\n0.1,10\n0.2,20\n5.2,160\n5.3,170\n");
+  EXPECT_NEAR(turning[2], 100 * kDegree, 1e-9);
+  EXPECT_TRUE(std::isnan(turning[3]));
+  EXPECT_NEAR(turning[4], 100 * kDegree, 1e-9);
+  const std::vector<double> resting = rates("0,10\n0.1,10\n0.2,10\n0.7,11\n0.8,11\n");
+  EXPECT_NEAR(resting[3], 2 * kDegree, 1e-9);
+}
+
 TEST(CsvLayout, DifferencesOfAnAngleBecomeTheRate) {
   // 10 °/s, one angle missing, and a heading that passes north.
   const Capture wrapping = parse_capture("time_s,heading\n0,350\n1,\n2,10\n2.5,15\n", "a.csv",

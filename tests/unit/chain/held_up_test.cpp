@@ -221,6 +221,23 @@ TEST(Rate, ADeviceThatSendsAtAnotherRateThanItShouldIsFound) {
   }
 }
 
+// The value tells each sample from the one before.
+Reading counted(std::uint64_t number, std::uint32_t modulus, double arrives_s) {
+  Reading reading;
+  reading.arrival_ns = kStart_ns + std::llround(arrives_s * 1e9);
+  reading.valid_axes = 1;
+  reading.value[0] = static_cast<double>(number % 1000);
+  reading.has_sequence = true;
+  reading.sequence = static_cast<std::uint32_t>(number % modulus);
+  return reading;
+}
+SensorFacts facts_of(double rate_hz, std::uint32_t modulus) {
+  SensorFacts facts;
+  facts.nominal_rate_hz = rate_hz;
+  facts.sequence_modulus = modulus;
+  return facts;
+}
+
 // What a host's read brings: so many frames at once, at the time of the last one.
 struct Reads {
   std::uint32_t modulus;
@@ -230,21 +247,12 @@ struct Reads {
 class ShortRounds : public testing::TestWithParam<Reads> {};
 
 IncrementerCounts read_all(const Reads& reads, std::uint64_t samples, std::uint64_t lost_every) {
-  SensorFacts facts;
-  facts.nominal_rate_hz = reads.rate_hz;
-  facts.sequence_modulus = reads.modulus;
-  Incrementer incrementer(facts);
+  Incrementer incrementer(facts_of(reads.rate_hz, reads.modulus));
   Increment increment;
   for (std::uint64_t n = 0; n < samples; ++n) {
     if (lost_every != 0 && n % lost_every == lost_every / 2) continue;
     const std::uint64_t read = (n / reads.at_once + 1) * reads.at_once - 1;
-    Reading reading;
-    reading.arrival_ns = kStart_ns + std::llround(static_cast<double>(read) / reads.rate_hz * 1e9);
-    reading.valid_axes = 1;
-    reading.value[0] = static_cast<double>(n);
-    reading.has_sequence = true;
-    reading.sequence = static_cast<std::uint32_t>(n % reads.modulus);
-    incrementer.next(reading, increment);
+    incrementer.next(counted(n, reads.modulus, static_cast<double>(read) / reads.rate_hz), increment);
   }
   return incrementer.counts();
 }
@@ -280,23 +288,12 @@ INSTANTIATE_TEST_SUITE_P(Devices, ShortRounds, testing::ValuesIn(short_rounds())
 // One frame lost, and then a hold-up shorter than any that counts as a silence.
 TEST(Rounds, AreNotMadeOfTimesThatFitAnyNumberOfThem) {
   for (const double held_s : {0.02, 0.04, 0.08, 0.19, 0.3}) {
-    SensorFacts facts;
-    facts.nominal_rate_hz = 1000.0;
-    facts.sequence_modulus = 128;
-    Incrementer incrementer(facts);
+    Incrementer incrementer(facts_of(1000.0, 128));
     Increment increment;
     for (std::uint64_t n = 0; n < 5000; ++n) {
       if (n == 3000) continue;
       const double taken_s = static_cast<double>(n) * 1e-3;
-      Reading reading;
-      const double held_until_s = 3.0 + held_s;
-      const double arrives_s = n > 3000 ? std::max(taken_s, held_until_s) : taken_s;
-      reading.arrival_ns = kStart_ns + std::llround(arrives_s * 1e9);
-      reading.valid_axes = 1;
-      reading.value[0] = static_cast<double>(n);
-      reading.has_sequence = true;
-      reading.sequence = static_cast<std::uint32_t>(n % 128);
-      incrementer.next(reading, increment);
+      incrementer.next(counted(n, 128, n > 3000 ? std::max(taken_s, 3.0 + held_s) : taken_s), increment);
     }
     EXPECT_EQ(incrementer.counts().missing, 1U) << held_s;
     EXPECT_EQ(incrementer.counts().samples, 4999U) << held_s;
@@ -313,10 +310,7 @@ TEST(Rounds, ThatNothingTellsFromAPauseSpoilNothingBehindThem) {
   };
   for (const Lost& lost :
        {Lost{1000.0, 128, {128, 135, 300, 256, 128, 130}}, Lost{125.0, 16, {16, 17, 300, 17, 16, 40}}}) {
-    SensorFacts facts;
-    facts.nominal_rate_hz = lost.rate_hz;
-    facts.sequence_modulus = lost.modulus;
-    Incrementer incrementer(facts);
+    Incrementer incrementer(facts_of(lost.rate_hz, lost.modulus));
     Increment increment;
     std::uint64_t number = 0, told = 0, steps = 0;
     for (std::uint64_t n = 0; n < 8000 * (lost.counts.size() + 1); ++n, ++number) {
@@ -325,12 +319,7 @@ TEST(Rounds, ThatNothingTellsFromAPauseSpoilNothingBehindThem) {
         number += count;
         (count % lost.modulus == 0 ? steps : told) += count % lost.modulus == 0 ? 1 : count;
       }
-      Reading reading;
-      reading.arrival_ns = kStart_ns + std::llround(static_cast<double>(number) / lost.rate_hz * 1e9);
-      reading.valid_axes = 1;
-      reading.value[0] = static_cast<double>(n);
-      reading.has_sequence = true;
-      reading.sequence = static_cast<std::uint32_t>(number % lost.modulus);
+      const Reading reading = counted(number, lost.modulus, static_cast<double>(number) / lost.rate_hz);
       ASSERT_TRUE(incrementer.next(reading, increment));
       if (n % 8000 != 7999) continue;
       EXPECT_EQ(incrementer.counts().missing, told) << lost.modulus << ", before sample " << n;
@@ -344,21 +333,14 @@ TEST(Rounds, ThatNothingTellsFromAPauseSpoilNothingBehindThem) {
 // arrivals.
 TEST(Labels, AreEachLaterThanTheOneBefore) {
   for (const std::uint64_t at_once : {1U, 2U, 3U, 8U, 16U, 500U}) {
-    SensorFacts facts;
-    facts.nominal_rate_hz = 1000.0;
-    facts.sequence_modulus = 128;
-    Incrementer incrementer(facts);
+    Incrementer incrementer(facts_of(1000.0, 128));
     Increment increment;
     std::int64_t before_us = 0;
     for (std::uint64_t n = 0; n < 5000; ++n) {
-      Reading reading;
       const std::uint64_t read = std::max<std::uint64_t>((n / at_once + 1) * at_once - 1, 2000);
-      reading.arrival_ns = kStart_ns + static_cast<std::int64_t>(read * 1'000'000 + n * 7919 % 20'000);
-      reading.valid_axes = 1;
-      reading.value[0] = static_cast<double>(n);
-      reading.has_sequence = true;
-      reading.sequence = static_cast<std::uint32_t>(n % 128);
-      ASSERT_TRUE(incrementer.next(reading, increment));
+      const double arrives_s =
+          1e-3 * static_cast<double>(read) + 1e-9 * static_cast<double>(n * 7919 % 20'000);
+      ASSERT_TRUE(incrementer.next(counted(n, 128, arrives_s), increment));
       ASSERT_GT(increment.utime_ns / 1000, before_us) << at_once << ", sample " << n;
       before_us = increment.utime_ns / 1000;
     }
@@ -369,21 +351,12 @@ TEST(Labels, AreEachLaterThanTheOneBefore) {
 TEST(Rounds, OfASilenceAreCountedHoweverShortTheyAre) {
   for (const double rate_hz : {1000.0, 5000.0}) {
     for (const double out_s : {1.5, 4.0}) {
-      SensorFacts facts;
-      facts.nominal_rate_hz = rate_hz;
-      facts.sequence_modulus = 128;
-      Incrementer incrementer(facts);
+      Incrementer incrementer(facts_of(rate_hz, 128));
       Increment increment;
       const auto lost = static_cast<std::uint64_t>(out_s * rate_hz);
       for (std::uint64_t n = 0; n < 20'000; ++n) {
         const std::uint64_t number = n < 10'000 ? n : n + lost;
-        Reading reading;
-        reading.arrival_ns = kStart_ns + std::llround(static_cast<double>(number) / rate_hz * 1e9);
-        reading.valid_axes = 1;
-        reading.value[0] = static_cast<double>(n);
-        reading.has_sequence = true;
-        reading.sequence = static_cast<std::uint32_t>(number % 128);
-        incrementer.next(reading, increment);
+        incrementer.next(counted(number, 128, static_cast<double>(number) / rate_hz), increment);
       }
       EXPECT_EQ(incrementer.counts().missing, lost) << rate_hz << ' ' << out_s;
     }

@@ -259,15 +259,24 @@ TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   EXPECT_EQ(read.counts.lost_bytes, lost);
 }
 
+const std::vector<std::uint8_t> kBytes{1, 2, 3};
+
+// One delivery in a file that is open since.
+struct Recording {
+  MemoryDisk disk;
+  Recorder recorder{"rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header()};
+  Recording() {
+    recorder.tape().put(delivery(kBytes, 1), 1, {}, 0);
+    recorder.turn(1 * kSecond, kWall);
+    recorder.turn(3 * kSecond, kWall);
+  }
+};
+
 // New settings begin a file with the very delivery that they take effect at, also where that is within a turn
 // of the recorder.
 TEST(Recorder, NewSettingsBeginAFileAtTheirFirstDelivery) {
-  MemoryDisk disk;
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
-  const std::vector<std::uint8_t> bytes{1, 2, 3};
-  recorder.tape().put(delivery(bytes, 1), 1, {}, 0);
-  recorder.turn(1 * kSecond, kWall);
-  recorder.turn(3 * kSecond, kWall);
+  Recording recording;
+  Recorder& recorder = recording.recorder;
   FlightHeader other = header();
   other.configuration = "another model";
   recorder.set_header(other, 1);
@@ -277,16 +286,16 @@ TEST(Recorder, NewSettingsBeginAFileAtTheirFirstDelivery) {
   recorder.tape().put(delivery(next, 3), 3, {}, 0);
   recorder.turn(4 * kSecond, kWall);
   recorder.turn(6 * kSecond, kWall);
-  const ReadBack read = read_back(all_of(disk));
+  const ReadBack read = read_back(all_of(recording.disk));
   ASSERT_EQ(read.headers.size(), 2U);
   EXPECT_EQ(read.headers[0].configuration, "");
   EXPECT_EQ(read.headers[1].configuration, "another model");
   EXPECT_EQ(read.headers[0].settings, 0U);
   EXPECT_EQ(read.headers[1].settings, 1U);
   EXPECT_EQ(read.headers[1].began, read.headers[0].number);
-  EXPECT_EQ(read.payloads, (std::vector<std::vector<std::uint8_t>>{bytes, last, next}));
+  EXPECT_EQ(read.payloads, (std::vector<std::vector<std::uint8_t>>{kBytes, last, next}));
   EXPECT_TRUE(read.holes.empty());
-  const ReadBack second = read_back(disk.files.rbegin()->second);
+  const ReadBack second = read_back(recording.disk.files.rbegin()->second);
   EXPECT_EQ(second.payloads, std::vector<std::vector<std::uint8_t>>{next});
 }
 
@@ -323,15 +332,11 @@ TEST(Recorder, AFolderThatNeverWorksLosesAllAndSaysSo) {
 
 // Nobody took anything away: the last word is of the disk, and of what waited for it.
 TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
-  MemoryDisk disk;
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
-  const std::vector<std::uint8_t> bytes{1, 2, 3};
-  recorder.tape().put(delivery(bytes, 1), 1, {}, 0);
-  recorder.turn(1 * kSecond, kWall);
-  recorder.turn(3 * kSecond, kWall);
-  disk.room = disk.used() + 40;  // for the end of the file, not for what waits
+  Recording recording;
+  Recorder& recorder = recording.recorder;
+  recording.disk.room = recording.disk.used() + 40;  // for the end of the file, not for what waits
   recorder.start();
-  for (int n = 2; n < 12; ++n) recorder.tape().put(delivery(bytes, n), n, {}, 0);
+  for (int n = 2; n < 12; ++n) recorder.tape().put(delivery(kBytes, n), n, {}, 0);
   recorder.stop();
   bool good = true;
   EXPECT_EQ(recorder.take_message(good),
@@ -339,6 +344,22 @@ TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   EXPECT_FALSE(good);
   EXPECT_EQ(recorder.lost_deliveries(), 10U);
   EXPECT_EQ(recorder.lost_bytes(), 30U);
+}
+
+// New settings that no room was left for are no entry of the record.
+TEST(Recorder, OfWhatIsLeftAtTheEndOnlyEntriesAreCounted) {
+  Recording recording;
+  Recorder& recorder = recording.recorder;
+  recording.disk.refuses = EIO;
+  recorder.start();
+  for (std::uint32_t n = 0; n < 3; ++n) {
+    recorder.tape().put(delivery(kBytes, 2), 2, {}, 0);
+    recorder.set_header(header(), n + 1);
+    recorder.tape().note_settings(n + 1);
+  }
+  recorder.stop();
+  EXPECT_EQ(recorder.lost_deliveries(), 3U);
+  EXPECT_EQ(recorder.entries_unwritten(), 3U);
 }
 
 TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {

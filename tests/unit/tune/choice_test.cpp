@@ -13,10 +13,12 @@
 #include "filters/estimator/estimator.h"
 #include "filters/kalman/likelihood.h"
 #include "filters/state_models/state_model.h"
+#include "tests/unit/estimator/drive.h"
 
 namespace {
 
-constexpr double kPeriod = 0.01, kSigma = 1e-5;
+using ifog::test::kPeriod;
+constexpr double kSigma = 1e-5;
 
 struct Record {
   std::vector<double> rate, level;
@@ -49,34 +51,8 @@ double rmse(const std::vector<double>& estimate, const std::vector<double>& leve
   return std::sqrt(sum);
 }
 
-// Told the truth, written out.
-std::vector<double> kalman(const Record& record, double ratio) {
-  std::vector<double> out;
-  double x = record.rate[0], p = 1.0;
-  for (const double z : record.rate) {
-    p += ratio;
-    const double gain = p / (p + 1.0);
-    x += gain * (z - x);
-    p *= 1.0 - gain;
-    out.push_back(x);
-  }
-  return out;
-}
-
 std::vector<double> denoised(const ifog::FilterSettings& settings, const Record& record) {
-  ifog::Estimator estimator(settings, 1, kPeriod);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
-  in.dt_s = kPeriod;
-  in.valid_axes = 1;
-  std::vector<double> published;
-  for (std::size_t k = 0; k < record.rate.size(); ++k) {
-    in.sequence = k;
-    in.rate_radps[0] = record.rate[k];
-    estimator.step(in, out);
-    published.push_back(out.denoised_radps[0]);
-  }
-  return published;
+  return ifog::test::run(settings, record.rate).denoised;
 }
 
 // What is written is judged by the level, which only a simulation knows: on another record of the same gyro.
@@ -87,7 +63,7 @@ TEST(TuneChoice, AWalkIsNotTakenForColour) {
     const ifog::Tuning t = tuned(fitted.rate);
     const auto next = walk_under_white_noise(seed + 1000, 20000, kRatio);
     const double error = rmse(denoised(t.models[t.chosen].settings, next), next.level);
-    EXPECT_LE(error, 1.15 * rmse(kalman(next, kRatio), next.level))
+    EXPECT_LE(error, 1.15 * rmse(ifog::test::told_the_truth(next.rate, kRatio), next.level))
         << seed << ": " << t.models[t.chosen].settings.state;
   }
 }
