@@ -50,10 +50,11 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
   };
   status_publisher_ = publisher();
   std::vector<ChannelSources::Wanted> wanted;
+  ReadersProcessors processors;
   std::string errors;
   for (const SensorConfig& sensor : config_.sensors) {
     try {
-      AssembledSensor parts = assemble(sensor, config_, publisher());
+      AssembledSensor parts = assemble(sensor, config_, publisher(), processors);
       const ifog_description& description = parts.pipeline->reader().driver().description();
       int index = 0;
       for (const ChannelConfig& channel : outside_channels(sensor)) {
@@ -203,9 +204,16 @@ void Housekeeping::keep_noise(Sensor& sensor, bool at_once) {
 }
 
 bool Housekeeping::all_alive() const {
-  return std::all_of(sensors_.begin(), sensors_.end(), [](const auto& sensor) {
-    return sensor->unanswered < kStuck_s && sensor->reader_stuck < kStuck_s;
-  });
+  bool alive = true;
+  for (const auto& sensor : sensors_) {
+    const bool reader = sensor->reader_stuck >= kStuck_s;
+    if (!reader && sensor->unanswered < kStuck_s) continue;
+    alive = false;
+    if (watchdog_)
+      sensor->log->critical("the {} thread has not come round for {} s: no more signs of life",
+                            reader ? "reader" : "filter", kStuck_s);
+  }
+  return alive;
 }
 
 void Housekeeping::stop_all() {
@@ -238,8 +246,7 @@ void Housekeeping::each_second(double interval_s) {
     report_second(*sensor, interval_s);
     rate += sensor->report.message().output_rate_hz;
   }
-  if (!all_alive() && std::exchange(watchdog_, false))
-    log_->critical("a pipeline is stuck: no more signs of life");
+  if (!all_alive()) watchdog_ = false;
   if (watchdog_)
     notify("WATCHDOG=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s), " +
            std::to_string(std::lround(rate)) + " samples/s published");

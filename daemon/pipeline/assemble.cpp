@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline/assemble.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
@@ -34,10 +36,20 @@ std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config
                                     flight_header(sensor, config, driver, noise.text(noise.recalled())));
 }
 
+std::shared_ptr<SharedProcessors> shared(ReadersProcessors& all, std::vector<int> cpus) {
+  std::sort(cpus.begin(), cpus.end());
+  cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
+  const auto any = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  std::shared_ptr<SharedProcessors>& out = all[cpus];
+  if (out == nullptr)
+    out = std::make_shared<SharedProcessors>(cpus.empty() ? any : static_cast<int>(cpus.size()));
+  return out;
+}
+
 }  // namespace
 
 AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
-                         std::unique_ptr<Publisher> publisher) {
+                         std::unique_ptr<Publisher> publisher, ReadersProcessors& processors) {
   DriverInstance driver = make_sensor_driver(sensor, config.plugin_folders);
   std::unique_ptr<Transport> transport = make_sensor_transport(sensor, driver);
   const std::shared_ptr<const Model> model = read_sensor_model(sensor);
@@ -61,6 +73,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   plan.ring_slots = static_cast<std::size_t>(sensor.realtime.ring_slots);
   plan.reader = {sensor.name + ":read", sensor.realtime.reader_priority, sensor.realtime.reader_cpus};
   plan.filter = {sensor.name + ":filt", sensor.realtime.filter_priority, sensor.realtime.filter_cpus};
+  plan.processors = shared(processors, sensor.realtime.reader_cpus);
   plan.spin = sensor.realtime.spin;
   // Whoever gave the filter processors of its own wants its steps done there.
   plan.direct = sensor.realtime.direct && (sensor.realtime.filter_cpus.empty() ||

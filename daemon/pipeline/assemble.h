@@ -2,6 +2,7 @@
 // From a sensor's configuration to its pipeline.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,8 +27,11 @@ struct AssembledSensor {
   std::vector<std::string> remarks;   // on the model's axes beside the sensor's
 };
 
-// Throws std::runtime_error with one line.
+// By processors that readers may run on, each named once and in order; none named: all that there are.
+using ReadersProcessors = std::map<std::vector<int>, std::shared_ptr<SharedProcessors>>;
+
+// processors: of the sensors before, to which this one's are added. Throws std::runtime_error with one line.
 AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
-                         std::unique_ptr<Publisher> publisher);
+                         std::unique_ptr<Publisher> publisher, ReadersProcessors& processors);
 
 }  // namespace ifog

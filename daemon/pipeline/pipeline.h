@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sensor: its reader thread, its filter thread and the queue between them. Pipelines share nothing.
+// One sensor: its reader thread, its filter thread and the queue between them. Pipelines share nothing but
+// the account of the processors that their readers run on.
 #pragma once
 
 #include <future>
@@ -22,6 +23,8 @@ struct PipelinePlan {
   bool spin = false;
   Tape* tape = nullptr;  // of the flight recorder, which outlives the pipeline
   bool direct = true;    // an idle filter's step is done by the reader thread, see HandOver
+  // The readers of those processors; null: the reader is their only one.
+  std::shared_ptr<SharedProcessors> processors{};
 };
 
 class Pipeline {

@@ -18,7 +18,8 @@ constexpr auto kPause = std::chrono::milliseconds(1);
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
                std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-               PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape)
+               PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape,
+               SharedProcessors* processors)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
@@ -29,7 +30,8 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
       exchange_(exchange),
       books_(books),
       events_(events),
-      tape_(tape) {}
+      tape_(tape),
+      share_(processors) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
   ++now_.decoded;

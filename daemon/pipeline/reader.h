@@ -39,10 +39,11 @@ struct ReaderCounters {
 
 class Reader {
  public:
-  // tape: of the flight recorder, null without one.
+  // tape: of the flight recorder, null without one. processors: that it shares with other readers, if any.
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
          std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-         PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape);
+         PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape,
+         SharedProcessors* processors = nullptr);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
   void run() noexcept;

@@ -18,8 +18,11 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
-// Wall clock less CLOCK_BOOTTIME: of a few tries the one that was held up least.
-std::int64_t wall_less_boot_ns() noexcept {
+// Wall clock less CLOCK_BOOTTIME, of a few tries the one that was held up least, and how far off it may be.
+struct WallLessBoot {
+  std::int64_t ns, doubt_ns;
+};
+WallLessBoot wall_less_boot() noexcept {
   std::int64_t best = 0, least = INT64_MAX;
   for (int i = 0; i < kTries; ++i) {
     const std::int64_t before = clock_ns(CLOCK_BOOTTIME);
@@ -29,13 +32,14 @@ std::int64_t wall_less_boot_ns() noexcept {
     least = took;
     best = wall - before - took / 2;
   }
-  return best;
+  return {best, least / 2};
 }
 
-std::int64_t epoch_ns() noexcept {
-  static const std::int64_t epoch = wall_less_boot_ns();
-  return epoch;
+const WallLessBoot& at_start() noexcept {
+  static const WallLessBoot taken = wall_less_boot();
+  return taken;
 }
+std::int64_t epoch_ns() noexcept { return at_start().ns; }
 
 // Taken when the process starts, not at the first sample.
 [[maybe_unused]] const std::int64_t taken_at_start = epoch_ns();
@@ -48,15 +52,16 @@ std::int64_t thread_time_ns() noexcept { return clock_ns(CLOCK_THREAD_CPUTIME_ID
 std::int64_t arrival_clock_ns() noexcept { return clock_ns(CLOCK_BOOTTIME) + epoch_ns(); }
 std::int64_t arrival_clock_at_boot_ns() noexcept { return epoch_ns(); }
 
-std::int64_t WallShift::from(std::int64_t realtime, std::int64_t arrival) noexcept {
+std::int64_t WallShift::from(std::int64_t realtime, std::int64_t arrival, std::int64_t doubt_ns) noexcept {
   const std::int64_t shift = realtime - arrival;
-  if (std::abs(shift - shift_ns_) > kSame_ns) shift_ns_ = shift;
+  if (std::abs(shift - shift_ns_) > kSame_ns + doubt_ns) shift_ns_ = shift;
   return shift_ns_;
 }
 
 std::int64_t WallShift::at(std::int64_t arrival) noexcept {
   if (std::abs(realtime_ns() - arrival - shift_ns_) <= kSame_ns) return shift_ns_;
-  return from(wall_less_boot_ns() - epoch_ns(), 0);
+  const WallLessBoot now = wall_less_boot();
+  return from(now.ns - epoch_ns(), 0, now.doubt_ns + at_start().doubt_ns);
 }
 
 void KernelStamps::begin(std::int64_t realtime, std::int64_t arrival) noexcept {

@@ -25,14 +25,15 @@ std::int64_t arrival_clock_ns() noexcept;
 std::int64_t arrival_clock_at_boot_ns() noexcept;
 
 // How far the wall clock has been set since the process started, ns. Exactly the same value until somebody
-// sets it by more than the reading of two clocks can tell (50 µs): a label must not jitter.
+// sets it by more than the reading of two clocks can tell (50 µs, and for a thread that others of its
+// priority hold up between the two as much more): a label must not jitter.
 class WallShift {
  public:
   // Now; `arrival`: a reading of the arrival clock that was taken just before. Looks at both clocks anew
   // where that was too long ago to tell. No allocation, no system call where the clocks need none.
   std::int64_t at(std::int64_t arrival) noexcept;
-  // The same from readings of the two clocks, taken together.
-  std::int64_t from(std::int64_t realtime, std::int64_t arrival) noexcept;
+  // The same from readings of the two clocks; doubt_ns: by how much they may not be of one time.
+  std::int64_t from(std::int64_t realtime, std::int64_t arrival, std::int64_t doubt_ns = 0) noexcept;
 
  private:
   std::int64_t shift_ns_ = 0;

@@ -52,7 +52,8 @@ class Faults:
         now = self.machine.run("systemctl show -P MainPID ifogd").strip()
         if now != pid:
             # Why, in one line and in systemd's own words; then what the daemon said last.
-            why = self.machine.run("journalctl -u ifogd _PID=1 -n 8 -o cat --no-pager").strip().replace("\n", "; ")
+            why = self.machine.run("{ journalctl -u ifogd _PID=1 -n 8 -o cat --no-pager; journalctl -u ifogd _PID=%s -p crit -o cat --no-pager; }" % pid)
+            why = why.strip().replace("\n", "; ")
             raise Failure(f"process {pid} has become {now}: {why}\n{self.machine.run('journalctl -u ifogd -n 20 -o cat --no-pager')}")
 
     def all_come(self, name, count, hertz=100):
