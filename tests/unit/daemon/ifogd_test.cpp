@@ -21,64 +21,12 @@
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
-#include "tests/unit/daemon/private_network.h"
+#include "tests/unit/daemon/ifogd_as_started.h"
 
 namespace ifog {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Ifogd : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("ifogd-test-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    // Nothing here is to be heard outside.
-    unreachable_ = enter_private_network();
-    if (!unreachable_.empty())
-      GTEST_SKIP() << "no private network namespace (" << unreachable_
-                   << "); runs as root or with user namespaces";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-  // One sensor that reads flight.kvh, and more.
-  void configure(const std::string& more, const std::string& driver = "kvh1750") const {
-    write("ifogd.toml", "[daemon]\nlock_memory = false\nplugin_folder = \"" IFOG_REFUSED_PLUGINS
-                        "\"\n[[sensor]]\nname = \"nose\"\ndriver = \"" +
-                            driver + "\"\n" + more);
-  }
-  // Its exit status; all it says goes to the file `said`.
-  int ifogd(const std::string& arguments = "") const {
-    const std::string command = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --config " + path("ifogd.toml") +
-                                " " + arguments + " >" + path("said") + " 2>&1";
-    return WEXITSTATUS(std::system(command.c_str()));
-  }
-  std::vector<std::string> said() const {
-    std::ifstream in(path("said"));
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-  }
-  // How many lines hold it; and the others are shown when it is not the one that was expected.
-  int lines_with(const std::string& text) const {
-    const std::vector<std::string> all = said();
-    return static_cast<int>(std::count_if(all.begin(), all.end(), [&](const std::string& line) {
-      return line.find(text) != std::string::npos;
-    }));
-  }
-  std::string all_said() const {
-    std::string out;
-    for (const std::string& line : said()) out += line + "\n";
-    return out;
-  }
-
-  fs::path folder_;
-  std::string unreachable_;
-};
 
 constexpr const char* kFile = "[sensor.transport]\ntype = \"file\"\npath = \"flight.kvh\"\n";
 
