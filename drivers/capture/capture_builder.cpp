@@ -43,6 +43,12 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
          std::equal(a.full_scale, a.full_scale + a.axes, b.full_scale);
 }
 
+// Whatever a device says: what has no room wraps, and is a clock that jumps.
+std::int64_t ns_since(std::int64_t origin_s, std::int64_t time_ns) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
+                                   static_cast<std::uint64_t>(origin_s) * 1'000'000'000U);
+}
+
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
@@ -115,8 +121,7 @@ double CaptureBuilder::seconds(const ifog_sample& sample) const {
       1e9;  // divided by, so that the result is the double nearest to the decimal time
   switch (clock_) {
     case Clock::device:
-      return static_cast<double>(sample.device_time_ns - device_from_s_ * 1'000'000'000) / kNsPerSecond +
-             offset_s_;
+      return static_cast<double>(ns_since(device_from_s_, sample.device_time_ns)) / kNsPerSecond + offset_s_;
     case Clock::arrival:
       return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
     default:

@@ -69,9 +69,8 @@ void complement(std::string& digits) {
 
 std::int64_t time_origin_s(std::int64_t first_ns) {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  return std::abs(static_cast<double>(first_ns)) * 1e-9 < kFineTimes_s
-             ? 0
-             : floor_to(first_ns, kSecond) / kSecond;
+  if (std::abs(static_cast<double>(first_ns)) * 1e-9 < kFineTimes_s) return 0;
+  return first_ns / kSecond - (first_ns % kSecond < 0 ? 1 : 0);
 }
 
 TimeStamps::TimeStamps(std::string_view first, double unit_s) {
@@ -81,7 +80,8 @@ TimeStamps::TimeStamps(std::string_view first, double unit_s) {
   if (const std::int64_t of_second = whole(1.0 / unit_s); of_second != 0) {
     origin_ = floor_to(below, of_second);
     origin_s_ = origin_ / of_second;
-  } else if (const std::int64_t seconds = whole(unit_s); seconds != 0) {
+  } else if (const std::int64_t seconds = whole(unit_s);
+             seconds != 0 && std::abs(below) < kMostWhole / seconds) {
     origin_ = below;
     origin_s_ = below * seconds;
   }

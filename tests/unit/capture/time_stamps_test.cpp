@@ -58,6 +58,16 @@ TEST(TimeStamps, LeaveWhatIsNotPlainToOthers) {
     EXPECT_FALSE(TimeStamps().since(text, value, decimals)) << text;
 }
 
+TEST(TimeStamps, AreHeldToWhatHasRoom) {
+  EXPECT_EQ(TimeStamps("4500000000000000000", 3600.0).origin_s(), 0);
+  EXPECT_EQ(TimeStamps("9223372036854775807", 1e-9).origin_s(), 0);
+  EXPECT_EQ(since("-4599999999999999999", 1e-9, "4599999999999999999"), 9199999999999999999.0);
+  EXPECT_EQ(ifog::time_origin_s(INT64_MIN), -9223372037);
+  EXPECT_EQ(ifog::time_origin_s(INT64_MAX), 9223372036);
+  EXPECT_EQ(ifog::time_origin_s(-1'700'000'000'500'000'000), -1700000001);
+  EXPECT_EQ(ifog::time_origin_s(1'000'000'000), 0);
+}
+
 TEST(TimeStamps, AreToldInTheDigitsTheyCameWith) {
   EXPECT_EQ(told(1700000000, 0.123456789), "1700000000.123456789");
   EXPECT_EQ(told(1700000000, 86399.999999999), "1700086399.999999999");
