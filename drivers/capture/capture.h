@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct Capture {
   std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
   std::vector<std::string> faults;                        // cells taken for missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
+  std::int64_t origin_s = 0;  // that time_s is counted from: not 0 in the pieces of a long table only
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/capture/time_stamps.h"
 #include "drivers/ifog/same_values.h"
 #include "drivers/ifog/turn.h"
 
@@ -42,6 +43,12 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
          std::equal(a.full_scale, a.full_scale + a.axes, b.full_scale);
 }
 
+// Whatever a device says: what has no room wraps, and is a clock that jumps.
+std::int64_t ns_since(std::int64_t origin_s, std::int64_t time_ns) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
+                                   static_cast<std::uint64_t>(origin_s) * 1'000'000'000U);
+}
+
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
@@ -70,17 +77,20 @@ void CaptureBuilder::go_on_as(const ifog_description& description) {
 void CaptureBuilder::choose_clock(const ifog_sample& sample) {
   first_arrival_ns_ = sample.arrival_ns;
   const bool rate_known = description_.nominal_rate_hz > 0.0;
-  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0)
+  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) {
     clock_ = Clock::device;
-  else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known)
+    device_from_s_ = time_origin_s(sample.device_time_ns);
+    if (taken_ + capture_.size() == 0) capture_.origin_s = device_from_s_;
+  } else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known) {
     clock_ = Clock::counter;
-  else if (sample.arrival_ns != 0)
+  } else if (sample.arrival_ns != 0) {
     clock_ = Clock::arrival;
-  else if (rate_known)
+  } else if (rate_known) {
     clock_ = Clock::number;
-  else
+  } else {
     throw std::runtime_error(
         "the samples carry no time: expected the option rate_hz with the samples a second of the device");
+  }
 }
 
 // How many samples the device has taken since the last one; 0: this one came twice, or after one that
@@ -111,7 +121,7 @@ double CaptureBuilder::seconds(const ifog_sample& sample) const {
       1e9;  // divided by, so that the result is the double nearest to the decimal time
   switch (clock_) {
     case Clock::device:
-      return static_cast<double>(sample.device_time_ns) / kNsPerSecond + offset_s_;
+      return static_cast<double>(ns_since(device_from_s_, sample.device_time_ns)) / kNsPerSecond + offset_s_;
     case Clock::arrival:
       return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
     default:
@@ -146,12 +156,14 @@ void CaptureBuilder::begin_anew(const ifog_sample& sample) {
 }
 
 void CaptureBuilder::refuse(double now) const {
+  const auto origin = static_cast<double>(capture_.origin_s);
   throw std::runtime_error("sample " + std::to_string(taken_ + capture_.size() + 1) + ": its time is " +
-                           std::to_string(now) + " s by " +
+                           std::to_string(origin + now) + " s by " +
                            (clock_ == Clock::device    ? "the device's clock"
                             : clock_ == Clock::counter ? "its counter"
                                                        : "its arrival") +
-                           ", expected more than the " + std::to_string(last_s_) + " s of the sample before");
+                           ", expected more than the " + std::to_string(origin + last_s_) +
+                           " s of the sample before");
 }
 
 void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double period) {
@@ -264,6 +276,7 @@ std::vector<std::string> CaptureBuilder::names() const {
 void CaptureBuilder::next_rows(RowBlock& rows) {
   taken_ += capture_.size();
   rows.columns.clear();
+  rows.origin_s = capture_.origin_s;
   rows.time_s = std::exchange(capture_.time_s, {});
   for (std::vector<double>& rate : capture_.rate_radps) rows.columns.push_back(std::exchange(rate, {}));
   for (CaptureColumn& channel : capture_.channels) rows.columns.push_back(std::exchange(channel.values, {}));
@@ -271,6 +284,8 @@ void CaptureBuilder::next_rows(RowBlock& rows) {
 
 Capture CaptureBuilder::finish() {
   if (capture_.time_s.empty()) throw std::runtime_error("holds no sample that the driver understands");
+  for (double& time : capture_.time_s) time += static_cast<double>(capture_.origin_s);
+  capture_.origin_s = 0;
   for (std::size_t i = capture_.axes.size(); i-- > 0;) {
     if (!never_known(capture_.rate_radps[i])) continue;
     capture_.dead_axes.push_back(capture_.axes[i]);

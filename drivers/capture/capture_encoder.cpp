@@ -14,6 +14,8 @@
 namespace ifog {
 namespace {
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
 std::string seven_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.7g", value);
@@ -64,11 +66,13 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   const ifog_description& d = driver.description();
   rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
   timed_ = d.has_device_time != 0 || driver.takes_can();
-  if (timed_ && capture.size() > 0 && capture.time_s.front() < 0.0) {
-    later_s_ = std::ceil(-capture.time_s.front());
-    notices_.push_back("begins at " + seven_digits(capture.time_s.front()) +
+  const double first_s =
+      capture.size() > 0 ? static_cast<double>(capture.origin_s) + capture.time_s.front() : 0;
+  if (timed_ && first_s < 0.0) {
+    later_s_ = static_cast<std::int64_t>(std::ceil(-first_s));
+    notices_.push_back("begins at " + seven_digits(first_s) +
                        " s, and no clock of a device shows times before 0: all are sent " +
-                       seven_digits(later_s_) + " s later");
+                       std::to_string(later_s_) + " s later");
   }
   if (capture.axes.size() == 1) {
     const std::string& own = capture.axes.front();
@@ -124,7 +128,7 @@ ifog_sample CaptureEncoder::next_sample() {
     told_s_ += static_cast<double>(shown) / rate_hz_;
   }
 
-  sample_.arrival_ns = std::llround((now + later_s_) * 1e9);
+  sample_.arrival_ns = (capture_.origin_s + later_s_) * kSecond_ns + std::llround(now * 1e9);
   sample_.device_time_ns = sample_.arrival_ns;
   sample_.flags = IFOG_SAMPLE_DEVICE_TIME;
   if (d.sequence_modulus != 0) {
@@ -164,7 +168,9 @@ bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const 
   ifog_sample sample = next_sample();
   const ifog_description& d = driver_.description();
   const auto refuse = [&](const std::runtime_error& error) {
-    throw std::runtime_error("at " + std::to_string(capture_.time_s[row_]) + " s: " + error.what());
+    throw std::runtime_error("at " +
+                             std::to_string(static_cast<double>(capture_.origin_s) + capture_.time_s[row_]) +
+                             " s: " + error.what());
   };
   try {
     (driver_.*encode)(sample, out);

@@ -69,7 +69,7 @@ class CaptureEncoder {
   std::vector<const std::vector<double>*> channels_;  // by the driver's environment channel, null: not there
   std::vector<std::string> notices_;
   std::vector<double> angle_;  // by the capture's axis
-  double later_s_ = 0.0;       // whole seconds that are added to every time, for none to be before 0
+  std::int64_t later_s_ = 0;   // whole seconds that are added to every time, for none to be before 0
   ifog_sample sample_{};
   std::size_t row_ = 0;
   std::size_t rows_before_ = 0;            // in pieces before this one

@@ -23,7 +23,8 @@ std::string_view unit_of(const std::string& name) {
 // Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
 // is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
 // than half a turn, or behind a gap by nobody knows what.
-void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
+void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s,
+                   const ExactSteps& steps) {
   const auto known = [](double value) { return !std::isnan(value); };
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double angle : angle_rad) {
@@ -39,7 +40,7 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   for (std::size_t i = 0; i < angle_rad.size(); ++i) {
     const double angle = angle_rad[i];
     const double turned = wraps ? std::remainder(angle - before, kTurn) : angle - before;
-    const double step_s = time_s[i] - since_s;
+    const double step_s = steps.between(since_s, time_s[i]);
     if (known(before)) shortest_s = std::min(shortest_s, step_s);
     const bool told = !wraps || step_s <= kGap * shortest_s || turn_is_known(rate_before, step_s, kTurn);
     angle_rad[i] = told ? turned / step_s : kMissing;
@@ -58,12 +59,15 @@ UnitConversion conversion_of(const CsvColumn& column) {
   return convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
 }
 
-void convert(RowBlock& rows, const CsvLayout& layout, const RowNotes& notes, const std::string& path,
-             std::size_t first_row, double time_before) {
+void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
+             const std::string& path, std::size_t first_row, double time_before) {
+  const double unit_s = layout.time.value_or(CsvTime{}).unit_s;
+  const double units_a_second = std::round(1.0 / unit_s);
   if (layout.time)
     for (std::size_t row = 0; row < rows.size(); ++row) {
       double& now = rows.time_s[row];
-      now *= layout.time->unit_s;
+      // What is 0.01 s in every unit comes out so.
+      now = units_a_second > 1.0 ? steps.nearest(now / units_a_second) : now * unit_s;
       // Two numbers that differ by their last digit may be one in seconds.
       if (first_row + row > 0 && now <= time_before)
         fail_at(path, notes.line_of_row(first_row + row),
@@ -76,12 +80,13 @@ void convert(RowBlock& rows, const CsvLayout& layout, const RowNotes& notes, con
   }
 }
 
-void as_rates(RowBlock& all, const CsvLayout& layout, const RowNotes& notes, const std::string& path) {
+void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
+              const std::string& path) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const CsvColumn& column = layout.columns[i];
     if (!column.is_angle()) continue;
     std::vector<double>& values = all.columns[i];
-    differentiate(values, all.time_s);
+    differentiate(values, all.time_s, steps);
     // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)

@@ -9,6 +9,7 @@
 
 #include "drivers/capture/csv_layout.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/capture/time_stamps.h"
 #include "drivers/units/units.h"
 
 namespace ifog {
@@ -19,11 +20,13 @@ UnitConversion conversion_of(const CsvColumn& column);
 // From the file's units to those of a capture, but for angles, which stay in rad and become rates by
 // as_rates(). first_row: of the block in the file; time_before: of the row before it, converted, where there
 // is one. Throws std::runtime_error with one line.
-void convert(RowBlock& rows, const CsvLayout& layout, const RowNotes& notes, const std::string& path,
-             std::size_t first_row, double time_before);
+// steps: between the times of the block.
+void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
+             const std::string& path, std::size_t first_row, double time_before);
 
 // Of all rows, because whether an angle stays within one turn only the whole says.
-void as_rates(RowBlock& all, const CsvLayout& layout, const RowNotes& notes, const std::string& path);
+void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
+              const std::string& path);
 
 // A file whose times are whole numbers, a second or more apart and written without decimals, is more often
 // one in milliseconds than one of a sample a second. It is said, not changed.

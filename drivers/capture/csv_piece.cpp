@@ -15,17 +15,8 @@ namespace ifog {
 namespace {
 
 double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell,
-              bool decimal_comma) {
-  cell = unquoted(cell);
+              std::string_view digits) {
   if (cell.empty()) return kMissing;
-  std::array<char, 64> with_point{};
-  std::string_view digits = cell;
-  if (const std::size_t comma = cell.find(',');
-      decimal_comma && comma < cell.size() && cell.size() <= with_point.size()) {
-    std::copy(cell.begin(), cell.end(), with_point.begin());
-    with_point[comma] = '.';
-    digits = {with_point.data(), cell.size()};
-  }
   double value = 0.0;
   const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range)
@@ -38,6 +29,8 @@ double number(const std::string& path, std::size_t line, const std::string& colu
   return value;
 }
 
+bool is_no_row(std::string_view line) { return trimmed(line).empty() || line.front() == '#'; }
+
 std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
   for (; place > 0; --place) line.remove_prefix(line.find(separator) + 1);
   return trimmed(line.substr(0, line.find(separator)));
@@ -46,8 +39,9 @@ std::string_view cell_at(std::string_view line, std::size_t place, char separato
 // One row after the other, into the columns of a piece.
 class Rows {
  public:
-  Rows(CsvPiece& piece, const CsvHeader& header, char separator, const std::string& path)
-      : piece_(piece), header_(header), separator_(separator), path_(path) {
+  Rows(CsvPiece& piece, const CsvHeader& header, char separator, const TimeStamps& stamps,
+       const std::string& path)
+      : piece_(piece), header_(header), separator_(separator), stamps_(stamps), path_(path) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.cells.size());
     for (std::size_t i = 0; i < header.cells.size(); ++i)
@@ -83,29 +77,62 @@ class Rows {
  private:
   void take(std::size_t place, std::string_view text, std::size_t line) {
     const CsvCell& cell = header_.cells[place];
-    const double value = number(path_, line, cell.name, text, separator_ != ',');
-    const bool possible = std::isnan(value) || cell.range.holds(value);
+    text = unquoted(text);
+    const CsvDigits digits(text, separator_ != ',');
+    if (cell.column == CsvCell::kTime) return take_time(place, text, digits, line);
+    keep(place, number(path_, line, cell.name, text, digits), 0.0, text);
+  }
+
+  void take_time(std::size_t place, std::string_view text, std::string_view digits, std::size_t line) {
+    double since = 0.0;
+    if (!stamps_.since(digits, since, piece_.most_decimals)) {
+      since = stamps_.since(number(path_, line, header_.cells[place].name, text, digits));
+      piece_.most_decimals = kAnyDecimals;
+    }
+    keep(place, since, stamps_.absolute(0.0), text);
+  }
+
+  void keep(std::size_t place, double value, double origin, std::string_view text) {
+    const bool possible = std::isnan(value) || header_.cells[place].range.holds(value + origin);
     to_[place]->push_back(possible ? value : kMissing);
     if (possible) return;
     ImpossibleValues& impossible = piece_.impossible[place];
     if (impossible.count++ > 0) return;
     impossible.first_row = to_[place]->size() - 1;
-    impossible.first = unquoted(text);
+    impossible.first = text;
   }
 
   CsvPiece& piece_;
   const CsvHeader& header_;
   char separator_;
+  const TimeStamps& stamps_;
   const std::string& path_;
   std::vector<std::vector<double>*> to_;
 };
 
 }  // namespace
 
+std::optional<std::string_view> first_time(std::string_view text, const CsvHeader& header, char separator) {
+  Lines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    if (is_no_row(line)) continue;
+    for (std::size_t place = header.time_place; place > 0; --place) {
+      const std::size_t end = line.find(separator);
+      if (end == std::string_view::npos) return "";  // to be refused for its cells
+      line.remove_prefix(end + 1);
+    }
+    return unquoted(line.substr(0, line.find(separator)));
+  }
+  return std::nullopt;
+}
+
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
-                         const std::string& path, std::size_t lines_before, double time_before) {
+                         const TimeStamps& stamps, const std::string& path, std::size_t lines_before,
+                         double time_before) {
   CsvPiece piece;
-  Rows rows(piece, header, separator, path);
+  piece.rows.origin_s = stamps.origin_s();
+  Rows rows(piece, header, separator, stamps, path);
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   rows.reserve(text.size() / length + text.size() / length / 16 + 1);
@@ -116,7 +143,7 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char se
   const std::vector<double>& times = piece.rows.time_s;
   while (lines.next(line)) {
     if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
-    if (trimmed(line).empty() || line.front() == '#') {
+    if (is_no_row(line)) {
       if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
       ++skipped;
       if (piece.skipped.empty() || piece.skipped.back().row != times.size())

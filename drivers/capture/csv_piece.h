@@ -3,8 +3,11 @@
 // several are read at once.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,23 +15,49 @@
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/row_checks.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/capture/time_stamps.h"
 
 namespace ifog {
 
+// What a cell says, a decimal comma as a point.
+class CsvDigits {
+ public:
+  CsvDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
+    if (!decimal_comma || cell.size() > with_point_.size()) return;
+    const std::size_t comma = cell.find(',');
+    if (comma == std::string_view::npos) return;
+    std::copy(cell.begin(), cell.end(), with_point_.begin());
+    with_point_[comma] = '.';
+    digits_ = {with_point_.data(), cell.size()};
+  }
+  CsvDigits(const CsvDigits&) = delete;
+  CsvDigits& operator=(const CsvDigits&) = delete;
+  operator std::string_view() const { return digits_; }
+
+ private:
+  std::array<char, 64> with_point_;
+  std::string_view digits_;
+};
+
 struct CsvPiece {
-  RowBlock rows;                             // times and values in the file's units
+  RowBlock rows;                             // times since the stamps' origin and values in the file's units
   std::string comments;                      // as in RowNotes
   std::vector<RowNotes::Skipped> skipped;    // likewise, from the piece's first row on
   std::vector<ImpossibleValues> impossible;  // by cell of a row; rows of the piece
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows
   bool decimals = false;      // in the first time
+  int most_decimals = 0;      // of a time, or kAnyDecimals
 };
 
-// text: whole lines. lines_before: of the file; time_before: of the row before, NaN where it is not known.
+// The first time of the text, as its cell says it; nothing where it has no row.
+std::optional<std::string_view> first_time(std::string_view text, const CsvHeader& header, char separator);
+
+// text: whole lines. stamps: of the whole file's times. lines_before: of the file; time_before: of the row
+// before, since the same origin, NaN where it is not known.
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
-                         const std::string& path, std::size_t lines_before,
+                         const TimeStamps& stamps, const std::string& path, std::size_t lines_before,
                          double time_before = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace ifog

@@ -79,9 +79,11 @@ class CsvRows {
 
   void begin(TextPieces& pieces, std::string& text);
   void in_order(TextPieces& pieces, std::string text);
+  void count_from_first(std::string_view text);
   void deliver(Piece& piece);
   void merge(const CsvPiece& piece);
   void finish();
+  [[nodiscard]] double unit_s() const { return layout_.time.value_or(CsvTime{}).unit_s; }
 
   const std::string& path_;
   const CsvLayout& layout_;
@@ -92,8 +94,10 @@ class CsvRows {
   std::vector<ImpossibleValues> impossible_;  // by column
   std::optional<RowChecks> checks_;
   std::size_t lines_ = 0;
-  double last_ = std::numeric_limits<double>::quiet_NaN();  // time in the file's unit
+  double last_ = std::numeric_limits<double>::quiet_NaN();  // time as in the pieces
   bool decimals_ = false;                                   // in the first time
+  int most_decimals_ = 0;                                   // of a time
+  std::optional<TimeStamps> stamps_;                        // once there is a row
 };
 
 // `text`: what follows the header in its piece.
@@ -121,6 +125,13 @@ void CsvRows::begin(TextPieces& pieces, std::string& text) {
   sink_.begin(header_.names);
 }
 
+// Before the pieces are parsed, each by itself: all count from one origin.
+void CsvRows::count_from_first(std::string_view text) {
+  if (stamps_) return;
+  if (const auto first = first_time(text, header_, layout_.separator))
+    stamps_.emplace(CsvDigits(*first, layout_.separator != ','), unit_s());
+}
+
 void CsvRows::in_order(TextPieces& pieces, std::string text) {
   // Each holds its text and its numbers; more than these unpack no quicker than the file is read.
   const std::size_t at_once = std::clamp(std::thread::hardware_concurrency(), 2U, 8U);
@@ -129,9 +140,10 @@ void CsvRows::in_order(TextPieces& pieces, std::string text) {
     Piece& piece = under_way.emplace_back();
     piece.text = std::move(text);
     const auto how = piece.text.size() < kWorthAThread ? std::launch::deferred : std::launch::async;
-    const auto parse = [this, &piece]() -> std::optional<CsvPiece> {
+    count_from_first(piece.text);
+    const auto parse = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
       try {
-        return parse_csv_piece(piece.text, header_, layout_.separator, path_, 0);
+        return parse_csv_piece(piece.text, header_, layout_.separator, stamps, path_, 0);
       } catch (const std::runtime_error&) {
         return std::nullopt;
       }
@@ -152,7 +164,8 @@ void CsvRows::deliver(Piece& piece) {
   std::optional<CsvPiece> parsed = piece.parsed.get();
   if (!parsed || (parsed->rows.size() > 0 && parsed->rows.time_s.front() <= last_)) {
     // Here it is known where the piece stands, and so what to say.
-    parsed = parse_csv_piece(piece.text, header_, layout_.separator, path_, lines_, last_);
+    parsed = parse_csv_piece(piece.text, header_, layout_.separator, stamps_.value_or(TimeStamps()), path_,
+                             lines_, last_);
   }
   piece.text = {};
   merge(*parsed);
@@ -162,7 +175,8 @@ void CsvRows::deliver(Piece& piece) {
   if (rows.size() == 0) return;
   if (checks_->rows() == 0) decimals_ = parsed->decimals;
   last_ = rows.time_s.back();
-  checks_->take(rows);
+  most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
+  checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
 }
 
 void CsvRows::merge(const CsvPiece& piece) {
@@ -185,7 +199,7 @@ void CsvRows::merge(const CsvPiece& piece) {
 
 void CsvRows::finish() {
   if (checks_->rows() == 0) throw std::runtime_error(path_ + ": no rows after the header");
-  checks_->finish(impossible_, decimals_);
+  checks_->finish(impossible_, decimals_, ExactSteps(most_decimals_, unit_s()));
 }
 
 }  // namespace

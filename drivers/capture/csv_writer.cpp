@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "drivers/capture/time_stamps.h"
+
 namespace ifog {
 namespace {
 
@@ -35,12 +37,15 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
   file_.write(text_);
 }
 
-void CsvWriter::rows(std::span<const std::span<const double>> columns) {
+void CsvWriter::rows(std::span<const std::span<const double>> columns, std::int64_t origin_s) {
   text_.clear();
   for (std::size_t row = 0; row < columns.front().size(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c != 0) text_ += ',';
-      append(text_, columns[c][row]);
+      if (c == 0 && origin_s != 0)
+        append_time(text_, origin_s, columns[c][row]);
+      else
+        append(text_, columns[c][row]);
     }
     text_ += '\n';
   }

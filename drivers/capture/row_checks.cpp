@@ -46,22 +46,23 @@ RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vect
     all_.emplace();
 }
 
-void RowChecks::take(RowBlock& rows) {
-  if (layout_.chooses()) convert(rows, layout_, notes_, path_, rows_, last_s_);
+void RowChecks::take(RowBlock& rows, const ExactSteps& steps) {
+  if (layout_.chooses()) convert(rows, layout_, steps, notes_, path_, rows_, last_s_);
   last_s_ = rows.time_s.back();
   times_.take(rows.time_s);
   rows_ += rows.size();
   if (!all_) return leaps_.take(rows);
+  all_->origin_s = rows.origin_s;
   all_->columns.resize(rows.columns.size());
   all_->time_s.insert(all_->time_s.end(), rows.time_s.begin(), rows.time_s.end());
   for (std::size_t c = 0; c < rows.columns.size(); ++c)
     all_->columns[c].insert(all_->columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
 }
 
-void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known) {
+void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps) {
   for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
   if (all_) {
-    as_rates(*all_, layout_, notes_, path_);
+    as_rates(*all_, layout_, steps, notes_, path_);
     leaps_.take(*all_);
   }
   leaps_.finish();

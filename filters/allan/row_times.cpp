@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/row_times.h"
 
+#include <cmath>
+
 namespace ifog {
 
 RowTimes::RowTimes(const SeriesView& time_s, const SampleClock& clock)
     : period_s_(clock.period_s), first_s_(time_s.at(0)), scatters_(clock.scatters()) {
   if (scatters_) holes_ = holes(time_s, clock);
+}
+
+double rounded_rate(double period_s) {
+  const double rate = 1.0 / period_s;
+  const double unit = std::pow(10.0, std::floor(std::log10(rate)) - 8.0);
+  return std::round(rate / unit) * unit;
 }
 
 double RowTimes::next(double stamp_s) {

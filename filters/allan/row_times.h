@@ -27,4 +27,8 @@ class RowTimes {
   double even_s_ = 0.0;
 };
 
+// Samples a second of a period from time stamps, which carries their rounding: nine digits are more than any
+// crystal keeps.
+[[nodiscard]] double rounded_rate(double period_s);
+
 }  // namespace ifog

@@ -71,9 +71,10 @@ ChainParts::ChainParts(const ChainSettings& settings)
   if (trial.process_noise <= 0.0) trial.process_noise = 1e-10;
   if (trial.measurement_noise <= 0.0) trial.measurement_noise = 1e-10;
   const Estimator check(trial, facts_.axes, period_s_);
-  start_up_size_ =
-      std::clamp(static_cast<std::size_t>(std::max(0.0, settings.start_up_s * facts_.nominal_rate_hz)),
-                 kLeastStartUp, kMostStartUp);
+  // The nearest: a rate that was found from times is as often below what it is meant to be as above.
+  start_up_size_ = std::clamp(
+      static_cast<std::size_t>(std::round(std::max(0.0, settings.start_up_s * facts_.nominal_rate_hz))),
+      kLeastStartUp, kMostStartUp);
   start_up_.resize(start_up_size_ * static_cast<std::size_t>(facts_.axes));
 }
 

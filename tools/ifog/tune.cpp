@@ -47,7 +47,7 @@ struct Options {
 Rest rest_of(const CaptureView& capture, double period_s, const std::string& path) {
   Rest rest = find_rest(capture.rate_radps, period_s);
   try {
-    require_rest(rest, period_s, capture.time_s.front());
+    require_rest(rest, period_s, capture.told_time_s(0));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(path + ": " + error.what());
   }
@@ -213,12 +213,12 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
     try {
       AxisNoise found{
           noise_coefficients(AngleSum(rate, parts), clock.period_s),
-          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.time_s[i]; })};
+          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.told_time_s(i); })};
       if (const std::string change = in_words(found.changes); !change.empty())
         notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + change);
       noise[capture.axes[a]] = std::move(found);
       if (const std::string leaps =
-              in_words(find_glitches(rate, parts), [&](std::size_t i) { return capture.time_s[i]; });
+              in_words(find_glitches(rate, parts), [&](std::size_t i) { return capture.told_time_s(i); });
           !leaps.empty())
         notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + leaps);
     } catch (const std::invalid_argument& error) {
@@ -267,7 +267,7 @@ void run(const Options& options) {
   const Rest rest = rest_of(capture, period, options.capture);
   std::vector<std::string> notes;
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
-  if (const std::string motion = in_words(rest, period, capture.time_s.front()); !motion.empty())
+  if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");
   std::size_t left = 0;
   const auto columns = even(capture, rest, period, options.samples, left);

@@ -44,7 +44,6 @@ std::vector<Increment> increments(int n, unsigned seed) {
 }
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
-
 TEST(SignalChain, TheSameIncrementsGiveTheSameBits) {
   for (const double q : {1e-10, 0.0}) {  // noise given, and learned from the first seconds
     SignalChain one(std::make_unique<ChainParts>(settings(q))),
@@ -79,6 +78,24 @@ TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
   }
   EXPECT_NEAR(chain.parts().filter().measurement_noise, 1e-8, 0.1e-8);
   EXPECT_LT(std::abs(out.estimate.denoised_radps[0] - 0.01), 5e-5);
+}
+
+// A rate that was found from rounded times is as often a little below what it is meant to be as above.
+TEST(SignalChain, TheStartUpIsAsLongWhereTheRateIsOffByTheRoundingOfTimes) {
+  const std::vector<Increment> all = increments(1100, 2);
+  for (const double off : {-1e-6, -1e-12, 0.0, 1e-12, 1e-6}) {
+    ChainSettings unknown = settings(0.0, 0.0);
+    unknown.start_up_s = 1.0;
+    unknown.facts.nominal_rate_hz *= 1.0 + off;
+    SignalChain chain(std::make_unique<ChainParts>(unknown));
+    ChainOutput out;
+    int unfiltered = 0;
+    for (const Increment& increment : all) {
+      chain.process(increment, out);
+      unfiltered += (out.flags & kNoiseUnknown) != 0 ? 1 : 0;
+    }
+    EXPECT_EQ(unfiltered, 1000) << off;
+  }
 }
 
 TEST(SignalChain, AWarmUpBeginsAtPowerUpWhicheverWayThatIsSaid) {

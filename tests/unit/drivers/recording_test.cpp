@@ -294,6 +294,35 @@ TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
   EXPECT_EQ(bytes.size(), 4U * 8U);
 }
 
+// A device whose clock shows the time since 1970, as one that is set by PTP: an angle's steps are divided by
+// what its nanoseconds say, and no time loses one of them.
+TEST_F(Recording, AClockThatShowsTheEpochMakesTheRatesOfOneThatBeginsAtZero) {
+  ifog_description d{};
+  d.axes = 1;
+  d.kind = IFOG_ANGLE;
+  d.has_device_time = 1;
+  d.nominal_rate_hz = 1000.0;
+  ifog::CaptureBuilder from_0(d), from_1970(d);
+  ifog_sample sample{};
+  sample.valid_axes = 1;
+  sample.flags = IFOG_SAMPLE_DEVICE_TIME;
+  for (int i = 0; i < 200; ++i) {
+    sample.value[0] = 1e-3 * i * i;
+    sample.device_time_ns = 1'000'001LL * i;
+    from_0.add(sample);
+    sample.device_time_ns += 1'700'000'000'000'000'000;
+    from_1970.add(sample);
+  }
+  ifog::RowBlock one, other;
+  from_0.next_rows(one);
+  from_1970.next_rows(other);
+  EXPECT_EQ(one.origin_s, 0);
+  EXPECT_EQ(other.origin_s, 1'700'000'000);
+  EXPECT_EQ(one.time_s, other.time_s);
+  ASSERT_EQ(one.columns[0].size(), 200U);
+  for (std::size_t i = 1; i < 200; ++i) ASSERT_EQ(one.columns[0][i], other.columns[0][i]) << i;
+}
+
 TEST_F(Recording, TimeThatStandsStillIsRefused) {
   ifog_description d{};
   d.axes = 1;

@@ -12,6 +12,7 @@
 
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/allan/row_times.h"
 #include "filters/rest/glitches.h"
 #include "filters/rest/rest.h"
 #include "tools/ifog/allan/filter_start.h"
@@ -26,13 +27,6 @@ std::string number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", value);
   return text.data();
-}
-
-// A period from time stamps carries their rounding; nine digits are more than any crystal keeps.
-double rounded_rate(double period_s) {
-  const double rate = 1.0 / period_s;
-  const double unit = std::pow(10.0, std::floor(std::log10(rate)) - 8.0);
-  return std::round(rate / unit) * unit;
 }
 
 const char* name_of(Deviation kind) {
@@ -133,6 +127,11 @@ bool is_dead(const SeriesView& values) {
   return dead;
 }
 
+// Of a row, for who is told of it.
+double told_time(const LongTable& table, std::size_t row) {
+  return static_cast<double>(table.origin_s) + SeriesView(table.time_s).at(row);
+}
+
 // All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
 // rates.
 Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Rows& rows,
@@ -151,16 +150,18 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   if (options.keep_motion || options.minus_reference || axes.empty()) return all;
   Rest rest = find_rest(axes, clock.period_s);
   try {
-    require_rest(rest, clock.period_s, SeriesView(table.time_s).at(rows.begin));
+    require_rest(rest, clock.period_s, told_time(table, rows.begin));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(name + ": " + error.what() + ", or --moving keep");
   }
   return rest;
 }
 
+// time_s: since origin_s.
 AllanRecord analyse(const std::string& name, const std::string& signal, const std::string& axis,
-                    const SeriesView& time_s, const SeriesView& rate, const SampleClock& clock,
-                    const Gaps& gaps, const Rest& rest, const AllanOptions& options) {
+                    double origin_s, const SeriesView& time_s, const SeriesView& rate,
+                    const SampleClock& clock, const Gaps& gaps, const Rest& rest,
+                    const AllanOptions& options) {
   AllanRecord record;
   record.capture = name;
   record.axis = axis;
@@ -171,6 +172,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   const double period = 1.0 / record.sample_rate_hz;
   const std::string column = signal + (axis.empty() ? "" : "_" + axis);
 
+  const auto told_time_s = [&](std::size_t row) { return origin_s + time_s.at(row); };
   std::size_t nans = 0, first_nan = 0;
   for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -180,14 +182,14 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   if (clock.gaps > 0) {
     const std::string what = std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
                              " in the time column (" + std::to_string(clock.missing) +
-                             " samples missing), the first after " + number(time_s.at(clock.first_gap)) +
+                             " samples missing), the first after " + number(told_time_s(clock.first_gap)) +
                              " s";
     if (options.refuse_gaps)
       throw std::runtime_error(gaps.place(clock.first_gap) + ": " + what + ", expected none");
     record.notes.push_back(gaps.place(clock.first_gap) + ": " + what);
   }
   if (nans > 0) {
-    const std::string what = missing_in_words(column, nans, rate.size(), time_s.at(first_nan));
+    const std::string what = missing_in_words(column, nans, rate.size(), told_time_s(first_nan));
     if (options.refuse_gaps)
       throw std::runtime_error(gaps.place(first_nan) + ": " + what + ", expected none");
     record.notes.push_back(gaps.place(first_nan) + ": " + what);
@@ -212,9 +214,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
                            number(static_cast<double>(record.longest) * period) + " s");
 
   // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
-  if (const std::string leaps = signal == "denoised" ? ""
-                                                     : in_words(find_glitches(rate, parts),
-                                                                [&](std::size_t i) { return time_s.at(i); });
+  if (const std::string leaps = signal == "denoised" ? "" : in_words(find_glitches(rate, parts), told_time_s);
       !leaps.empty())
     record.notes.push_back(name + ": " + column + ": " + leaps);
 
@@ -238,7 +238,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
       record.notes.push_back(name + ": --tau " + number(options.tau_s[i]) +
                              " s is no multiple of the sample time, taken at " + number(record.tau_s[i]) +
                              " s");
-  record.noise_changes = noise_changes(rate, parts, period, [&](std::size_t i) { return time_s.at(i); });
+  record.noise_changes = noise_changes(rate, parts, period, told_time_s);
   if (const std::string change = in_words(record.noise_changes); !change.empty())
     record.notes.push_back(name + ": " + column + ": " + change);
   record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
@@ -290,7 +290,7 @@ bool allan_wants(const std::string& column) {
 
 std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,
                                        const AllanOptions& options) {
-  const TimePart::Rows rows = options.part.rows(table.time_s, name);
+  const TimePart::Rows rows = options.part.rows(table.time_s, table.origin_s, name);
   const SeriesView time_s = SeriesView(table.time_s).part(rows.begin, rows.end);
   if (time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
@@ -328,13 +328,14 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
     Rest analysed = rest;
     analysed.at_rest = common(rest.at_rest, running);
-    records.push_back(
-        analyse(name, signal, axis, time_s, rate.part(rows.begin, rows.end), clock, gaps, analysed, options));
+    records.push_back(analyse(name, signal, axis, static_cast<double>(table.origin_s), time_s,
+                              rate.part(rows.begin, rows.end), clock, gaps, analysed, options));
     if (later)
       records.back().notes.push_back(
-          name + ": " + column.name + ": until " + number(time_s.at(started - rows.begin)) +
+          name + ": " + column.name + ": until " + number(told_time(table, started)) +
           " s the filter had not started and this is the compensated rate: left out");
-    if (const std::string motion = in_words(rest, clock.period_s, time_s.at(0)); !motion.empty())
+    if (const std::string motion = in_words(rest, clock.period_s, told_time(table, rows.begin));
+        !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }
   if (axes.empty())

@@ -21,12 +21,12 @@ std::string seconds(double value) {
   return text;
 }
 
-// The first of the rows from `begin` on that is not before `wanted`.
-std::size_t first_from(const SeriesView& time_s, std::size_t begin, double wanted) {
+// The first of the rows from `begin` on that is not before `wanted`, both rounded as an option is.
+std::size_t first_from(const SeriesView& time_s, double origin_s, std::size_t begin, double wanted) {
   std::size_t end = time_s.size();
   while (begin < end) {
     const std::size_t middle = begin + (end - begin) / 2;
-    if (time_s.at(middle) < wanted)
+    if (origin_s + time_s.at(middle) < wanted)
       begin = middle + 1;
     else
       end = middle;
@@ -41,9 +41,13 @@ void TimePart::add_to(CLI::App& command) {
   command.add_option("--to", to_s, "Leave out what is from this time on, s");
 }
 
-TimePart::Rows TimePart::rows(const SeriesView& time_s, const std::string& name) const {
-  const std::size_t begin = first_from(time_s, 0, from_s), end = first_from(time_s, begin, to_s);
-  if (begin == end && !time_s.empty()) refuse_empty(time_s.at(0), time_s.at(time_s.size() - 1), name);
+TimePart::Rows TimePart::rows(const SeriesView& time_s, std::int64_t origin_s,
+                              const std::string& name) const {
+  const auto origin = static_cast<double>(origin_s);
+  const std::size_t begin = first_from(time_s, origin, 0, from_s);
+  const std::size_t end = first_from(time_s, origin, begin, to_s);
+  if (begin == end && !time_s.empty())
+    refuse_empty(origin + time_s.at(0), origin + time_s.at(time_s.size() - 1), name);
   return {begin, end};
 }
 
@@ -54,16 +58,16 @@ void TimePart::refuse_empty(double first_s, double last_s, const std::string& na
                            seconds(first_s) + " … " + seconds(last_s) + " s");
 }
 
-std::size_t TimePart::cut(std::vector<double>& time_s, std::span<std::vector<double>* const> columns,
-                          const std::string& name) const {
-  const Rows kept = rows(time_s, name);
+std::size_t TimePart::cut(std::vector<double>& time_s, std::int64_t origin_s,
+                          std::span<std::vector<double>* const> columns, const std::string& name) const {
+  const Rows kept = rows(time_s, origin_s, name);
   keep(kept, time_s);
   for (std::vector<double>* const column : columns) keep(kept, *column);
   return kept.begin;
 }
 
 std::size_t TimePart::cut(Capture& capture, const std::string& name) const {
-  const Rows kept = rows(capture.time_s, name);
+  const Rows kept = rows(capture.time_s, capture.origin_s, name);
   if (capture.since_power_up_s && kept.begin < capture.size())
     *capture.since_power_up_s += capture.time_s[kept.begin] - capture.time_s.front();
   keep(kept, capture.time_s);

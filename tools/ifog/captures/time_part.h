@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -27,8 +28,9 @@ struct TimePart {
   struct Rows {
     std::size_t begin, end;
   };
-  // Those inside. name: for messages. Throws std::runtime_error with one line when there is none.
-  [[nodiscard]] Rows rows(const SeriesView& time_s, const std::string& name) const;
+  // Those inside. origin_s: that the times are counted from; name: for messages. Throws std::runtime_error
+  // with one line when there is none.
+  [[nodiscard]] Rows rows(const SeriesView& time_s, std::int64_t origin_s, const std::string& name) const;
   // The same refusal, of times that nobody kept.
   [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
 
@@ -36,8 +38,8 @@ struct TimePart {
   // one line when no row is inside.
   std::size_t cut(Capture& capture, const std::string& name) const;
   // columns: as long as the times, or empty.
-  std::size_t cut(std::vector<double>& time_s, std::span<std::vector<double>* const> columns,
-                  const std::string& name) const;
+  std::size_t cut(std::vector<double>& time_s, std::int64_t origin_s,
+                  std::span<std::vector<double>* const> columns, const std::string& name) const;
 };
 
 }  // namespace ifog::tools

@@ -16,14 +16,14 @@ namespace {
 
 std::string rate_of(const std::string& axis) { return axis.empty() ? "rate" : "rate_" + axis; }
 
-void tell_missing(const std::string& name, const std::string& axis, std::span<const double> time_s,
+void tell_missing(const std::string& name, const std::string& axis, const CaptureView& capture,
                   std::span<const double> rate) {
   const auto none = [](double value) { return std::isnan(value); };
   const auto missing = static_cast<std::size_t>(std::count_if(rate.begin(), rate.end(), none));
   if (missing == 0) return;
   const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
   warn("%s: %s\n", name.c_str(),
-       missing_in_words(rate_of(axis), missing, rate.size(), time_s[first]).c_str());
+       missing_in_words(rate_of(axis), missing, rate.size(), capture.told_time_s(first)).c_str());
 }
 
 bool has_value(std::span<const double> values) {
@@ -66,7 +66,7 @@ std::vector<std::string> unusable(const CaptureView& capture, const std::string&
     else if (is_in(stuck, axis))
       tell_stuck(name, axis, capture.rate_radps[a]);
     else
-      tell_missing(name, axis, capture.time_s, capture.rate_radps[a]);
+      tell_missing(name, axis, capture, capture.rate_radps[a]);
   }
   missing.insert(missing.end(), stuck.begin(), stuck.end());
   return missing;

@@ -11,6 +11,7 @@ namespace {
 RowNotes hand_on(Capture capture, RowSink& sink) {
   std::vector<std::string> names;
   RowBlock rows;
+  rows.origin_s = capture.origin_s;
   rows.time_s = std::move(capture.time_s);
   const auto add = [&](const std::string& what, const std::string& axis, std::vector<double>& values) {
     if (values.empty()) return;

@@ -37,9 +37,9 @@ AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const
 }
 
 // A curve in the units that it is shown in, in no more points than are drawn.
-report::Thinned drawn(std::span<const double> time_s, double unit_s, std::span<const double> rate_radps) {
-  Samples time(time_s), rate(rate_radps);
-  for (double& t : time) t *= 1.0 / unit_s;
+report::Thinned drawn(const CaptureView& capture, double unit_s, std::span<const double> rate_radps) {
+  Samples time(capture.time_s), rate(rate_radps);
+  for (double& t : time) t = (static_cast<double>(capture.origin_s) + t) / unit_s;
   for (double& r : rate) r *= 1.0 / kDegreePerHour;
   return report::thinned(time, rate);
 }
@@ -71,15 +71,15 @@ class AxisRows {
       : rules_(rules),
         prefix_(capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": "),
         unit_(report::time_unit(capture.time_s.back() - capture.time_s.front())),
-        first_(capture.time_s.front() / unit_.seconds),
-        last_(capture.time_s.back() / unit_.seconds),
-        raw_(drawn(capture.time_s, unit_.seconds, capture.rate_radps[axis])) {
+        first_(capture.told_time_s(0) / unit_.seconds),
+        last_(capture.told_time_s(capture.size() - 1) / unit_.seconds),
+        raw_(drawn(capture, unit_.seconds, capture.rate_radps[axis])) {
     const SampleClock clock = sample_clock(capture.time_s);
     raw_allan_ = allan(capture, capture.rate_radps[axis], clock);
     std::vector<const Samples*> outputs;
     for (std::size_t r = 0; r < rules.size(); ++r) {
       outputs.push_back(&result.denoised[r][axis]);
-      outputs_.push_back(drawn(capture.time_s, unit_.seconds, *outputs.back()));
+      outputs_.push_back(drawn(capture, unit_.seconds, *outputs.back()));
       allan_.push_back(allan(capture, *outputs.back(), clock));
     }
     keep_range(rate_, outputs);

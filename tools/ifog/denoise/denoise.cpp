@@ -257,6 +257,7 @@ void run(DenoiseOptions options) {
   } else {
     LongTable table = options.input.read_long(capture);
     keep_usable_axes(table, options.capture);
+    rows.count_from(table.origin_s);
     OfflineSettings of = settings();
     tell_other_rate(options, of.sensor.nominal_rate_hz, table);
     const std::string model = of.model ? of.model->identity() : "";

@@ -51,7 +51,7 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
 // much for that.
 double rate_of(const SeriesView& time_s, const SampleClock& clock) {
   constexpr double kCoarse = 1e-4;
-  const double median = 1.0 / median_step(time_s), mean = 1.0 / clock.period_s;
+  const double median = rounded_rate(median_step(time_s)), mean = rounded_rate(clock.period_s);
   return clock.scatters() || std::abs(mean / median - 1.0) > kCoarse ? mean : median;
 }
 

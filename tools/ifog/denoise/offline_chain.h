@@ -31,8 +31,8 @@ struct OfflineSettings {
 struct OfflineSink {
   // Once, before the first sample: the sensor's axes.
   std::function<void(const std::vector<std::string>& axes)> begin;
-  // One sample. time_s: a CSV capture's own; of a recording the time since its first sample, by the step
-  // times. Whether it counts in the result: it is of the part that is wanted.
+  // One sample. time_s: a capture's own, from its table's origin; of a recording the time since its first
+  // sample, by the step times. Whether it counts in the result: it is of the part that is wanted.
   std::function<bool(double time_s, const Increment&, const ChainOutput&)> sample;
 };
 

@@ -30,6 +30,7 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
   for (const std::string& path : gyro.captures) {
     opened.hashes.emplace_back();
     opened.read.push_back(settings.input.read_long_capture(path, &opened.hashes.back()));
+    opened.read.back().count_from_zero();
     opened.read.back().cut(settings.part, path);
     opened.captures.push_back(opened.read.back().view());
   }

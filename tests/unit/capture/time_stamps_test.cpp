@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same series with its times begun at any moment and in any unit is the same series. Times are made of
+// whole numbers here, so that what they should be is known to the last digit.
+#include "drivers/capture/time_stamps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/csv_rows.h"
+
+namespace {
+
+using ifog::ExactSteps;
+using ifog::TimeStamps;
+
+double since(const std::string& first, double unit_s, const std::string& text) {
+  int decimals = 0;
+  double value = std::nan("");
+  EXPECT_TRUE(TimeStamps(first, unit_s).since(text, value, decimals)) << text;
+  return value;
+}
+
+std::string told(std::int64_t origin_s, double since_s) {
+  std::string text;
+  ifog::append_time(text, origin_s, since_s);
+  return text;
+}
+
+TEST(TimeStamps, LoseNoDigitOfAnEpoch) {
+  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700000000.123456789"), 0.123456789);
+  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700086399.999999999"), 86399.999999999);
+  EXPECT_EQ(since("1700000000123456789", 1e-9, "1700000000123456790"), 123456790.0);
+  EXPECT_EQ(since("1700000000123.5", 1e-3, "1700000000124.25"), 124.25);
+  EXPECT_EQ(since("345678.25", 1.0, "345678.26"), 0.26);
+  EXPECT_EQ(since("-1700000000.5", 1.0, "-1700000000.49"), 0.51);
+  EXPECT_EQ(since("-1700000000.5", 1.0, "-1699999999.5"), 1.5);
+  EXPECT_EQ(TimeStamps("-1700000000.5", 1.0).origin_s(), -1700000001);
+  EXPECT_EQ(TimeStamps("1700000000123456789", 1e-9).origin_s(), 1700000000);
+  EXPECT_EQ(TimeStamps("28333333", 60.0).origin_s(), 28333333LL * 60);
+}
+
+TEST(TimeStamps, StandAsTheyAreWhereADoubleHoldsThem) {
+  for (const std::string first : {"0", "12.5", "-3.75", "1023.999", "nan", "", "1e9", "time"})
+    EXPECT_EQ(TimeStamps(first, 1.0).origin_s(), 0) << first;
+  for (const std::string text : {"0.01", "+0.01", "17.", ".5", "-0.3", "123456.789012345"})
+    EXPECT_EQ(since("0", 1.0, text), std::stod(text)) << text;
+}
+
+TEST(TimeStamps, LeaveWhatIsNotPlainToOthers) {
+  int decimals = 0;
+  double value = 0.0;
+  for (const std::string text : {"", "-", ".", "1e3", "nan", "1.5x", " 1", "99999999999999999999"})
+    EXPECT_FALSE(TimeStamps().since(text, value, decimals)) << text;
+}
+
+TEST(TimeStamps, AreHeldToWhatHasRoom) {
+  EXPECT_EQ(TimeStamps("4500000000000000000", 3600.0).origin_s(), 0);
+  EXPECT_EQ(TimeStamps("9223372036854775807", 1e-9).origin_s(), 0);
+  EXPECT_EQ(since("-4599999999999999999", 1e-9, "4599999999999999999"), 9199999999999999999.0);
+  EXPECT_EQ(ifog::time_origin_s(INT64_MIN), -9223372037);
+  EXPECT_EQ(ifog::time_origin_s(INT64_MAX), 9223372036);
+  EXPECT_EQ(ifog::time_origin_s(-1'700'000'000'500'000'000), -1700000001);
+  EXPECT_EQ(ifog::time_origin_s(1'000'000'000), 0);
+}
+
+TEST(TimeStamps, AreToldInTheDigitsTheyCameWith) {
+  EXPECT_EQ(told(1700000000, 0.123456789), "1700000000.123456789");
+  EXPECT_EQ(told(1700000000, 86399.999999999), "1700086399.999999999");
+  EXPECT_EQ(told(1700000000, 1.0), "1700000001");
+  EXPECT_EQ(told(-1700000001, 0.5), "-1700000000.5");
+  EXPECT_EQ(told(-1700000001, 0.51), "-1700000000.49");
+  EXPECT_EQ(told(-2000, 1999.25), "-0.75");
+  EXPECT_EQ(told(-2000, 2000.25), "0.25");
+  EXPECT_EQ(told(-2000, 2000.0), "0");
+  EXPECT_EQ(told(5000, -0.25), "4999.75");
+}
+
+TEST(ExactSteps, AreThoseOfTheDigits) {
+  const ExactSteps of_ms(3, 1.0), of_ns(0, 1e-9);
+  // Each is rounded by as much as 7e-12 here.
+  EXPECT_NE(86400.003 - 86400.002, 0.001);
+  EXPECT_EQ(of_ms.between(86400.002, 86400.003), 0.001);
+  EXPECT_EQ(of_ns.between(86400.002, 86400.003), 0.001);
+  EXPECT_EQ(ExactSteps().between(0.25, 0.75), 0.5);
+  // Ticks that the doubles do not tell apart.
+  EXPECT_EQ(of_ns.between(1.7e9, 1.7e9 + 0.25), 0.25);
+  EXPECT_EQ(of_ms.nearest(std::nextafter(0.123, 1.0)), 0.123);
+}
+
+// What a file of times since `start` (in ticks of a ns) says, in a unit of `of_second` a second.
+std::string stamp(std::int64_t ns, std::int64_t of_second) {
+  const std::int64_t tick = 1'000'000'000 / of_second;  // ns in a unit
+  const std::string sign = ns < 0 ? "-" : "";
+  const std::int64_t all = std::abs(ns);
+  std::string text = sign + std::to_string(all / tick);
+  if (tick == 1) return text;
+  std::string behind = std::to_string(all % tick);
+  behind.insert(0, std::to_string(tick).size() - 1 - behind.size(), '0');
+  return text + "." + behind;
+}
+
+struct Gathered final : ifog::RowSink {
+  std::int64_t origin_s = 0;
+  std::vector<double> time_s, rate;
+  void begin(const std::vector<std::string>&) override {}
+  void take(ifog::RowBlock& rows) override {
+    origin_s = rows.origin_s;
+    time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
+    rate.insert(rate.end(), rows.columns[0].begin(), rows.columns[0].end());
+  }
+};
+
+// An angle, whose cells are the same whatever the times.
+Gathered turned(std::int64_t start_ns, std::int64_t of_second, const std::string& unit, std::size_t piece) {
+  constexpr int kRows = 400;
+  std::string text = "t,angle\n";
+  for (int i = 0; i < kRows; ++i)
+    text += stamp(start_ns + i * 10'000'000LL, of_second) + "," + std::to_string(i) + "e-3\n";
+  ifog::CsvLayout layout;
+  layout.time = ifog::CsvTime::parse("t:" + unit);
+  layout.columns = {ifog::CsvColumn::parse("rate_radps=angle:rad")};
+  std::size_t at = 0;
+  Gathered out;
+  ifog::read_csv_rows(
+      [&](char* to, std::size_t most) {
+        const std::size_t n = std::min(most, text.size() - at);
+        std::memcpy(to, text.data() + at, n);
+        at += n;
+        return n;
+      },
+      "a.csv", layout, out, piece);
+  return out;
+}
+
+TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
+  const Gathered from_0 = turned(0, 1, "s", 1U << 20U);
+  ASSERT_EQ(from_0.rate.size(), 400U);
+  EXPECT_EQ(from_0.time_s[3], 0.03);
+  struct Unit {
+    const char* name;
+    std::int64_t of_second;
+  };
+  for (const std::int64_t start_ns : {1'700'000'000'000'000'000LL, 1'700'000'000'123'456'789LL,
+                                      345'678'250'000'000LL, -1'700'000'000'500'000'000LL, 5'000'000LL})
+    for (const Unit unit : {Unit{"s", 1}, {"ms", 1000}, {"us", 1'000'000}, {"ns", 1'000'000'000}})
+      // The second reads it in forty pieces, each by itself.
+      for (const std::size_t piece : {1U << 20U, 256U}) {
+        const Gathered got = turned(start_ns, unit.of_second, unit.name, piece);
+        ASSERT_EQ(got.rate.size(), from_0.rate.size());
+        for (std::size_t i = 1; i < got.rate.size(); ++i) {
+          ASSERT_EQ(got.rate[i], from_0.rate[i]) << start_ns << " " << unit.name << " row " << i;
+          const std::int64_t ns =
+              start_ns + static_cast<std::int64_t>(i) * 10'000'000 - got.origin_s * 1'000'000'000;
+          ASSERT_EQ(got.time_s[i], static_cast<double>(ns) / 1e9) << unit.name << " row " << i;
+        }
+      }
+}
+
+}  // namespace
