@@ -25,6 +25,7 @@ struct Convert {
 };
 
 void Convert::run() const {
+  expect_capture_name("TO", to, true);
   will_write("TO", to);
   input.will_read("FROM", from);
   InputFile file(from);

@@ -8,6 +8,12 @@
 
 namespace ifog::tools {
 
+inline constexpr const char* kColumnEndings = ".csv, .csv.gz or .h5";
+
+// That `path`, the value of `option`, takes columns, or, with `also_recordings`, the recording of a
+// device. Throws CLI::ValidationError (usage); before anything is read or written.
+void expect_capture_name(const std::string& option, const std::string& path, bool also_recordings);
+
 // As a capture in columns: HDF5 where `to` ends so, else CSV. `name` is what messages call the table. Throws
 // std::runtime_error with one line.
 void write_columns(const LongTable& table, const std::string& name, const std::string& to);

@@ -17,6 +17,7 @@
 #include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/model_axes.h"
@@ -217,6 +218,7 @@ void run(DenoiseOptions options) {
   if (!options.sensor.empty() && options.config.empty())
     throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
                                                ", expected --config with it, whose sensors have names");
+  expect_capture_name("--output", options.output, false);
   will_write("--output", options.output);
   will_write("--json", options.json);
   will_write("--plot", options.picture);
