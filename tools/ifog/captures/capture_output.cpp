@@ -84,12 +84,13 @@ void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const
 
 }  // namespace
 
-void expect_capture_name(const std::string& option, const std::string& path, bool also_recordings) {
+void expect_capture_name(const std::string& option, const std::string& path, const CaptureInput* encoding) {
   const FileKind kind = file_kind(path);
-  const bool recording = kind == FileKind::bytes || kind == FileKind::candump;
+  const bool sent = encoding != nullptr && (kind == FileKind::bytes || kind == FileKind::candump ||
+                                            (kind == FileKind::unknown && encoding->has_driver()));
   expect_ending(
-      option, path, kind == FileKind::capture || (also_recordings && recording),
-      std::string(kColumnEndings) + (also_recordings ? "; through a driver in .bin, .kvh or .log" : ""));
+      option, path, kind == FileKind::capture || sent,
+      std::string(kColumnEndings) + (encoding != nullptr ? "; through a driver in .bin, .kvh or .log" : ""));
 }
 
 void write_columns(const LongTable& table, const std::string& from, const std::string& to) {

@@ -150,6 +150,13 @@ void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments
       moments.denoised.deviation() / kDegreePerHour);
 }
 
+// Samples that nobody has a row of; a row without a value is another thing, and is said by axis.
+std::string gaps_in_words(const IncrementerCounts& counts) {
+  if (counts.gaps == 0) return "no gap between them";
+  return std::to_string(counts.missing) + " more lost in " + std::to_string(counts.gaps) +
+         (counts.gaps == 1 ? " gap" : " gaps");
+}
+
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
@@ -167,9 +174,8 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
         "recording "
         "lacks something there\n",
         options.capture.c_str(), *result.not_as_published_from_s);
-  say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), rows.written(),
-      result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
-      static_cast<unsigned long long>(result.counts.missing));
+  say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
+      gaps_in_words(result.counts).c_str());
   if (result.runs > 1 || result.exchanges > 0)
     say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): %s; at the end\n", result.runs,
         result.exchanges,
@@ -218,7 +224,6 @@ void run(DenoiseOptions options) {
   if (!options.sensor.empty() && options.config.empty())
     throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
                                                ", expected --config with it, whose sensors have names");
-  expect_capture_name("--output", options.output, false);
   will_write("--output", options.output);
   will_write("--json", options.json);
   will_write("--plot", options.picture);
@@ -226,6 +231,7 @@ void run(DenoiseOptions options) {
   will_read("--model", options.model);
   will_read("--noise", options.noise);
   will_read("--config", options.config);
+  expect_capture_name("--output", options.output, nullptr);
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
