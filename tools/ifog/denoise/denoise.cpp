@@ -231,12 +231,12 @@ void run(DenoiseOptions options) {
   will_read("--model", options.model);
   will_read("--noise", options.noise);
   will_read("--config", options.config);
-  expect_capture_name("--output", options.output, nullptr);
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
   if (kind == FileKind::flight && !recorded_messages(capture)) flight.emplace(capture);
   const std::optional<ConfiguredSensor> configured = configured_sensor(options, kind);
+  expect_capture_name("--output", options.output, nullptr);
   const auto settings = [&] { return settings_of(options, configured, flight ? &*flight : nullptr); };
   // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
