@@ -23,18 +23,33 @@ std::vector<std::string> split(std::string_view line, char separator) {
   }
 }
 
-bool is_number(const std::string& text) {
+bool is_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, value);
   return read.ec == std::errc() && read.ptr == end;
 }
 
+// A line of numbers, whatever stands between them, is no header.
+void refuse_numbers(std::string_view line, const std::string& path, std::size_t number) {
+  constexpr std::string_view kBetween = ",;|\t ";
+  std::string first;
+  for (std::size_t from = 0; from < line.size();) {
+    const std::size_t to = std::min(line.find_first_of(kBetween, from), line.size());
+    const std::string cell(unquoted(line.substr(from, to - from)));
+    from = to + 1;
+    if (cell.empty()) continue;
+    if (!is_number(cell)) return;
+    if (first.empty()) first = cell;
+  }
+  if (first.empty()) return;
+  fail_at(path, number,
+          "begins with numbers, " + in_quotes(first) +
+              ", …, expected a header before them: 'time_s,rate_radps,…'");
+}
+
 void check_names(const std::vector<std::string>& names, const std::string& path, std::size_t line) {
-  if (std::all_of(names.begin(), names.end(), is_number))
-    fail_at(path, line,
-            "begins with numbers, " + in_quotes(names.front()) +
-                ", …, expected a header before them: 'time_s,rate_radps,…'");
   if (names.front() != "time_s")
     refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names);
   std::set<std::string> seen;
@@ -132,6 +147,12 @@ bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& lay
   }
   if (names.empty()) return false;
   header.line = lines.number();
+  // Numbers may be the names of columns that were asked for by them.
+  const auto asked_for = [&](const std::string& column) {
+    return std::find(names.begin(), names.end(), column) != names.end();
+  };
+  if (!layout.chooses() || !asked_for(layout.time.value_or(CsvTime{}).header))
+    refuse_numbers(line, path, header.line);
   if (const std::string separator = suggested_separator(std::string(line));
       layout.separator == ',' && !separator.empty())
     fail_at(path, header.line,

@@ -11,6 +11,7 @@
 
 #include "drivers/capture/measurable.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "drivers/units/units.h"
 
 namespace ifog {
@@ -99,15 +100,6 @@ bool is_time(const std::string& base) {
   return std::find(kNames.begin(), kNames.end(), base) != kNames.end();
 }
 
-// As a shell takes it.
-std::string typed(const std::string& text) {
-  const bool bare = std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-./:=%^").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  return bare ? text : in_quotes(text);
-}
-
 // What another column than the sensor's rate would be called in a capture, by the first unit of its quantity:
 // temperature_degC for degF. "" where its unit says nothing, or it is a rate that is no reference: made of
 // the sensor's own, it would explain that away.
@@ -190,11 +182,11 @@ char CsvLayout::parse_separator(const std::string& text) {
 }
 
 std::string option_for(const CsvColumn& column, const std::string& unit) {
-  return "--column " + typed(column.name + "=" + column.header + ":" + unit);
+  return "--column " + shell_word(printable(column.name + "=" + column.header + ":" + unit, kLongestMessage));
 }
 
 std::string option_for(const CsvTime& time, const std::string& unit) {
-  return "--time " + typed(time.header + ":" + unit);
+  return "--time " + shell_word(printable(time.header + ":" + unit, kLongestMessage));
 }
 
 std::string suggested_options(const std::vector<std::string>& headers) {

@@ -36,9 +36,13 @@ std::string label_of(const Effect& effect) {
   return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
 }
 
+// For a complaint; of a model file with its line.
+std::string place_of(const Effect& effect) {
+  return "effect " + label_of(effect) + (effect.line > 0 ? " in line " + std::to_string(effect.line) : "");
+}
+
 [[noreturn]] void refuse_axis(const Effect& effect) {
-  throw std::invalid_argument("effect " + label_of(effect) + ": the sensor has no axis " +
-                              in_quotes(effect.axis));
+  throw std::invalid_argument(place_of(effect) + ": the sensor has no axis " + in_quotes(effect.axis));
 }
 
 }  // namespace
@@ -85,7 +89,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     return;
   }
   if (has_channel(*form) && effect.channel.empty()) {
-    throw std::invalid_argument("effect " + in_quotes(effect.form) + " names no channel");
+    throw std::invalid_argument(place_of(effect) + " names no channel");
   }
   Term term;
   term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
@@ -104,7 +108,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     if (*form == Form::kProduct)
       add_factor(term, with_shape_settings(effect), effect.with_channel, axes, ranges);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
+    throw std::invalid_argument(place_of(effect) + ": " + error.what());
   }
   place(std::move(term), effect, axes);
 }
@@ -119,7 +123,7 @@ void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>&
       placed = true;
     }
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("effect " + label_of(effect) + ": " + error.what());
+    throw std::invalid_argument(place_of(effect) + ": " + error.what());
   }
   if (!placed) refuse_axis(effect);
 }
@@ -127,7 +131,7 @@ void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>&
 void Compensator::add_zone(const Effect& effect, const std::vector<std::string>& axes) {
   const double half_width = parameter(effect, kHalfWidth);
   if (!is_reference_rate(effect.channel) || !(half_width >= 0.0 && std::isfinite(half_width)))
-    throw std::invalid_argument("effect " + label_of(effect) +
+    throw std::invalid_argument(place_of(effect) +
                                 ": expected reference_rate and a half_width of at least 0");
   bool placed = false;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/model_file/effect_parameters.h"
 
+#include <algorithm>
+#include <array>
+
 namespace ifog {
 namespace {
 
@@ -56,6 +59,20 @@ const FormRules* rules_of_form(std::string_view form) {
   for (const FormRules& rules : form_rules())
     if (rules.form == form) return &rules;
   return nullptr;
+}
+
+bool is_of_channel(std::string_view form) {
+  constexpr std::array<std::string_view, 15> kForms = {
+      "linear", "quadratic", "cubic",    "quintic", "septic", "rate",       "second_rate", "lagged",
+      "lookup", "product",   "absolute", "cosine",  "sine",   "band_power", "transition"};
+  return std::find(kForms.begin(), kForms.end(), form) != kForms.end();
+}
+
+const std::vector<std::string_view>& forms_of_product() {
+  static const std::vector<std::string_view> forms = {
+      "linear", "quadratic", "cubic",      "quintic",    "septic",    "rate",      "second_rate",
+      "lagged", "absolute",  "band_power", "transition", "dead_zone", "earth_rate"};
+  return forms;
 }
 
 std::vector<ParameterRule> parameters_of(std::string_view form, std::string_view with_form) {

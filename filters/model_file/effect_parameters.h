@@ -26,6 +26,11 @@ const std::vector<FormRules>& form_rules();
 // Null for a form that nobody knows.
 const FormRules* rules_of_form(std::string_view form);
 
+// Whether an effect of this form is of a channel, without which nothing can be subtracted.
+[[nodiscard]] bool is_of_channel(std::string_view form);
+// Which a product can be with, beside its own channel.
+const std::vector<std::string_view>& forms_of_product();
+
 // Of an effect; a product has its second form's beside its coefficient.
 std::vector<ParameterRule> parameters_of(std::string_view form, std::string_view with_form);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "filters/model_file/effect_parameters.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
+#include "filters/rules/names.h"
 #include "filters/settings/filter_table.h"
 
 namespace ifog {
@@ -183,6 +185,11 @@ FilterSettings read_filter(Table table) {
     const std::optional<SettingValue> value = setting_value(*node);
     if (!value || !choose(setting, *value, choice))
       table.fail(setting.key, node, "expected " + expected(setting));
+    // What has its name elsewhere than in the table.
+    const std::string wrong = setting.choices.empty() && std::holds_alternative<std::string>(*value)
+                                  ? expected_name(setting, std::get<std::string>(*value))
+                                  : "";
+    if (!wrong.empty()) table.fail(setting.key, node, "expected " + wrong);
   }
   table.done();
   return settings_in_force(choice, FilterSettings{});
@@ -244,6 +251,31 @@ void require_parameters(Table& table, const Effect& effect) {
   }
 }
 
+// What the form takes its value from; whether the sensor has it is not asked here.
+void require_source(Table& table, const Effect& effect) {
+  if (!is_of_channel(effect.form)) return;
+  if (effect.channel.empty())
+    table.fail("channel", table.find("channel"),
+               "form " + effect.form + " is of a channel, expected its name");
+  if (effect.form == "lookup" && effect.table_x.size() < 2)
+    table.fail("table_x", table.find("table_x"), "form lookup needs a table, expected at least two knots");
+  if ((effect.form == "cosine" || effect.form == "sine") && !(effect.period > 0.0))
+    table.fail("period", table.find("period"),
+               "form " + effect.form + " needs its period, expected more than 0");
+  if (effect.form != "product") return;
+  const std::vector<std::string_view>& forms = forms_of_product();
+  if (std::find(forms.begin(), forms.end(), effect.with_form) == forms.end()) {
+    std::string list;
+    for (const std::string_view form : forms) list += (list.empty() ? "" : ", ") + std::string(form);
+    table.fail("with_form", table.find("with_form"),
+               "no form that a product can be with" + did_you_mean(effect.with_form, forms) +
+                   "; expected one of " + list);
+  }
+  if (effect.with_channel.empty())
+    table.fail("with_channel", table.find("with_channel"),
+               "a product is of two channels, expected the second");
+}
+
 Effect read_effect(Table table) {
   Effect effect;
   effect.line = table.line();
@@ -275,6 +307,7 @@ Effect read_effect(Table table) {
   }
   read_parameters(table, effect);
   table.done();
+  require_source(table, effect);
   require_parameters(table, effect);
   return effect;
 }

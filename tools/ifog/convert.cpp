@@ -6,7 +6,7 @@
 #include <string>
 
 #include "drivers/capture/output_file.h"
-#include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/lcm_log.h"
@@ -27,6 +27,7 @@ struct Convert {
 void Convert::run() const {
   will_write("TO", to);
   input.will_read("FROM", from);
+  expect_capture_name("TO", to, &input);
   InputFile file(from);
   const bool from_columns = input.has_layout() || file_kind(file) == FileKind::capture;
   // Standard output has no ending: it takes what the capture is not.
@@ -39,7 +40,7 @@ void Convert::run() const {
         to,
         "expected a .csv, .csv.gz or .h5 file of a flight recording; its bytes or frames as "
         "they came are written by: ifog replay " +
-            printable(from) + " --speed 0 --to file:" + printable(to));
+            shell_file(from) + " --speed 0 --to " + shell_word("file:" + to));
   if (!to_columns)
     throw CLI::ValidationError(to,
                                "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");

@@ -29,6 +29,9 @@ struct Simulate {
     will_write("--output", output);
     will_write("--truth", truth);
     encoding.will_read("SCENARIO", scenario);
+    expect_capture_name("--output", output, &encoding);
+    expect_ending("--truth", truth, truth.ends_with(".json") || file_kind(truth) == FileKind::capture,
+                  std::string(".json, ") + kColumnEndings);
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
     simulate::Simulation made;
     try {

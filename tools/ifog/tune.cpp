@@ -12,6 +12,7 @@
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/model_file/model.h"
@@ -305,8 +306,9 @@ void run(const Options& options) {
   }
   if (!options.model.empty()) {
     write_file(options.model, model_text(model_of(tuning, noise, options.capture)));
-    say("\nwritten: %s\n  ifog denoise %s --model %s --output denoised.csv\n", options.model.c_str(),
-        options.capture.c_str(), options.model.c_str());
+    say("\nwritten: %s\n  ifog denoise %s%s --model %s --output denoised.csv\n", options.model.c_str(),
+        shell_file(options.capture).c_str(), options.input.as_typed().c_str(),
+        shell_file(options.model).c_str());
   }
 }
 

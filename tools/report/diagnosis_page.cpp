@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/ifog/shell_word.h"
 #include "filters/effects/form.h"
+#include "filters/model_file/toml_text.h"
 #include "filters/units/field_units.h"
 #include "tools/report/account.h"
 #include "tools/report/diagnosis_pictures.h"
@@ -158,26 +160,28 @@ std::string remaining(const Diagnosis& d) {
   return out + noise_table(d.noise) + heading_words(d.heading) + heading_picture(d.heading);
 }
 
+// The commands are for a shell, and the line of the configuration is TOML.
 std::string applying(const Page& page) {
-  const std::string model = page.model_path.empty() ? "model.toml" : page.model_path;
-  std::string capture = page.captures.empty() ? "capture.csv" : page.captures.front();
+  const std::string path = page.model_path.empty() ? "model.toml" : page.model_path;
+  const std::string model = escaped(shell_file(path)), read_with = escaped(page.read_with);
+  const std::string capture =
+      escaped(shell_file(page.captures.empty() ? "capture.csv" : page.captures.front()));
   std::string out;
   if (page.model_path.empty())
-    out += "<p>No model file was written in this run. To write one:</p>\n<pre>ifog diagnose " +
-           escaped(capture) + " --write-model " + model + "</pre>\n";
-  out += "<p>Offline, with the same causal code that the daemon runs:</p>\n<pre>ifog denoise " +
-         escaped(capture) + " --model " + escaped(model) +
+    out += "<p>No model file was written in this run. To write one:</p>\n<pre>ifog diagnose " + capture +
+           read_with + " --write-model " + model + "</pre>\n";
+  return out + "<p>Offline, with the same causal code that the daemon runs:</p>\n<pre>ifog denoise " +
+         capture + read_with + " --model " + model +
          " --output corrected.csv</pre>\n"
          "<p>In the daemon: name the file in the sensor's section of the configuration, check, and reload. "
          "No sample is "
-         "lost.</p>\n<pre>[[sensor]]\nmodel = \"" +
-         escaped(model) +
-         "\"\n\nifogd --config /etc/ifogd/ifogd.toml --check\n"
+         "lost.</p>\n<pre>[[sensor]]\nmodel = " +
+         escaped(toml_quoted(path)) +
+         "\n\nifogd --config /etc/ifogd/ifogd.toml --check\n"
          "systemctl reload ifogd</pre>\n"
          "<p>And when the next capture is there, ask whether the model still holds:</p>\n<pre>ifog diagnose "
-         "next.csv --model " +
-         escaped(model) + "</pre>\n";
-  return out;
+         "next.csv" +
+         read_with + " --model " + model + "</pre>\n";
 }
 
 // What would be asked for first if somebody doubted the page.

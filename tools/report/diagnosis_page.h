@@ -21,6 +21,7 @@ struct Page {
   std::string sensor;                 // for the title
   std::vector<std::string> captures;  // as the user named them
   std::vector<PageAxis> axes;
+  std::string read_with;   // options that the captures are read with, as a shell takes them: " --driver NAME"
   std::string model_path;  // that was written; "" when none
   std::string made;        // date and program version
   std::string command;     // as it was typed; "" when not known

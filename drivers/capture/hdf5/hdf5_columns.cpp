@@ -70,6 +70,38 @@ std::string list_of(const std::vector<std::string>& names) {
   return list.empty() ? "none" : printable(list, 300);
 }
 
+// What --group can name: the groups, with all of their path, and the tables of records. A file of very many
+// has more than are looked at.
+struct Places {
+  static constexpr std::size_t kMost = 16, kMostLooked = 4096;
+  std::vector<std::string> names{"/"};
+  std::size_t looked = 0;
+
+  static herr_t look(hid_t root, const char* name, const H5L_info_t* link, void* to) {
+    auto& found = *static_cast<Places*>(to);
+    if (++found.looked > kMostLooked || found.names.size() >= kMost) return 1;
+    H5O_info_t object{};
+    if (link->type != H5L_TYPE_HARD ||
+        H5Oget_info_by_name2(root, name, &object, H5O_INFO_BASIC, H5P_DEFAULT) < 0)
+      return 0;
+    bool place = object.type == H5O_TYPE_GROUP;
+    if (object.type == H5O_TYPE_DATASET) {
+      const Hdf5Id dataset(H5Dopen2(root, name, H5P_DEFAULT));
+      const Hdf5Id type(dataset.good() ? H5Dget_type(dataset) : -1);
+      place = type.good() && H5Tget_class(type) == H5T_COMPOUND;
+    }
+    if (place) found.names.push_back("/" + std::string(name));
+    return 0;
+  }
+};
+
+std::vector<std::string> places_of(hid_t file) {
+  Places found;
+  hdf5_demand(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, Places::look, &found) >= 0,
+              "its groups cannot be read");
+  return found.names;
+}
+
 std::vector<std::string> members_of(hid_t type) {
   std::vector<std::string> names;
   const int count = H5Tget_nmembers(type);
@@ -91,10 +123,7 @@ Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   const std::string group = wanted.group.empty() ? "/" : wanted.group;
   place_ = Hdf5Id(H5Oopen(file_, group.c_str(), access_));
   if (!place_.good())
-    refuse("no group " + in_quotes(group) + ", the file has " + [&] {
-      place_ = Hdf5Id(H5Oopen(file_, "/", access_));
-      return list_of(datasets_of_group());
-    }());
+    refuse("no group " + in_quotes(group) + ", the file has the groups " + list_of(places_of(file_)));
   if (H5Iget_type(place_) == H5I_GROUP)
     read_group(wanted);
   else if (H5Iget_type(place_) == H5I_DATASET)

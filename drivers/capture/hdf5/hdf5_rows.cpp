@@ -15,6 +15,7 @@
 #include "drivers/capture/measurable.h"
 #include "drivers/capture/row_checks.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "drivers/units/units.h"
 
 namespace ifog {
@@ -77,9 +78,9 @@ void check_names(const Hdf5Header& header, const CsvLayout& layout, const std::s
     const auto by = convert_unit(unit, unit_of_name(name));
     if (unit.empty() || !by || (by->scale == 1.0 && by->offset == 0.0)) continue;
     refuse(path, in_quotes(name) + " is in " + in_quotes(unit) + " by its attribute 'units', expected " +
-                     in_quotes(unit_of_name(name)) + "; to read it as it is: " +
-                     (name == kTime ? "--time " + name : "--column " + name + "=" + name) + ":" +
-                     printable(unit));
+                     in_quotes(unit_of_name(name)) +
+                     "; to read it as it is: " + (name == kTime ? "--time " : "--column ") +
+                     shell_word((name == kTime ? name : name + "=" + name) + ":" + printable(unit)));
   }
 }
 

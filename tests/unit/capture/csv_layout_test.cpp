@@ -158,6 +158,11 @@ TEST(CsvLayout, AHeaderThatIsNearlyRightGetsTheOptionsToType) {
             "--column rate_radps=RATE_RADPS:RADPS --column reference_rate_radps=reference_rate_dps:dps");
   EXPECT_EQ(told("0.00,1e-5,25,-3"),
             "a.csv:1: begins with numbers, '0.00', …, expected a header before them: 'time_s,rate_radps,…'");
+  // Whatever stands between them, and with columns asked for that no number is the name of.
+  for (const char* numbers : {"0.00;1e-5", "0.00\t1e-5", "0.00 +1e-5", "\"0.00\", 1e-5,", "0.00"})
+    EXPECT_EQ(told(numbers),
+              "a.csv:1: begins with numbers, '0.00', …, expected a header before them: 'time_s,rate_radps,…'")
+        << numbers;
   EXPECT_EQ(told("a,b,c,d"), "a.csv:1: first column is 'a', expected 'time_s'");
   EXPECT_EQ(told("time_s;rate_radps"),
             "a.csv:1: no comma in the header 'time_s;rate_radps'; expected commas, or --separator ';'");

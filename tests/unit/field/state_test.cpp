@@ -84,6 +84,21 @@ Proposal proposal_of(const Model& model, const ModelName& against) {
   return out;
 }
 
+// What `ifog proposals` and `status` print to be copied is about the field that they were asked about.
+TEST_F(StateFolder, ACommandToBeCopiedLooksAfterTheSameField) {
+  FieldOptions options;
+  options.state = path("its state");
+  options.lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  EXPECT_EQ(Field(options).command("adopt", "nose"), "ifog adopt nose --state '" + path("its state") +
+                                                         "' --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
+  options = {};
+  options.config = path("a b.toml");
+  write("a b.toml",
+        "[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
+        "\"/dev/ttyS0\"\n");
+  EXPECT_EQ(Field(options).command("revert", "nose"), "ifog revert nose --config '" + path("a b.toml") + "'");
+}
+
 TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
   const Model model = model_with(4e-8);
   write_proposal(state(), proposal_of(model, {"abc", "abcdef"}), model, "<html>");

@@ -11,8 +11,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filters/effects/form.h"
+#include "filters/effects/shape.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
+#include "filters/model_file/effect_parameters.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/model_file/sha256.h"
 
@@ -222,6 +225,61 @@ TEST(ModelFile, TheParametersAreThoseOfTheForm) {
   EXPECT_NE(effect(product + "\"linear\"\n", {coefficient, "\"lag_s\"\nvalue = 3"}), "accepted");
   EXPECT_NE(effect(product + "\"lagged\"\n", {coefficient}), "accepted");
   EXPECT_EQ(effect("form = \"outliers\"\n", {"\"of_any_name\"\nvalue = 1"}), "accepted");
+}
+
+// What the daemon would refuse at its start, without a line.
+TEST(ModelFile, WhatAnEffectTakesItsValueFromIsRefusedByLine) {
+  const auto effect = [](const std::string& keys) {
+    return complaint("version = 1\n[[effect]]\n" + keys +
+                     "[[effect.parameter]]\nname = \"coefficient\"\nvalue = 1\n");
+  };
+  const std::string product = "form = \"product\"\nchannel = \"t_degC\"\nwith_channel = \"u_V\"\n";
+  EXPECT_EQ(
+      effect(product + "with_form = \"quadratc\"\n"),
+      "m.toml:6: effect[1].with_form = 'quadratc': no form that a product can be with, did you mean "
+      "'quadratic'?; expected one of linear, quadratic, cubic, quintic, septic, rate, second_rate, lagged, "
+      "absolute, band_power, transition, dead_zone, earth_rate");
+  for (const char* wrong : {"lookup", "product", "line", "outliers"})
+    EXPECT_EQ(effect(product + "with_form = \"" + wrong + "\"\n").find("m.toml:6: effect[1].with_form = '"),
+              0U);
+  EXPECT_EQ(effect(product).find("m.toml:2: effect[1].with_form: no form"), 0U);
+  EXPECT_EQ(effect("form = \"product\"\nchannel = \"t_degC\"\nwith_form = \"linear\"\n"),
+            "m.toml:2: effect[1].with_channel: a product is of two channels, expected the second");
+  EXPECT_EQ(effect("form = \"linear\"\n"),
+            "m.toml:2: effect[1].channel: form linear is of a channel, expected its name");
+  EXPECT_EQ(effect("form = \"cosine\"\nchannel = \"heading_deg\"\n"),
+            "m.toml:2: effect[1].period: form cosine needs its period, expected more than 0");
+  EXPECT_EQ(
+      complaint(
+          "version = 1\n[[effect]]\nform = \"lookup\"\nchannel = \"t\"\ntable_x = [1.0]\ntable_y = [1.0]\n"),
+      "m.toml:5: effect[1].table_x: form lookup needs a table, expected at least two knots");
+  EXPECT_EQ(complaint("version = 1\n[filter]\nstate = \"random-wlk\"\n")
+                .find("m.toml:3: filter.state = 'random-wlk': expected one of random-walk, "),
+            0U);
+  EXPECT_EQ(complaint("version = 1\n[filter]\nrule = \"ckff\"\n")
+                .find("m.toml:3: filter.rule = 'ckff': expected one of ckf, "),
+            0U);
+  EXPECT_EQ(complaint("version = 1\n[filter]\nstate = \"arma(2,1) + harmonic\"\n"), "accepted");
+}
+
+// The file's rules are those of the mathematics, which has them by the forms themselves.
+TEST(ModelFile, TheFormsOfAChannelAndOfAProductAreThoseThatCanBe) {
+  for (const FormRules& rules : form_rules()) {
+    const Form form = form_named(rules.form).value();
+    const bool reported = form == Form::kDeadZone || form == Form::kEarthRate;
+    EXPECT_EQ(is_of_channel(rules.form), has_channel(form) && !reported) << rules.form;
+    Effect product;
+    product.form = "product";
+    product.with_form = rules.form;
+    bool can_be = true;
+    try {
+      (void)with_shape_settings(product);
+    } catch (const std::invalid_argument&) {
+      can_be = false;
+    }
+    const auto& forms = forms_of_product();
+    EXPECT_EQ(std::find(forms.begin(), forms.end(), rules.form) != forms.end(), can_be) << rules.form;
+  }
 }
 
 TEST(ModelFile, NoiseIsOneTableAnAxis) {

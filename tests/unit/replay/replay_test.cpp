@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `ifog replay` as a user runs it, and the two small parts it is made of. How late it is, is measured beside
 // canplayer in tests/bench/replay; here nothing may come early or be lost.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -83,6 +84,47 @@ class Replay : public testing::Test {
     const std::string command = IFOG_PROGRAM " replay " + arguments + " >" + path("out") + " 2>&1";
     return WEXITSTATUS(std::system(command.c_str()));
   }
+  // The same under way, with what it prints in the same place.
+  pid_t started(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"ifog", "replay"});
+    std::ofstream(path("out")).close();
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const int out = open(path("out").c_str(), O_WRONLY | O_APPEND);
+    dup2(out, STDOUT_FILENO);
+    dup2(out, STDERR_FILENO);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(IFOG_PROGRAM, argv.data());
+    _exit(127);
+  }
+  // Exit status of a replay that is interrupted in the middle, into again.log with a report.json.
+  int interrupted_in(const std::vector<std::string>& options) const {
+    std::vector<std::string> words{log(), "--to", "file:" + path("again.log"), "--json", path("report.json")};
+    words.insert(words.end(), options.begin(), options.end());
+    const pid_t child = started(words);
+    // Until it is whole the file has no name: it is seen among what the process has open, in the folder that
+    // it will be in. Elsewhere there are others, as the copy of a plugin.
+    const auto written = [&] {
+      std::uintmax_t most = 0;
+      for (const auto& one : fs::directory_iterator("/proc/" + std::to_string(child) + "/fd")) {
+        struct stat file {};
+        std::error_code gone;
+        if (!fs::read_symlink(one.path(), gone).string().starts_with(folder_.string())) continue;
+        if (stat(one.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 0)
+          most = std::max(most, static_cast<std::uintmax_t>(file.st_size));
+      }
+      return most;
+    };
+    int status = 0;
+    while (written() < 1000) {
+      if (waitpid(child, &status, WNOHANG) != 0) return -1;  // it ended by itself
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    kill(child, SIGINT);
+    return waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
   // 100 frames, 1 ms apart.
   std::string log() const {
     std::ofstream out(path("gyro.log"));
@@ -163,42 +205,55 @@ TEST_F(Replay, EncodesACaptureAndCutsBytesByTheDriver) {
   EXPECT_EQ(ifog(path("gyro.csv") + " --to file:" + path("x")), 1);
 }
 
+// One without end comes to its end by the interrupt; of another that is less than what was asked for.
 TEST_F(Replay, AnInterruptEndsItWithTheReport) {
-  const std::string capture = log();
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    execl(IFOG_PROGRAM, "ifog", "replay", capture.c_str(), "--to", ("file:" + path("again.log")).c_str(),
-          "--loop", "0", "--json", path("report.json").c_str(), nullptr);
-    _exit(127);
-  }
-  // Until it is whole the file has no name: it is seen among what the process has open, in the folder that it
-  // will be in. Elsewhere there are others, as the copy of a plugin.
-  const std::string folder = fs::path(path("again.log")).parent_path().string();
-  const auto written = [&] {
-    std::uintmax_t most = 0;
-    for (const auto& open : fs::directory_iterator("/proc/" + std::to_string(child) + "/fd")) {
-      struct stat file {};
-      std::error_code gone;
-      if (!fs::read_symlink(open.path(), gone).string().starts_with(folder)) continue;
-      if (stat(open.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 0)
-        most = std::max(most, static_cast<std::uintmax_t>(file.st_size));
-    }
-    return most;
-  };
-  int status = 0;
-  while (written() < 1000) {
-    ASSERT_EQ(waitpid(child, &status, WNOHANG), 0) << "it ended by itself";
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  kill(child, SIGINT);
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(interrupted_in({"--loop", "0"}), 0);
   const auto report = nlohmann::json::parse(content("report.json"));
   EXPECT_EQ(report["interrupted"], true);
+  EXPECT_EQ(report["of"], nullptr);
   const std::string sent = content("again.log");
   EXPECT_EQ(report["sent"], std::count(sent.begin(), sent.end(), '\n'));
+}
+
+TEST_F(Replay, AnInterruptBeforeTheEndIsAFailureThatSaysHowMuchOfWhatWasSent) {
+  EXPECT_EQ(interrupted_in({"--loop", "20000"}), 1);
+  const auto report = nlohmann::json::parse(content("report.json"));
+  EXPECT_EQ(report["interrupted"], true);
+  EXPECT_EQ(report["failed"], false);
+  EXPECT_EQ(report["of"], 2'000'000);
+  const std::string sent = content("again.log");
+  EXPECT_EQ(report["sent"], std::count(sent.begin(), sent.end(), '\n'));
+  EXPECT_EQ(content("out").find("interrupted: sent " + std::to_string(report["sent"].get<int>()) +
+                                " of 2000000 frames in "),
+            0U)
+      << content("out");
+}
+
+TEST_F(Replay, AnInterruptedWaitForAReaderIsSaid) {
+  const std::string capture = log();
+  const pid_t child = started({capture, "--to", "fifo:" + path("fifo")});
+  while (content("out").find("waiting for a reader") == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    kill(child, SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  // A second signal, where the first came before the wait, ends it by itself.
+  if (WIFSIGNALED(status)) return;
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_NE(content("out").find("interrupted before anybody took anything"), std::string::npos)
+      << content("out");
+}
+
+// What was collected to be written together and then not taken has not been sent.
+TEST_F(Replay, WhatTheTargetDidNotTakeIsNotSaidToBeSent) {
+  EXPECT_EQ(ifog(log() + " --speed 0 --loop 5 --to file:/dev/full --json " + path("report.json")), 1);
+  EXPECT_NE(content("out").find("failed: sent 0 of 500 frames in "), std::string::npos) << content("out");
+  const auto report = nlohmann::json::parse(content("report.json"));
+  EXPECT_EQ(report["sent"], 0);
+  EXPECT_EQ(report["of"], 500);
+  EXPECT_EQ(report["failed"], true);
 }
 
 TEST_F(Replay, AReaderThatGoesAwayIsAFailureWithAReport) {
@@ -211,6 +266,7 @@ TEST_F(Replay, AReaderThatGoesAwayIsAFailureWithAReport) {
   EXPECT_EQ(ifog(log() + " --loop 0 --to fifo:" + path("fifo")), 1);
   reader.join();
   EXPECT_NE(content("out").find("fifo: the reader went away"), std::string::npos) << content("out");
+  EXPECT_NE(content("out").find("failed: sent "), std::string::npos) << content("out");
   EXPECT_NE(content("out").find("lateness p50"), std::string::npos) << content("out");
 }
 

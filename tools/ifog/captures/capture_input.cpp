@@ -10,6 +10,7 @@
 #include "drivers/capture/csv_rows.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/captures/flight_input.h"
@@ -84,6 +85,22 @@ void CaptureInput::add_driver_to(CLI::App& command) {
       ->type_name("FILE");
   command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log")
       ->type_name("NAME");
+}
+
+std::string CaptureInput::as_typed() const {
+  std::string text;
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) text += " " + std::string(option) + " " + shell_word(value);
+  };
+  add("--driver", driver);
+  for (const std::string& each : options) add("--option", each);
+  add("--dbc", dbc);
+  add("--channel", channel);
+  for (const std::string& each : columns) add("--column", each);
+  add("--time", time);
+  add("--separator", separator);
+  add("--group", group);
+  return text;
 }
 
 std::string CaptureInput::driver_name() const { return driver.empty() && !dbc.empty() ? "dbc" : driver; }

@@ -15,6 +15,7 @@
 #include "drivers/capture/text_file.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/captures/column_writer.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -82,6 +83,15 @@ void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const
 }
 
 }  // namespace
+
+void expect_capture_name(const std::string& option, const std::string& path, const CaptureInput* encoding) {
+  const FileKind kind = file_kind(path);
+  const bool sent = encoding != nullptr && (kind == FileKind::bytes || kind == FileKind::candump ||
+                                            (kind == FileKind::unknown && encoding->has_driver()));
+  expect_ending(
+      option, path, kind == FileKind::capture || sent,
+      std::string(kColumnEndings) + (encoding != nullptr ? "; through a driver in .bin, .kvh or .log" : ""));
+}
 
 void write_columns(const LongTable& table, const std::string& from, const std::string& to) {
   const CaptureShape shape = capture_shape(table.names(), from, table);

@@ -8,6 +8,13 @@
 
 namespace ifog::tools {
 
+inline constexpr const char* kColumnEndings = ".csv, .csv.gz or .h5";
+
+// That `path`, the value of `option`, takes columns, or, where there is an `encoding`, what a device would
+// have sent: with a driver under any name that is no other format's. Throws CLI::ValidationError (usage);
+// before anything is read or written.
+void expect_capture_name(const std::string& option, const std::string& path, const CaptureInput* encoding);
+
 // As a capture in columns: HDF5 where `to` ends so, else CSV. `name` is what messages call the table. Throws
 // std::runtime_error with one line.
 void write_columns(const LongTable& table, const std::string& name, const std::string& to);

@@ -52,4 +52,11 @@ void will_write(const std::string& option, const std::string& path) {
   add(option, path, true);
 }
 
+void expect_ending(const std::string& option, const std::string& path, bool known,
+                   const std::string& expected) {
+  if (known || path.empty() || is_standard_output(path) || !file_identity(path)) return;
+  if (!std::filesystem::path(path).has_extension()) return;
+  throw CLI::ValidationError(option, "is " + in_quotes(path) + ", expected a name ending in " + expected);
+}
+
 }  // namespace ifog::tools

@@ -17,4 +17,10 @@ void will_read(const std::string& option, const std::string& path);
 // it, too. Before the first say().
 void will_write(const std::string& option, const std::string& path);
 
+// The ending of a file's name says what is written into it: with one that is not `known` nothing is. Throws
+// CLI::ValidationError with the endings that were `expected`. A name without an ending, a device, a pipe and
+// standard output say nothing.
+void expect_ending(const std::string& option, const std::string& path, bool known,
+                   const std::string& expected);
+
 }  // namespace ifog::tools

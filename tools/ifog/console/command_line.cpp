@@ -5,16 +5,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/describe.h"
+#include "tools/ifog/console/help_text.h"
 #include "tools/ifog/console/plain_words.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/console/usage_error.h"
@@ -25,16 +28,14 @@ namespace {
 std::string typed;
 std::vector<std::string> words;
 
-}  // namespace
+class HelpFormat final : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    return broken_lines(Formatter::make_help(app, std::move(name), mode), column_width_, help_width());
+  }
+};
 
-std::string shell_word(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
+}  // namespace
 
 std::string typed_command() { return typed; }
 
@@ -49,6 +50,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   for (int i = 1; i < argc; ++i) typed += " " + shell_word(argv[i]);
   CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
                "ifog"};
+  app.formatter(std::make_shared<HelpFormat>());
   app.require_subcommand(1);
   app.set_version_flag("--version",
                        "ifog " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");

@@ -22,9 +22,6 @@ std::string typed_command();
 // The same word by word, as they came, without the program.
 std::vector<std::string> typed_words();
 
-// A word as a shell takes it again, whatever it holds: in quotes unless it is a plain name.
-std::string shell_word(const std::string& word);
-
 // main() of a program with these commands. Exit 0 good, 1 failed, 2 usage.
 int run_command_line(int argc, char** argv, std::span<const AddCommand> commands);
 

@@ -8,10 +8,8 @@
 #include <type_traits>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/rules/rule.h"
+#include "filters/rules/names.h"
 #include "filters/settings/filter_table.h"
-#include "filters/state_models/state_model.h"
-#include "filters/state_models/state_name.h"
 #include "tools/ifog/console/checked_values.h"
 
 namespace ifog::tools {
@@ -30,20 +28,8 @@ std::string help(const FilterSetting& setting) {
 
 // "" or what is wrong with a name that another room than the table knows.
 std::string wrong_name(const FilterSetting& setting, const std::string& name) {
-  std::string list;
-  if (setting.key == std::string_view("rule")) {
-    for (const RuleEntry& entry : rules()) {
-      if (name == entry.name) return "";
-      list += (list.empty() ? "" : ", ") + std::string(entry.name);
-    }
-  } else if (setting.key == std::string_view("state")) {
-    if (is_state_model(name)) return "";
-    for (const std::string& known : state_model_names()) list += (list.empty() ? "" : ", ") + known;
-    list += ", or a sum of them with ' + '";
-  } else {
-    return "";
-  }
-  return "is " + in_quotes(name) + ", expected one of " + list;
+  const std::string expected = expected_name(setting, name);
+  return expected.empty() ? "" : "is " + in_quotes(name) + ", expected " + expected;
 }
 
 // A whole number may stand for one that is not; the rest of it the setting's row knows.

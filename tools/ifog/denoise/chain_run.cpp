@@ -18,6 +18,9 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
   if (!settings.model || model_path.empty()) return made(settings);
   try {
     return made(settings);
+  } catch (const ModelMisfit& misfit) {
+    const std::string line = misfit.line > 0 ? ":" + std::to_string(misfit.line) : "";
+    throw std::runtime_error(model_path + line + ": " + misfit.what());
   } catch (const std::exception& error) {
     ChainSettings without = settings;
     without.model.reset();

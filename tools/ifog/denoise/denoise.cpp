@@ -17,6 +17,7 @@
 #include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/model_axes.h"
@@ -149,6 +150,13 @@ void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments
       moments.denoised.deviation() / kDegreePerHour);
 }
 
+// Samples that nobody has a row of; a row without a value is another thing, and is said by axis.
+std::string gaps_in_words(const IncrementerCounts& counts) {
+  if (counts.gaps == 0) return "no gap between them";
+  return std::to_string(counts.missing) + " more lost in " + std::to_string(counts.gaps) +
+         (counts.gaps == 1 ? " gap" : " gaps");
+}
+
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
@@ -166,9 +174,8 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
         "recording "
         "lacks something there\n",
         options.capture.c_str(), *result.not_as_published_from_s);
-  say("%s: %zu samples at %g Hz, %llu gap(s), %llu missing\n", options.capture.c_str(), rows.written(),
-      result.sample_rate_hz, static_cast<unsigned long long>(result.counts.gaps),
-      static_cast<unsigned long long>(result.counts.missing));
+  say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
+      gaps_in_words(result.counts).c_str());
   if (result.runs > 1 || result.exchanges > 0)
     say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): %s; at the end\n", result.runs,
         result.exchanges,
@@ -229,6 +236,7 @@ void run(DenoiseOptions options) {
   std::optional<FlightInput> flight;
   if (kind == FileKind::flight && !recorded_messages(capture)) flight.emplace(capture);
   const std::optional<ConfiguredSensor> configured = configured_sensor(options, kind);
+  expect_capture_name("--output", options.output, nullptr);
   const auto settings = [&] { return settings_of(options, configured, flight ? &*flight : nullptr); };
   // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);

@@ -79,8 +79,8 @@ void run(const Arguments& arguments) {
   if (!arguments.write_model.empty())
     write_file(arguments.write_model, model_text(model_with(model, found, arguments.captures, hashes)));
   if (!arguments.report.empty())
-    write_text_file(arguments.report,
-                    diagnosis_report(captures, found, arguments.captures, hashes, arguments.write_model));
+    write_text_file(arguments.report, diagnosis_report(captures, found, arguments.captures, hashes,
+                                                       arguments.write_model, arguments.input.as_typed()));
 }
 
 }  // namespace

@@ -275,11 +275,13 @@ Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std
 
 std::string diagnosis_report(const std::vector<CaptureView>& captures,
                              const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
-                             const std::vector<std::string>& hashes, const std::string& model_path) {
+                             const std::vector<std::string>& hashes, const std::string& model_path,
+                             const std::string& read_with) {
   report::Page page;
   page.captures = names;
   page.sensor = std::filesystem::path(names.front()).filename().string();
   page.model_path = model_path;
+  page.read_with = read_with;
   page.made = utc_now() + " by ifog " IFOG_VERSION;
   page.command = typed_command();
   for (std::size_t c = 0; c < captures.size(); ++c)

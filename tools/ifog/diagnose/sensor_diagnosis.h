@@ -36,9 +36,11 @@ std::vector<Record> records_of(const std::vector<CaptureView>& captures,
 Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
                  const std::vector<std::string>& hashes);
 
-// The HTML page. hashes: as above. model_path: where the model is, "" for nowhere.
+// The HTML page. hashes: as above. model_path: where the model is, "" for nowhere. read_with: the captures'
+// options, as typed.
 std::string diagnosis_report(const std::vector<CaptureView>& captures,
                              const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
-                             const std::vector<std::string>& hashes, const std::string& model_path);
+                             const std::vector<std::string>& hashes, const std::string& model_path,
+                             const std::string& read_with);
 
 }  // namespace ifog::tools

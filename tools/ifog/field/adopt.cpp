@@ -146,7 +146,7 @@ void adopt(const Arguments& arguments) {
     warn("ifog adopt: the outcome is not in the history: %s\n", error.what());
   }
   if (verdict_of(watched.gain) == Verdict::broken) {
-    warn("ifog adopt: back with: ifog revert %s\n", sensor.name.c_str());
+    warn("ifog adopt: back with: %s\n", field.command("revert", sensor.name).c_str());
     throw Failed("the promise was broken");
   }
 }

@@ -14,12 +14,12 @@
 
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/installed.h"
 
 namespace ifog::tools {
-namespace {}  // namespace
 
 void FieldOptions::add_to(CLI::App& command, bool listens) {
   command
@@ -36,7 +36,19 @@ void FieldOptions::add_to(CLI::App& command, bool listens) {
         ->type_name("URL");
 }
 
-Field::Field(const FieldOptions& options) {
+std::string FieldOptions::as_typed() const {
+  std::string text;
+  if (!config.empty()) text += " --config " + shell_file(config);
+  if (!state.empty()) text += " --state " + shell_file(state);
+  if (!lcm_url.empty()) text += " --lcm-url " + shell_word(lcm_url);
+  return text;
+}
+
+std::string Field::command(const std::string& name, const std::string& sensor) const {
+  return "ifog " + name + " " + shell_word(sensor) + typed_;
+}
+
+Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
   config_path_ = options.config.empty() ? kServiceConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))

@@ -18,6 +18,8 @@ struct FieldOptions {
   std::string state;    // --state; "": as configured, else STATE_DIRECTORY, else where the service has it
   std::string lcm_url;  // --lcm-url; "": as configured
   void add_to(CLI::App& command, bool listens);
+  // Those that were given, as a shell takes them again: " --config F".
+  [[nodiscard]] std::string as_typed() const;
 };
 
 class Field {
@@ -32,6 +34,8 @@ class Field {
   [[nodiscard]] const std::string& lcm_url() const { return lcm_url_; }
   // The file that was read, or looked for.
   [[nodiscard]] const std::string& config_path() const { return config_path_; }
+  // A command about a sensor that looks after the same field, to be copied.
+  [[nodiscard]] std::string command(const std::string& name, const std::string& sensor) const;
 
   // Throws std::runtime_error with one line: no configuration, or no such sensor in it, with those there are.
   [[nodiscard]] const SensorConfig& sensor(const std::string& name) const;
@@ -41,7 +45,7 @@ class Field {
 
  private:
   std::optional<Config> config_;
-  std::string config_path_, state_, lcm_url_;
+  std::string config_path_, state_, lcm_url_, typed_;
 };
 
 // What a person writes into the state folder, the daemon's own user reads and writes on, and the other way

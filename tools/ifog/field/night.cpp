@@ -265,7 +265,7 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   proposal.model_file = file + ".toml";
   proposal.report_file = file + ".html";
   const std::string report =
-      diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file);
+      diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file, "");
   const StateInHand hand(field_.state());
   write_proposal(field_.state(), proposal, model, report);
 }

@@ -45,7 +45,7 @@ void run(const Arguments& arguments) {
           found->against.identity.empty() ? "none" : printable(found->against.identity).c_str(),
           stale ? ", which is no longer in use: not to be adopted" : "",
           printable(found->why, kLongestMessage).c_str(), report.c_str());
-      if (!stale) say("  adopt with: ifog adopt %s\n", name.c_str());
+      if (!stale) say("  adopt with: %s\n", field.command("adopt", name).c_str());
       all.push_back({{"sensor", name},
                      {"made", found->made},
                      {"why", found->why},

@@ -119,7 +119,8 @@ void say_live(const status_t& status) {
   if (!status.notice.empty()) say("  noticed: %s\n", printable(status.notice, kLongestMessage).c_str());
 }
 
-void say_sensor(const std::string& name, const status_t* live, const Kept& kept) {
+// adopt: the command that would.
+void say_sensor(const std::string& name, const status_t* live, const Kept& kept, const std::string& adopt) {
   if (live != nullptr) {
     say("%s  %s%s%s  %.1f Hz in, %.1f Hz published\n", printable(name).c_str(), state_name(live->state),
         live->fault.empty() ? "" : ": ", printable(live->fault).c_str(), live->input_rate_hz,
@@ -143,7 +144,7 @@ void say_sensor(const std::string& name, const status_t* live, const Kept& kept)
   if (kept.proposal)
     say("  proposal of %s: %s\n  %s\n", printable(kept.proposal->made).c_str(),
         printable(kept.proposal->why, kLongestMessage).c_str(),
-        kept.proposal->against == kept.model ? ("adopt with: ifog adopt " + name).c_str()
+        kept.proposal->against == kept.model ? ("adopt with: " + adopt).c_str()
                                              : "it was made against another model: not to be adopted");
   if (!kept.damaged.empty()) say("  %s\n", kept.damaged.c_str());
 }
@@ -237,7 +238,7 @@ void run(const Arguments& arguments) {
   ordered_json sensors = ordered_json::array();
   for (const std::string& name : names_of(field, live)) {
     const Kept kept = kept_of(field, name);
-    say_sensor(name, live.of(name), kept);
+    say_sensor(name, live.of(name), kept, field.command("adopt", name));
     sensors.push_back(as_json(name, live.of(name), kept));
   }
   if (!arguments.json.empty())

@@ -50,7 +50,8 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
   write_text_file(results.path(gyro, "report.html"),
-                  diagnosis_report(opened.captures, found, gyro.captures, opened.hashes, model_path));
+                  diagnosis_report(opened.captures, found, gyro.captures, opened.hashes, model_path,
+                                   settings.input.as_typed()));
 }
 
 EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, const std::string& axis,

@@ -9,6 +9,7 @@
 #include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -44,7 +45,10 @@ struct ReplaySettings {
 };
 
 struct ReplayResult {
-  std::uint64_t sent = 0;
+  std::uint64_t sent = 0;    // taken by the system
+  std::uint64_t wanted = 0;  // 0: without end
+  bool failed = false;
+  std::int64_t begin_ns = 0;  // monotonic: of the first deadline
   double seconds = 0.0;
   Lateness late;
 };
@@ -83,10 +87,10 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
   const bool paced = settings.speed > 0.0;
   const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
   const std::int64_t round = round_ns(timeline);
-  Progress progress("replay", settings.loops * n, Progress::Between::nothing);
+  Progress progress("replay", result.wanted, Progress::Between::nothing);
   Pace pace(paced ? settings.speed : 1.0);
-  const std::int64_t begin = monotonic_ns() + (paced ? kLead_ns : 0);
-  pace.start(timeline.time_ns(0), begin);
+  result.begin_ns = monotonic_ns() + (paced ? kLead_ns : 0);
+  pace.start(timeline.time_ns(0), result.begin_ns);
   bool going = true;
   for (std::uint64_t loop = 0; going && (settings.loops == 0 || loop < settings.loops); ++loop) {
     const std::int64_t shift = static_cast<std::int64_t>(loop) * round;
@@ -101,7 +105,6 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
     }
   }
   target.finish();
-  result.seconds = static_cast<double>(monotonic_ns() - begin) * 1e-9;
 }
 
 void prepare(const ReplaySettings& settings) {
@@ -117,24 +120,36 @@ void prepare(const ReplaySettings& settings) {
   if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) going_without("SCHED_FIFO");
 }
 
+// Whether it came to an end of its own. One without end comes to its end by the interrupt.
+bool complete(const ReplayResult& result) {
+  return !result.failed && (!interrupted() || result.wanted == 0 || result.sent == result.wanted);
+}
+
 void report(const ReplaySettings& settings, const ReplayTimeline& timeline, const ReplayTarget& target,
             const ReplayResult& result) {
   const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
   const bool paced = settings.speed > 0.0 && result.sent > 0;
-  say("sent %llu %s in %.3f s%s, %llu retries\n", static_cast<unsigned long long>(result.sent),
-      timeline.is_can() ? "frames" : "blocks", result.seconds, interrupted() ? " (interrupted)" : "",
-      static_cast<unsigned long long>(target.retries()));
+  const std::string of = result.wanted > result.sent ? " of " + std::to_string(result.wanted) : "";
+  say("%ssent %llu%s %s in %.3f s, %llu retries\n",
+      result.failed   ? "failed: "
+      : interrupted() ? "interrupted: "
+                      : "",
+      static_cast<unsigned long long>(result.sent), of.c_str(), timeline.is_can() ? "frames" : "blocks",
+      result.seconds, static_cast<unsigned long long>(target.retries()));
   if (paced)
     say("lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", us(result.late.percentile_ns(0.5)),
         us(result.late.percentile_ns(0.99)), us(result.late.max_ns()));
   if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
                          {"sent", result.sent},
+                         {"of", nullptr},
                          {"seconds", result.seconds},
                          {"retries", target.retries()},
                          {"interrupted", interrupted()},
+                         {"failed", result.failed},
                          {"lateness_us", nullptr},
                          {"unit", timeline.is_can() ? "frame" : "block"}};
+  if (result.wanted > 0) json["of"] = result.wanted;
   if (paced)
     json["lateness_us"] = {{"p50", us(result.late.percentile_ns(0.5))},
                            {"p99", us(result.late.percentile_ns(0.99))},
@@ -154,17 +169,23 @@ void run(ReplaySettings settings) {
   catch_interrupts();
   const std::unique_ptr<ReplayTarget> target =
       open_target(to, timeline, settings.line, settings.speed == 0.0);
-  if (target == nullptr) throw Failed("interrupted");
+  if (target == nullptr) {
+    warn("ifog replay: interrupted before anybody took anything: nothing was sent\n");
+    throw Failed("interrupted");
+  }
   prepare(settings);
   ReplayResult result;
+  result.wanted = settings.loops * timeline.size();
   try {
     replay(timeline, settings, *target, result);
   } catch (const std::exception& error) {
     warn("ifog replay: %s\n", error.what());
-    report(settings, timeline, *target, result);
-    throw Failed(error.what());
+    result.failed = true;
   }
+  result.sent -= target->held();
+  result.seconds = std::max(0.0, static_cast<double>(monotonic_ns() - result.begin_ns) * 1e-9);
   report(settings, timeline, *target, result);
+  if (!complete(result)) throw Failed("not all was sent");
 }
 
 // "" or what is wrong with it, as CLI11 wants it.

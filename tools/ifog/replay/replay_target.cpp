@@ -95,15 +95,21 @@ class ByteTarget final : public ReplayTarget {
     return true;
   }
 
+  [[nodiscard]] std::uint64_t held() const override { return held_items_; }
+
  private:
   bool put(const std::uint8_t* bytes, std::size_t n) {
     if (!hold_) return outlet_.send_bytes(bytes, n);
     held_.insert(held_.end(), bytes, bytes + n);
-    return held_.size() < kHeld || flush();
+    if (held_.size() >= kHeld) return flush();
+    ++held_items_;
+    return true;
   }
+  // What was interrupted in the middle is not sent a second time, and has not been sent.
   bool flush() {
     const bool done = outlet_.send_bytes(held_.data(), held_.size());
     held_.clear();
+    if (done) held_items_ = 0;
     return done;
   }
 
@@ -113,6 +119,7 @@ class ByteTarget final : public ReplayTarget {
   IpSocket socket_;
   std::unique_ptr<OutputFile> file_;
   std::vector<std::uint8_t> held_;
+  std::uint64_t held_items_ = 0;
 };
 
 class UdpTarget final : public ReplayTarget {

@@ -21,6 +21,8 @@ class ReplayTarget {
   virtual bool send(std::size_t i) = 0;
   // Sends what is still held. False: interrupted.
   virtual bool finish() { return true; }
+  // Items that send() took and the system has not.
+  [[nodiscard]] virtual std::uint64_t held() const { return 0; }
 
   [[nodiscard]] std::uint64_t retries() const { return outlet_.retries(); }
 

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What a person is told, and does with it: names of files that say another format than what is written, commands printed to be
+copied, files that lack what was asked for, and what is counted.
+
+usage: words.py PATH_OF_IFOG SOURCE_DIR
+"""
+import gzip
+import html
+import os
+import random
+import re
+import subprocess
+import sys
+
+from run import IFOG, SOURCE, columns, ifog, main_of, ran, refused
+
+ROWS, RATE_HZ, SIGMA = 3000, 100, 1e-5
+READERS = ("allan", "tune", "compare", "diagnose")
+
+
+class Checks:
+    def __init__(self, folder):
+        self.folder = folder
+        self.random = random.Random(11)
+        self.noise = [self.random.gauss(0, SIGMA) for _ in range(ROWS)]
+        self.one = self.write("one.csv")
+
+    def write(self, name, header="time_s,rate_radps", separator=","):
+        path = self.folder / name
+        rows = [f"{i / RATE_HZ!r}{separator}{rate!r}" for i, rate in enumerate(self.noise)]
+        path.write_text("\n".join(([header] if header else []) + rows) + "\n")
+        return path
+
+    def check_a_name_says_what_is_written(self):
+        """Of a format that nobody writes, or that this command does not, nothing is."""
+        folder = self.folder / "endings"
+        folder.mkdir()
+        scenario, kvh = SOURCE / "tools/simulate/scenarios/rest.toml", ["--driver", "kvh1750"]
+        for ending in (".mat", ".npz", ".CSV", ".ifr", ".lcm"):
+            to = folder / ("out" + ending)
+            commands = [["denoise", self.one, "--output", to], ["convert", self.one, to], ["simulate", scenario, "--output", to]]
+            # A device's bytes may have any name that is no other format's.
+            if ending in (".ifr", ".lcm"):
+                commands += [[*command, *kvh] for command in commands[1:]]
+            for command in commands:
+                refused(2, *command, says=[f"'{to}', expected a name ending in .csv, .csv.gz or .h5"])
+        for ending in (".kvh", ".log", ".txt"):
+            refused(2, "denoise", self.one, "--output", folder / ("out" + ending), says=["expected a name ending in .csv, .csv.gz or .h5\n"])
+        refused(2, "simulate", scenario, "--output", folder / "out.csv", "--truth", folder / "truth.mat", says=["--truth", ".json, .csv"])
+        assert not list(folder.iterdir()), list(folder.iterdir())
+        for name in ("out.csv", "out.csv.gz", "out.h5", "out"):
+            ifog("denoise", self.one, "--output", folder / name)
+            assert (folder / name).stat().st_size > 0
+
+    def copied(self, line, folder):
+        """A line that was printed, typed into a shell in that folder."""
+        assert line.startswith("ifog "), line
+        there = self.folder / "bin"
+        if not there.exists():
+            there.mkdir()
+            (there / "ifog").symlink_to(os.path.abspath(IFOG))
+        done = subprocess.run(["bash", "-c", line], cwd=folder, env={**os.environ, "PATH": f"{there}:{os.environ['PATH']}"},
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 0, f"{line}: exit {done.returncode}: {done.stderr}"
+
+    def check_commands_to_be_copied_run_as_they_stand(self):
+        """With blanks and quotes in every name, and with the options that the capture was read with."""
+        folder = self.folder / "it's a folder"
+        folder.mkdir()
+        capture, model, report = folder / 'a "b" $c.csv', folder / "the model.toml", folder / "report.html"
+        capture.write_text(self.write("theirs.csv", "Time [ms];Gyro Z", ";").read_text())
+        read_with = ["--separator", ";", "--column", "rate_radps=Gyro Z:rad/s", "--time", "Time [ms]:s"]
+        tuned = ifog("tune", capture, *read_with, "--state", "random-walk", "--write-model", model)
+        line = tuned.strip().splitlines()[-1].strip()
+        self.copied(line, folder)
+        assert (folder / "denoised.csv").stat().st_size > 0
+        ifog("diagnose", "--quiet", capture, *read_with, "--write-model", model, "--report", report)
+        page = report.read_text()
+        lines = [html.unescape(text) for text in re.findall(r"<pre>(.*?)</pre>", page[page.index('id="apply"'):], re.S)]
+        (folder / "next.csv").write_bytes(capture.read_bytes())
+        commands = [line for line in lines if line.startswith("ifog ")]
+        assert len(commands) >= 2 and "--separator" in commands[0], lines
+        for line in commands:
+            self.copied(line, folder)
+        assert (folder / "corrected.csv").stat().st_size > 0
+        ifog("diagnose", "--quiet", capture, *read_with, "--report", report)
+        self.copied(html.unescape(re.findall(r"<pre>(ifog diagnose.*?)</pre>", report.read_text(), re.S)[0]), folder)
+        assert (folder / "model.toml").stat().st_size > 0
+        odd = folder / "flight 1.ifr"
+        odd.write_bytes((SOURCE / "tests/stable/0.1.0/recording.ifr").read_bytes())
+        said = ran("convert", odd, folder / "flight 1.bin")
+        self.copied("ifog replay " + said.stderr.split("ifog replay ")[1].splitlines()[0], folder)
+        assert (folder / "flight 1.bin").stat().st_size > 0
+
+    def check_columns_without_a_header_are_one_line(self):
+        """By every command that reads them, whatever stands between the numbers."""
+        says = ["begins with numbers", "expected a header before them: 'time_s,rate_radps,…'"]
+        plain = self.write("plain.csv", "")
+        packed = self.folder / "packed.csv.gz"
+        packed.write_bytes(gzip.compress(plain.read_bytes()))
+        for file in (plain, packed, self.write("semicolons.csv", "", ";"), self.write("tabs.csv", "", "\t")):
+            for command in READERS:
+                refused(1, command, file, says=[f"{file}:1: ", *says])
+            refused(1, "denoise", file, "--output", self.folder / "never.csv", says=says)
+            refused(1, "convert", file, self.folder / "never.h5", says=says)
+            refused(1, "replay", file, "--to", "-", "--driver", "kvh1750", says=says)
+        refused(1, "allan", plain, "--time", "t:s", "--column", "rate_radps=w:rad/s", says=says)
+        # Numbers that are names: of a table that was written with its columns counted.
+        ifog("allan", self.write("counted.csv", "0,1"), "--time", "0:s", "--column", "rate_radps=1:rad/s")
+        assert not (self.folder / "never.csv").exists() and not (self.folder / "never.h5").exists()
+
+    def check_a_row_without_a_value_is_no_gap(self):
+        text = self.one.read_text().splitlines()
+        empty, cut = self.folder / "empty.csv", self.folder / "cut.csv"
+        empty.write_text("\n".join(line.split(",")[0] + "," if 100 < i <= 500 else line for i, line in enumerate(text)) + "\n")
+        cut.write_text("\n".join(line for i, line in enumerate(text) if not 100 < i <= 500) + "\n")
+        for path, warned, counted in ((empty, "rate is missing in 400 of 3000 rows", "3000 samples at 100 Hz, no gap between them\n"),
+                                      (cut, "", "2600 samples at 100 Hz, 400 more lost in 1 gap\n"), (self.one, "", "3000 samples at 100 Hz, no gap between them\n")):
+            done = ran("denoise", path, "--output", self.folder / "told.csv")
+            assert done.returncode == 0 and counted in done.stdout and "missing" not in done.stdout, done
+            assert (warned in done.stderr) if warned else not done.stderr, done.stderr
+
+    def check_what_a_model_lacks_is_said_with_its_line(self):
+        head = "version = 1\n\n[[effect]]\n"
+        coefficient = '[[effect.parameter]]\nname = "coefficient"\nvalue = 1e-6\n'
+        for name, keys, parts in (
+                ("product", 'form = "product"\nchannel = "t_degC"\nwith_channel = "u_V"\nwith_form = "quadratc"\n', [":7: effect[1].with_form", "'quadratic'"]),
+                ("channel", 'form = "linear"\nchannel = "temperature_degC"\n', ["'temperature_degC'" , "3"]),
+                ("axis", 'form = "linear"\nchannel = "temperature_degC"\naxis = "q"\n', ["in line 3: the sensor has no axis 'q'"])):
+            model = self.folder / f"{name}.toml"
+            model.write_text(head + keys + coefficient)
+            refused(1, "diagnose", self.one, "--model", model, says=[str(model), *parts])
+            if name != "channel":
+                refused(1, "denoise", self.one, "--model", model, "--output", self.folder / "never.csv", says=[str(model), *parts])
+        refused(1, "denoise", self.one, "--model", self.folder / "channel.toml", "--output", self.folder / "never.csv",
+                says=[f"{self.folder / 'channel.toml'}:3: ", "temperature_degC"])
+
+    def check_help_is_laid_out(self):
+        """No line that a terminal would break within a word, no hole of two empty lines."""
+        for command in ["", *re.findall(r"^  ([a-z]+) ", ifog("--help").split("Subcommands:")[1], re.M)]:
+            text = ifog(*filter(None, [command, "--help"]))
+            assert "\n\n\n" not in text, command
+            for line in text.splitlines():
+                assert len(line) <= 100 or line.startswith("  ifog "), f"{command}: {line}"
+
+
+if __name__ == "__main__":
+    sys.exit(main_of(Checks))

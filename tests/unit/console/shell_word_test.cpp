@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/ifog/shell_word.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+
+namespace {
+
+// What a shell makes of it.
+std::string by_a_shell(const std::string& word) {
+  std::FILE* const shell = popen(("printf %s " + word).c_str(), "r");
+  std::string out;
+  std::array<char, 256> piece{};
+  while (const std::size_t n = fread(piece.data(), 1, piece.size(), shell)) out.append(piece.data(), n);
+  pclose(shell);
+  return out;
+}
+
+TEST(ShellWord, AShellTakesItAsItWas) {
+  for (const char* const word : {"plain.csv", "two words.csv", "it's", "''", "a'b'c d", "$HOME `id` \\",
+                                 "a\nb", "°", "*", "~", "#a", "!x", "(a)", "x;y&z|w", "\"quoted\"", "{a,b}"})
+    EXPECT_EQ(by_a_shell(ifog::shell_word(word)), word);
+  EXPECT_EQ(ifog::shell_word(""), "''");
+  EXPECT_EQ(ifog::shell_word("a/b_c-1.csv"), "a/b_c-1.csv");
+}
+
+TEST(ShellWord, AFileIsNoOption) {
+  EXPECT_EQ(ifog::shell_file("-x y.csv"), "'./-x y.csv'");
+  EXPECT_EQ(ifog::shell_file("-"), "-");  // standard input
+  EXPECT_EQ(ifog::shell_file("a.csv"), "a.csv");
+}
+
+}  // namespace
