@@ -203,17 +203,9 @@ void Housekeeping::keep_noise(Sensor& sensor, bool at_once) {
   if (!complaint.empty()) sensor.log->warn("{}", complaint);
 }
 
-bool Housekeeping::all_alive() const {
-  bool alive = true;
-  for (const auto& sensor : sensors_) {
-    const bool reader = sensor->reader_stuck >= kStuck_s;
-    if (!reader && sensor->unanswered < kStuck_s) continue;
-    alive = false;
-    if (watchdog_)
-      sensor->log->critical("the {} thread has not come round for {} s: no more signs of life",
-                            reader ? "reader" : "filter", kStuck_s);
-  }
-  return alive;
+const char* Housekeeping::stuck_thread(const Sensor& sensor) {
+  if (sensor.reader_stuck >= kStuck_s) return "reader";
+  return sensor.unanswered >= kStuck_s ? "filter" : nullptr;
 }
 
 void Housekeeping::stop_all() {
@@ -246,7 +238,14 @@ void Housekeeping::each_second(double interval_s) {
     report_second(*sensor, interval_s);
     rate += sensor->report.message().output_rate_hz;
   }
-  if (!all_alive()) watchdog_ = false;
+  bool stuck = false;
+  for (const auto& sensor : sensors_)
+    if (const char* const thread = stuck_thread(*sensor); watchdog_ && thread != nullptr) {
+      stuck = true;
+      sensor->log->critical("the {} thread has not come round for {} s: no more signs of life", thread,
+                            kStuck_s);
+    }
+  if (stuck) watchdog_ = false;
   if (watchdog_)
     notify("WATCHDOG=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s), " +
            std::to_string(std::lround(rate)) + " samples/s published");

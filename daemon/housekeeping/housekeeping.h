@@ -70,7 +70,8 @@ class Housekeeping {
   // The status of every sensor, and the service manager's sign of life.
   void each_second(double interval_s);
   static void keep_noise(Sensor& sensor, bool at_once);
-  [[nodiscard]] bool all_alive() const;
+  // Null where both of its threads come round.
+  [[nodiscard]] static const char* stuck_thread(const Sensor& sensor);
   // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
   void reload();
   void say_what_needs_a_restart(const Config& fresh);

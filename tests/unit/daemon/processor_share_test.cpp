@@ -99,6 +99,19 @@ TEST(ProcessorShare, NobodyStandsBackWhileThreeQuartersAreNotTaken) {
   EXPECT_NEAR(parts[1], 0.3, 1e-3);
 }
 
+// Held up for seconds in the middle of a turn, which another has used.
+TEST(ProcessorShare, WhoWasHeldUpDoesNotStandBackForThatToo) {
+  SharedProcessors processors(1);
+  ProcessorShare share(&processors);
+  EXPECT_EQ(share.rest_ns(1 * kMs, [] { return std::int64_t{0}; }), 0);
+  EXPECT_EQ(share.rest_ns(101 * kMs, [] { return 70 * kMs; }), 0);
+  processors.add(5'000 * kMs, 4'900 * kMs);
+  ASSERT_GT(processors.quiet_until_ns(), 5'000 * kMs);
+  const std::int64_t rest = share.rest_ns(150 * kMs, [] { return 75 * kMs; });
+  EXPECT_GT(rest, 0);
+  EXPECT_LE(rest, 100 * kMs);
+}
+
 // Where each has a processor of its own, two that take three quarters of one leave enough.
 TEST(ProcessorShare, EachOfTwoProcessorsHasAShare) {
   SharedProcessors processors(2);

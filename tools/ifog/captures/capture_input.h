@@ -40,9 +40,9 @@ struct CaptureInput {
   // Adds the options to a command that reads.
   void add_to(CLI::App& command);
   // Only those of a driver, to a command that writes its frames.
+  void add_driver_to(CLI::App& command);
   // What of it was given, as a shell takes it again: " --driver kvh1750 --option format=b".
   [[nodiscard]] std::string as_typed() const;
-  void add_driver_to(CLI::App& command);
 
   [[nodiscard]] bool has_driver() const { return !driver.empty() || !dbc.empty(); }
 
