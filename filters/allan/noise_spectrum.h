@@ -5,7 +5,7 @@
 //     half, which use every sample alike, each less its mean and slope. A bin is gamma distributed about a
 //     mean that is linear in the terms' variances, computed from the terms' covariance, leakage and aliasing
 //     included;
-//   - below 16 cycles a stretch, the cosine transform (DCT-II) of it at the coarsest step: Gaussian with a
+//   - below 32 cycles a stretch, the cosine transform (DCT-II) of it at the coarsest step: Gaussian with a
 //   covariance
 //     that is exact, so that what happens once in a record counts for once.
 //
@@ -29,11 +29,11 @@ struct SpectralBin {
   bool used = true;
 };
 
-// The slowest part of one stretch.
+// Of the slowest part of one stretch what is alike on either side of its middle, or what is opposite.
 struct SlowPart {
   Eigen::VectorXd value;                           // rad/s
   std::array<Eigen::MatrixXd, kTerms> covariance;  // for one unit of each term's variance
-  Eigen::VectorXd ramp;                            // what a rate that grows by one a sample makes of it
+  Eigen::VectorXd ramp;  // what a rate that grows by one a sample makes of it; may be zero
 };
 
 struct FrequencyRange {
