@@ -16,7 +16,7 @@ namespace ifog {
 namespace {
 
 // What a set of terms pays for each of them, of twice the log-likelihood, in its weight among the sets.
-constexpr double kCostOfTerm = 6.0;
+constexpr double kCostOfTerm = 7.0;
 // A term is present where the sets with it outweigh those without by so much, be it one more or one in the
 // place of another: no rule finds more for as few false terms in the mean over records than one on the odds.
 constexpr double kOdds = 3.0;
