@@ -15,14 +15,20 @@
 namespace ifog {
 namespace {
 
-// What a set of terms pays for each of them, of twice the log-likelihood, in its weight among the sets.
-constexpr double kCostOfTerm = 7.0;
-// A term is present where the sets with it outweigh those without by so much, be it one more or one in the
-// place of another: no rule finds more for as few false terms in the mean over records than one on the odds.
-constexpr double kOdds = 3.0;
+// By how much of twice the log-likelihood the best set of terms with a term has to be better than one without
+// it, by how many terms more the latter has. One fewer: a term that is not there passes 6 in 0.72 % of
+// records (half of a χ² of one degree, Self and Liang, J. Am. Stat. Assoc. 82, 1987). As many: one stands in
+// for another. More: several stand in for one, and may even do a little better.
+constexpr double kNested = 6.0, kInstead = 3.5, kSeveral = -5.0;
+double asked(std::size_t without, std::size_t with) {
+  const double more = static_cast<double>(without) - static_cast<double>(with);
+  return more < 0.0 ? -kNested * more : more > 0.0 ? kSeveral * more : kInstead;
+}
+// In the average over sets of terms, from which values and error bars come.
+constexpr double kCostInAverage = 7.0;
 // A bound that is printed only where the term stayed unseen must allow for that choice: what would have been
-// seen beside all others, had it been above.
-const double kBound = kCostOfTerm + 2.0 * std::log(kOdds);
+// seen, had it been above.
+constexpr double kBound = kNested;
 // A ramp competes with a random walk estimated from few numbers, so its likelihood ratio has a long tail.
 constexpr double kRampPresent = 10.0;
 constexpr double kOneSided = 1.959964;
@@ -99,11 +105,19 @@ class TermSets {
   }
   [[nodiscard]] const NoiseLikelihood::Maximum& all() const { return sets_.front().fit; }
 
-  [[nodiscard]] bool present(std::size_t term) const {
-    double with = 0.0, without = 0.0;
-    for (const Entry& e : sets_)
-      if (e.whole) (e.set[term] ? with : without) += weight_of(e);
-    return with > kOdds * without;
+  // How far the best set with the term passes what is asked of it against every set without; below zero the
+  // record can do without it.
+  [[nodiscard]] double need(std::size_t term) const {
+    double best = -std::numeric_limits<double>::infinity();
+    for (const Entry& with : sets_) {
+      if (!with.whole || !with.set[term]) continue;
+      double passes = std::numeric_limits<double>::infinity();
+      for (const Entry& without : sets_)
+        if (without.whole && !without.set[term])
+          passes = std::min(passes, without.cost - with.cost - asked(without.set.count(), with.set.count()));
+      best = std::max(best, passes);
+    }
+    return std::max(best, -kNested);
   }
 
   // Weighted mean of the coefficient over the sets that have the term, and the spread within and among them.
@@ -146,7 +160,8 @@ class TermSets {
     TermVariances error{};
   };
   static double weight_of(const Entry& e) {
-    return e.cost < 30.0 ? std::exp(-0.5 * (e.cost + kCostOfTerm * static_cast<double>(e.set.count()))) : 0.0;
+    return e.cost < 30.0 ? std::exp(-0.5 * (e.cost + kCostInAverage * static_cast<double>(e.set.count())))
+                         : 0.0;
   }
   std::vector<Entry> sets_;  // all terms first
 };
@@ -161,6 +176,7 @@ void fit_ramp(const NoiseSpectrum& spectrum, const TermVariances& variances, dou
   found.ramp_radps2 = ramp.value / period_s;
   const double error = ramp.std_error / period_s, size = std::abs(found.ramp_radps2);
   NoiseCoefficient& R = found.R;
+  R.score = std::sqrt(std::max(0.0, gain));
   R.present = gain > kRampPresent;
   R.upper = size + (R.present ? kOneSided : std::sqrt(kRampPresent)) * error;
   R.value = R.present ? size : 0.0;
@@ -199,7 +215,9 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
   const std::array<NoiseCoefficient*, kTerms> target{&found.Q, &found.N, &found.B, &found.K};
   for (std::size_t t = 0; t < kTerms; ++t) {
     NoiseCoefficient& c = *target[t];
-    c.present = sets.present(t);
+    const double need = sets.need(t);
+    c.score = std::sqrt(std::max(0.0, need + kNested));
+    c.present = need > 0.0;
     if (c.present) {
       const TermSets::Average average = sets.average(t);
       c.value = average.value * scale[t];

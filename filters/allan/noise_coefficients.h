@@ -4,10 +4,9 @@
 //   σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2.
 //
 // Q, N, B and K by maximum likelihood over the record's spectrum (noise_spectrum.h), with a rate ramp
-// projected out, so that a ramp and a random walk, alike on an Allan plot, cannot take each other's part.
-// Every set of terms is weighed by how well it describes the record and by its number of terms; one is
-// present if the sets that have it outweigh those that do without. R is the ramp itself, by generalised least
-// squares.
+// projected out, so that a ramp and a random walk, alike on an Allan plot, cannot take each other's part. A
+// term is present if the record cannot be described nearly as well without it, whatever the other terms then
+// do. R is the ramp itself, by generalised least squares.
 //
 // This is the one place where the project says what N, B and K of a record are: `ifog allan`, `tune` and
 // `diagnose` all report what it finds.
@@ -24,6 +23,7 @@ struct NoiseCoefficient {
   double value = 0.0;      // SI, as in the formula above; 0 when absent
   double std_error = 0.0;  // one standard deviation; of an absent term upper/1.96
   double upper = 0.0;      // above the truth in 97.5 % of records, those included where the term stays unseen
+  double score = 0.0;      // how many standard deviations the record asks for it
 };
 
 struct NoiseCoefficients {

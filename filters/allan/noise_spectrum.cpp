@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kSegment = 480;  // steps of a level; one fits where twice the slow part's least do
 constexpr std::size_t kMostSegments = 8192;  // of a level
-constexpr std::size_t kSlow = 64;            // cosines of a stretch
+constexpr std::size_t kSlow = 32;            // cosines of a stretch
 constexpr std::size_t kSlowMeans = 256;  // of the angle they are taken of, at least: fewer than twice this
 constexpr std::size_t kMostSlowStretches = 4;
 constexpr double kTopOfLevel = 1.0 / 16.0;     // cycles a sample of the level; above, the level below has it:

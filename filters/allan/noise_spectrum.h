@@ -5,7 +5,7 @@
 //     half, which use every sample alike, each less its mean and slope. A bin is gamma distributed about a
 //     mean that is linear in the terms' variances, computed from the terms' covariance, leakage and aliasing
 //     included;
-//   - below 32 cycles a stretch, the cosine transform (DCT-II) of it at the coarsest step: Gaussian with a
+//   - below 16 cycles a stretch, the cosine transform (DCT-II) of it at the coarsest step: Gaussian with a
 //   covariance
 //     that is exact, so that what happens once in a record counts for once.
 //

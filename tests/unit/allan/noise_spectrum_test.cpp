@@ -35,7 +35,7 @@ TEST(NoiseSpectrum, TheSlowPartScattersAsTheClosedFormsSay) {
     for (std::size_t half = 0; half < 2; ++half) {
       const ifog::SlowPart& part = spectrum.slow[half];
       const Eigen::Index count = part.value.size();
-      ASSERT_EQ(count, 32);
+      ASSERT_EQ(count, 16);
       Eigen::VectorXd walk(count);
       for (Eigen::Index i = 0; i < count; ++i) {
         const double k = 2.0 * static_cast<double>(i) + static_cast<double>(half) + 1.0;
@@ -57,7 +57,7 @@ TEST(NoiseSpectrum, TheSlowPartOfFlickerIsItsDefinition) {
     const NoiseSpectrum spectrum = spectrum_of(n);
     const std::span<const TermVariances> lag = ifog::level_covariance(0);
     for (std::size_t half = 0; half < 2; ++half)
-      for (const std::size_t column : {0U, 1U, 31U}) {
+      for (const std::size_t column : {0U, 1U, 15U}) {
         const double k = 2.0 * static_cast<double>(column) + static_cast<double>(half) + 1.0;
         const auto w = [&](std::size_t i) {
           return std::sqrt(2.0 / static_cast<double>(n)) *
@@ -102,8 +102,7 @@ Eigen::Matrix4d information_of_all(std::size_t samples, const TermVariances& tru
 }
 
 // Two terms that cross at an eighth of the record: of what all samples say of the slower one, the other
-// unknown, the spectrum keeps 96 % or more. With half as many cosines it kept 91 % of white noise beside
-// quantisation.
+// unknown, the spectrum keeps 95 to 99 %, and 91 % of white noise beside quantisation.
 TEST(NoiseSpectrum, LittleOfWhatAllSamplesSayIsLost) {
   constexpr std::size_t kSamples = 512;
   const double m = kSamples / 8.0;
@@ -120,7 +119,7 @@ TEST(NoiseSpectrum, LittleOfWhatAllSamplesSayIsLost) {
         return information(s, s) - information(s, f) * information(f, s) / information(f, f);
       };
       const double kept = beside(likelihood.information(truth)) / beside(information_of_all(kSamples, truth));
-      EXPECT_GT(kept, 0.96) << fast << " and " << slow;
+      EXPECT_GT(kept, 0.9) << fast << " and " << slow;
       EXPECT_LT(kept, 1.03) << fast << " and " << slow;
     }
 }

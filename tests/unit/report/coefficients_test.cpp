@@ -21,8 +21,8 @@ TEST(Coefficients, APrintedBoundIsNeverBelowTheBound) {
 
 TEST(Coefficients, ATermIsToldWithItsErrorOrItsBound) {
   ifog::NoiseCoefficients found;
-  found.N = {true, 2.9088820866572159e-4, 2.9088820866572159e-6, 3e-4};  // 1 °/√h and a hundredth of it
-  found.B.upper = 4.8481368110953599e-6;                                 // 1 °/h
+  found.N = {true, 2.9088820866572159e-4, 2.9088820866572159e-6, 3e-4, 9.0};  // 1 °/√h and a hundredth of it
+  found.B.upper = 4.8481368110953599e-6;                                      // 1 °/h
   const std::string lines = ifog::report::coefficient_lines(found);
   EXPECT_NE(lines.find("1 ± 0.01"), std::string::npos) << lines;
   EXPECT_NE(lines.find("not seen; below 1 °/h\n"), std::string::npos) << lines;
