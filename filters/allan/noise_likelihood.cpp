@@ -59,7 +59,7 @@ NoiseLikelihood::NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp) : ram
   }
   for (const SlowPart& slow : spectrum.slow) {
     Part part{slow.value, slow.ramp, slow.covariance};
-    if (ramp == Ramp::kProjected) {
+    if (ramp == Ramp::kProjected && !slow.ramp.isZero()) {
       // An orthonormal basis of what is at right angles to the ramp.
       const Eigen::Index n = slow.ramp.size() - 1;
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(slow.ramp);

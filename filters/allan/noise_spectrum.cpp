@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kSegment = 480;  // steps of a level; one fits where twice the slow part's least do
 constexpr std::size_t kMostSegments = 8192;  // of a level
 constexpr std::size_t kSlow = 32;            // cosines of a stretch
-constexpr std::size_t kSlowMeans = 256;     // of the angle they are taken of, at least: fewer than twice this
-constexpr std::size_t kMostSlowParts = 4;   // stretches
-constexpr double kTopOfLevel = 1.0 / 16.0;  // cycles a sample of the level; above, the level below has it:
+constexpr std::size_t kSlowMeans = 256;  // of the angle they are taken of, at least: fewer than twice this
+constexpr std::size_t kMostSlowStretches = 4;
+constexpr double kTopOfLevel = 1.0 / 16.0;     // cycles a sample of the level; above, the level below has it:
 constexpr double kBottomOfLevel = 1.0 / 32.0;  // averaging folds next to nothing onto frequencies this low
 
 // A windowed segment: its power, and what each term makes of it.
@@ -133,18 +133,21 @@ double slow_edge(std::size_t samples) {
   return edge * std::exp2(last_spectrum(samples) - last_level(samples));
 }
 
-Eigen::MatrixXd cosines(std::size_t n, std::size_t count) {
-  Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(count));
-  for (std::size_t k = 0; k < count; ++k)
+// Of the first `count` without the constant every second one, from the `first` on: alike or opposite on
+// either side of the middle.
+Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
+  Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>((count - first + 1) / 2));
+  for (std::size_t k = first; k < count; k += 2)
     for (std::size_t i = 0; i < n; ++i)
-      w(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+      w(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>((k - first) / 2)) =
           std::sqrt(2.0 / static_cast<double>(n)) *
           std::cos(std::numbers::pi * static_cast<double>(k + 1) * (static_cast<double>(i) + 0.5) /
                    static_cast<double>(n));
   return w;
 }
 
-// w'Γw of the Toeplitz matrix of a term.
+// w'Γw of the Toeplitz matrix of a term; the columns of w all alike on either side of the middle, or all
+// opposite.
 Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariances> covariance,
                           std::size_t term) {
   const Eigen::Index n = w.rows();
@@ -152,11 +155,13 @@ Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariance
   if (term == kB) {
     Eigen::VectorXd lag(n);
     for (Eigen::Index i = 0; i < n; ++i) lag[i] = at(i);
-    Eigen::MatrixXd product(n, w.cols());
-    for (Eigen::Index i = 0; i < n; ++i)
-      product.row(i) = lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
-                       lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i);
-    return w.transpose() * product;
+    const Eigen::Index half = (n + 1) / 2;
+    Eigen::MatrixXd product(half, w.cols());
+    for (Eigen::Index i = 0; i < half; ++i)
+      product.row(i) =
+          (2 * i + 1 == n ? 1.0 : 2.0) * (lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
+                                          lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i));
+    return w.topRows(half).transpose() * product;
   }
   // Quantisation and white noise end at a lag of one; a random walk's is −|lag|/2 from two on, that of a
   // running sum up to constants, which columns without a mean do not see.
@@ -171,22 +176,29 @@ Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariance
   return out;
 }
 
-SlowPart slow_part(const AngleMeans& means, std::size_t samples) {
+// Noise that is the same all along correlates nothing that is alike on either side of the middle with
+// anything that is opposite: two parts of half the size.
+std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples) {
   const int level = last_level(samples);
   const std::size_t count = means.rates(level);
   const auto n = static_cast<Eigen::Index>(count);
-  const Eigen::MatrixXd w = cosines(count, slow_count(count));
   Eigen::VectorXd rate(n), ramp(n);
   means.rates(level, 0, {rate.data(), count});
   for (Eigen::Index i = 0; i < n; ++i)
     ramp[i] = (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)) * std::exp2(level);
-  SlowPart part;
-  part.value = w.transpose() * rate;
-  part.ramp = w.transpose() * ramp;
   const TermVariances unit = level_unit(level);
-  for (std::size_t t = 0; t < kTerms; ++t)
-    part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
-  return part;
+  std::array<SlowPart, 2> parts;
+  for (std::size_t first = 0; first < parts.size(); ++first) {
+    SlowPart& part = parts[first];
+    const Eigen::MatrixXd w = cosines(count, slow_count(count), first);
+    part.value = w.transpose() * rate;
+    part.ramp = w.transpose() * ramp;
+    // A ramp is opposite.
+    if (first == 1) part.ramp.setZero();
+    for (std::size_t t = 0; t < kTerms; ++t)
+      part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
+  }
+  return parts;
 }
 
 // Spectrum of one level: all stretches that are long enough, and not below their own slow part.
@@ -265,9 +277,10 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   std::iota(slow.begin(), slow.end(), std::size_t{0});
   const auto samples = [&](std::size_t p) { return sum.parts()[p].angles - 1; };
   std::sort(slow.begin(), slow.end(), [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
-  slow.resize(std::min(slow.size(), kMostSlowParts));
+  slow.resize(std::min(slow.size(), kMostSlowStretches));
   for (const std::size_t p : slow)
-    if (samples(p) >= kShortestStretch) spectrum.slow.push_back(slow_part(means[p], samples(p)));
+    if (samples(p) >= kShortestStretch)
+      for (SlowPart& part : slow_parts(means[p], samples(p))) spectrum.slow.push_back(std::move(part));
   leave_out_lines(spectrum);
   return spectrum;
 }

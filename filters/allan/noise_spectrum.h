@@ -29,11 +29,11 @@ struct SpectralBin {
   bool used = true;
 };
 
-// The slowest part of one stretch.
+// Of the slowest part of one stretch what is alike on either side of its middle, or what is opposite.
 struct SlowPart {
   Eigen::VectorXd value;                           // rad/s
   std::array<Eigen::MatrixXd, kTerms> covariance;  // for one unit of each term's variance
-  Eigen::VectorXd ramp;                            // what a rate that grows by one a sample makes of it
+  Eigen::VectorXd ramp;  // what a rate that grows by one a sample makes of it; may be zero
 };
 
 struct FrequencyRange {

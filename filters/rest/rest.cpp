@@ -15,6 +15,7 @@ constexpr double kWindow_s = 0.5;
 constexpr std::size_t kLeastWindow = 32;  // samples
 constexpr std::size_t kFewestWindows = 16;
 constexpr double kSlowest_s = 2.0;   // sample time
+constexpr double kDwell_s = 1.0;     // above, samples beside a reference may be dwells
 constexpr double kAround_s = 10.0;   // on either side, of the running median
 constexpr double kTurned = 20.0;     // times the scatter of neighbouring quiet windows
 constexpr double kLeastTurn = 1e-3;  // rad/s
@@ -169,17 +170,36 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
   return rest;
 }
 
+// Sample by sample: what is set anew at each of them has no windows.
+Rest rest_by_references(std::span<const SeriesView> references, std::size_t samples) {
+  std::vector<State> state(std::max<std::size_t>(1, samples), State::kResting);
+  for (const SeriesView& reference : references) {
+    std::vector<double> there;
+    for_each_piece(reference, 0, samples, [&](std::span<const double> values, std::size_t) {
+      std::copy_if(values.begin(), values.end(), std::back_inserter(there),
+                   [](double v) { return std::isfinite(v); });
+    });
+    const double level = quantile(std::move(there), 0.5);
+    for_each_piece(reference, 0, samples, [&](std::span<const double> values, std::size_t first) {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::abs(values[i] - level) > kLeastTurn) state[first + i] = State::kTurning;
+    });
+  }
+  return as_samples(state, 1, samples);
+}
+
 }  // namespace
 
 Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
-  return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), period_s);
+  return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), {}, period_s);
 }
 
-Rest find_rest(std::span<const SeriesView> axes, double period_s) {
+Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s) {
   const std::size_t samples = axes.empty() ? 0 : axes.front().size();
   const auto window = std::max(kLeastWindow, static_cast<std::size_t>(std::lround(kWindow_s / period_s)));
   const std::size_t count = samples / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
+  if (period_s > kDwell_s && !references.empty()) return rest_by_references(references, samples);
   if (count < kFewestWindows || period_s > kSlowest_s) return as_samples(state, window, samples);
   std::vector<std::vector<Window>> windows;
   std::vector<double> room;

@@ -33,7 +33,11 @@ struct Rest {
 // axes: rates of one sensor, rad/s, equally long, NaN where missing; it rests when all of them do. Records of
 // fewer than 16 windows, or slower than a sample in two seconds, are taken to be at rest.
 [[nodiscard]] Rest find_rest(std::span<const std::span<const double>> axes, double period_s);
-[[nodiscard]] Rest find_rest(std::span<const SeriesView> axes, double period_s);
+// references: what else measured rates of the same axes, as long as these; may be none. Samples more than a
+// second apart beside one may be the dwells of a rate table, each at a rate of its own: there the references
+// alone say where the sensor was turned, where one departs by more than 0.001 rad/s from its own median.
+[[nodiscard]] Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references,
+                             double period_s);
 
 // "moving in 37 of 60 s (turned 30 s, shaken 7 s), at rest 5 … 12 s, 40 … 56 s"; empty when nothing moved.
 // first_s: time of the first sample.

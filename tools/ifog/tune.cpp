@@ -46,7 +46,11 @@ struct Options {
 
 // Of all axes together; a sensor that was mostly turned is refused.
 Rest rest_of(const CaptureView& capture, double period_s, const std::string& path) {
-  Rest rest = find_rest(capture.rate_radps, period_s);
+  const std::vector<SeriesView> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  std::vector<SeriesView> references;
+  for (const std::span<const double> reference : capture.reference_rate_radps)
+    if (!reference.empty()) references.emplace_back(reference);
+  Rest rest = find_rest(axes, references, period_s);
   try {
     require_rest(rest, period_s, capture.told_time_s(0));
   } catch (const std::invalid_argument& error) {
@@ -253,8 +257,9 @@ void run(const Options& options) {
   will_write("--json", options.json_file);
   will_write("--write-model", options.model);
   options.input.will_read("capture", options.capture);
-  LongCapture read = options.input.read_long_capture(
-      options.capture, nullptr, [](const std::string& column) { return column.starts_with("rate"); });
+  LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
+    return column.starts_with("rate") || column.starts_with("reference_rate");
+  });
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
   keep_usable_axes(capture, options.capture);

@@ -67,9 +67,9 @@ TEST(LongRecord, HasTheClockTheStretchesAndTheRestOfOneInMemory) {
   EXPECT_EQ(parts.size(), 6U);
   expect_equal(parts, ifog::stretches(r.long_time, r.long_rate, clock));
   const std::vector<SeriesView> in_memory{r.rate}, filed{r.long_rate};
-  const ifog::Rest rest = ifog::find_rest(in_memory, clock.period_s);
+  const ifog::Rest rest = ifog::find_rest(in_memory, {}, clock.period_s);
   EXPECT_GT(rest.turned, 200U);
-  expect_equal(rest.at_rest, ifog::find_rest(filed, clock.period_s).at_rest);
+  expect_equal(rest.at_rest, ifog::find_rest(filed, {}, clock.period_s).at_rest);
 }
 
 TEST(LongRecord, HasTheDeviationsOfOneInMemory) {
@@ -99,7 +99,7 @@ TEST(LongRecord, HasTheNoiseTermsOfOneInMemory) {
   const ifog::SampleClock clock = ifog::sample_clock(r.time);
   const std::vector<SeriesView> axes{r.rate};
   const auto parts =
-      ifog::common(ifog::stretches(r.time, r.rate, clock), ifog::find_rest(axes, 0.01).at_rest);
+      ifog::common(ifog::stretches(r.time, r.rate, clock), ifog::find_rest(axes, {}, 0.01).at_rest);
   const AngleSum in_memory(r.rate, parts), filed(r.long_rate, parts);
   const auto a = ifog::noise_coefficients(in_memory, 0.01), b = ifog::noise_coefficients(filed, 0.01);
   for (const auto term :

@@ -103,6 +103,26 @@ TEST(Rest, WhatTwoListsHaveInCommon) {
   EXPECT_EQ(both[2].end, 30U);
 }
 
+// The dwells of a rate table: nothing is seen of a turn within one, but the reference says at what rate it
+// was.
+TEST(Rest, ASlowRecordIsAtRestWhereItsReferenceIs) {
+  constexpr double kPeriod_s = 16.0;
+  std::vector<double> rate(300, 1e-5), reference(300, 7e-5);
+  for (std::size_t i = 100; i < 140; ++i) reference[i] = 0.02;
+  reference[200] = std::nan("");
+  const std::vector<ifog::SeriesView> axes{rate}, references{reference};
+  const Rest rest = ifog::find_rest(axes, references, kPeriod_s);
+  EXPECT_EQ(rest.turned, 40U);
+  ASSERT_EQ(rest.at_rest.size(), 2U);
+  EXPECT_EQ(rest.at_rest[0].end, 100U);
+  EXPECT_EQ(rest.at_rest[1].begin, 140U);
+  EXPECT_NO_THROW(ifog::require_rest(rest, kPeriod_s, 0.0));
+  EXPECT_EQ(ifog::find_rest(axes, {}, kPeriod_s).turned, 0U);
+  for (std::size_t i = 0; i < reference.size(); ++i) reference[i] = 0.01 * static_cast<double>(i % 7);
+  EXPECT_THROW(ifog::require_rest(ifog::find_rest(axes, references, kPeriod_s), kPeriod_s, 0.0),
+               std::invalid_argument);
+}
+
 // A gyro that was turned by hand: no noise figure, no heading forecast, no model may come of it.
 TEST(Rest, AHandTurnedGyroIsRefused) {
   const std::string path = IFOG_SHARED_DATA "/kvh1750_direct_imu_rate.csv.gz";

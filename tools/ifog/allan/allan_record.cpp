@@ -136,23 +136,27 @@ double told_time(const LongTable& table, std::size_t row) {
 // rates.
 Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Rows& rows,
              const SampleClock& clock, const AllanOptions& options) {
-  std::vector<SeriesView> axes;
+  std::vector<SeriesView> axes, references;
   std::string signal, axis;
-  for (const LongColumn& column : table.columns)
-    if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw")) {
-      const SeriesView rate = SeriesView(column.values).part(rows.begin, rows.end);
-      if (!is_dead(rate)) axes.push_back(rate);
-    }
+  for (const LongColumn& column : table.columns) {
+    const SeriesView values = SeriesView(column.values).part(rows.begin, rows.end);
+    if (axis_of(column.name, "reference_rate", axis))
+      references.push_back(values);
+    else if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw") &&
+             !is_dead(values))
+      axes.push_back(values);
+  }
   Rest all;
   all.samples = rows.end - rows.begin;
   all.at_rest = {{0, all.samples}};
   // Against a reference the sensor may turn.
   if (options.keep_motion || options.minus_reference || axes.empty()) return all;
-  Rest rest = find_rest(axes, clock.period_s);
+  Rest rest = find_rest(axes, references, clock.period_s);
   try {
     require_rest(rest, clock.period_s, told_time(table, rows.begin));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(name + ": " + error.what() + ", or --moving keep");
+    throw std::runtime_error(name + ": " + error.what() +
+                             (references.empty() ? "" : ", or --minus-reference") + ", or --moving keep");
   }
   return rest;
 }
