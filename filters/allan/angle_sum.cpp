@@ -11,7 +11,15 @@ namespace ifog {
 AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
   find_mean(rate_radps, stretches);
   if (rate_radps.in_memory().size() < rate_radps.size() || rate_radps.size() > kMostInMemory) {
-    sum_up(rate_radps, stretches, [this](double angle) { long_.add(angle); });
+    std::vector<double> some;  // not one by one
+    some.reserve(kSeriesPiece);
+    sum_up(rate_radps, stretches, [&](double angle) {
+      some.push_back(angle);
+      if (some.size() < kSeriesPiece) return;
+      long_.add(some);
+      some.clear();
+    });
+    long_.add(some);
     return;
   }
   std::size_t total = stretches.size();

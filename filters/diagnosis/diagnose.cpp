@@ -282,7 +282,7 @@ class Run {
   std::optional<std::size_t> what_makes_it_worse() {
     if (holds(reconstructed_, found_, errors_, &EvenError::written) &&
         holds(reconstructed_, found_, errors_, &EvenError::held_out)) {
-      write_before_and_after(errors_, data_.grid.sample_s, figures_, result_);
+      write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_);
       if (!grows_over_many(result_, errors_)) return std::nullopt;
     }
     if (const auto harmful =
@@ -308,12 +308,14 @@ class Run {
   }
 
   void report_figures() {
-    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_, periodograms_);
+    result_.series =
+        series_of(data_, errors_, found_.chosen, result_.effects, parts_, periodograms_, angles_);
     if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
-    write_before_and_after(errors_, data_.grid.sample_s, figures_, result_);
-    write_noise(records_, errors_, data_.grid, found_.noise, result_);
-    add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, result_.series);
-    result_.heading = predict_like_longest(result_, records_);
+    write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_);
+    write_noise(records_, errors_, data_.grid, found_.noise, angles_, result_);
+    add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, angles_, result_.series);
+    const bool as_cut = records_.size() == 1 && ramps_.empty();  // with nothing taken out of its channels
+    result_.heading = predict_like_longest(result_, records_, as_cut ? &data_ : nullptr);
   }
 
   void report_rest() {
@@ -358,6 +360,7 @@ class Run {
   std::vector<EvenError> errors_;
   KnownPeriodograms periodograms_;
   KnownFigures figures_{64};
+  KnownAngles angles_;
   std::optional<FoundZone> zone_;
   Lines lines_;
   std::optional<MovingLine> moving_;

@@ -71,35 +71,87 @@ void ChangeTest::restart() noexcept {
   suspected_ = false;
   for (Contest& contest : contests_) {
     contest.ratio = contest.rest = contest.tracker = contest.rest_squares = 0.0;
-    for (Sum& sum : contest.sums) sum.angle = sum.normalised = sum.weight = 0.0;
+    contest.sums.angle = contest.sums.normalised = contest.sums.weight = Lanes::Zero();
   }
   relaxed_ = kRelaxed;
 }
 
-// Learns how wide the sums are at rest; gives by how much the test is to believe them wider than white
-// noise's.
-double ChangeTest::widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept {
-  sum.normalised = over.keep * sum.normalised + normalised;
-  sum.weight = over.keep * over.keep * sum.weight + 1.0;
-  const double found = sum.normalised * sum.normalised / sum.weight;
-  sum.horizons = std::min(sum.horizons + over.share, kHorizonsKept);
-  sum.widening += (std::min(found, kWideningClip * std::max(sum.widening, 1.0)) - sum.widening) /
-                  (over.samples * (sum.horizons + 1.0));
-  if (noise.white()) return 1.0;
-  // Of coloured noise nothing known yet: all that is not rough may be as slow as the horizon.
-  const double most = std::max(1.0, over.samples * (1.0 - 1.0 / noise.colour()));
-  const double believed =
-      (kHorizonsBelieved * most + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
-  return kWideningMargin * std::max(1.0, believed);
+ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {
+  const double log_rest = logarithm(now.rest_factor);
+  Measured out;
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    if ((now.valid >> a & 1U) == 0) continue;
+    const auto lane = static_cast<Eigen::Index>(a);
+    const double rest = now.innovation[a] * now.innovation[a] / (now.rest_factor * now.scale[a]);
+    out.used[lane] = 1.0;
+    out.rate[lane] = now.rate[a];
+    out.scale[lane] = now.scale[a];
+    out.rest[lane] = rest;
+    out.spoke_for_rest[lane] = std::min(rest, 2.0 * most) + log_rest;
+    out.normalised[lane] = now.innovation[a] / std::sqrt(now.scale[a]);
+    out.angle[lane] = now.innovation[a] * now.covered_s[a];
+    out.rest_square += std::min(rest, kSquareClip);
+  }
+  return out;
+}
+
+// Learns how wide the sums are at rest.
+void ChangeTest::Sums::add(const Measured& now, const Horizon& over) noexcept {
+  angle = over.keep * angle + now.angle;
+  normalised = over.keep * normalised + now.normalised;
+  weight = over.keep * over.keep * weight + 1.0;
+  const Lanes found = normalised * normalised / weight;
+  horizons = (horizons + over.share).min(kHorizonsKept);
+  widening += (found.min(kWideningClip * widening.max(1.0)) - widening) / (over.samples * (horizons + 1.0));
+}
+
+void ChangeTest::Sums::keep(const Sums& before, Eigen::Index axis) noexcept {
+  angle[axis] = before.angle[axis];
+  normalised[axis] = before.normalised[axis];
+  weight[axis] = before.weight[axis];
+  widening[axis] = before.widening[axis];
+  horizons[axis] = before.horizons[axis];
+}
+
+// Of an axis that is not measured they stay as they are.
+void ChangeTest::add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) noexcept {
+  constexpr std::uint32_t kAll = (1U << kMaxAxes) - 1U;
+  if (valid == kAll) return sums.add(now, over);
+  const Sums before = sums;
+  sums.add(now, over);
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    if ((valid >> a & 1U) == 0) sums.keep(before, static_cast<Eigen::Index>(a));
+}
+
+ChangeTest::Lanes ChangeTest::wide(const Sums& sums, const Horizon& over, std::uint32_t coloured,
+                                   const std::array<NoiseScale, kMaxAxes>& noise) noexcept {
+  Lanes out = Lanes::Ones();
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    if ((coloured >> a & 1U) == 0) continue;
+    // Of coloured noise nothing known yet: all that is not rough may be as slow as the horizon.
+    const auto lane = static_cast<Eigen::Index>(a);
+    const double most = std::max(1.0, over.samples * (1.0 - 1.0 / noise[a].colour()));
+    out[lane] = kWideningMargin * std::max(1.0, believed(sums, lane, most));
+  }
+  return out;
 }
 
 // Over the scale: the mean square of what the filter may be off by.
-double ChangeTest::unseen(const Sum& sum, double wide) const noexcept {
-  const double square = sum.normalised * sum.normalised, asked = std::max(0.0, kUnseen - relaxed_);
+void ChangeTest::see(const Sums& sums, const Surprise& now, const Lanes& wide) noexcept {
   // On a model with more states a mean of the innovations is the model's as often as a motion's.
-  if (!rate_alone_ || square <= asked * wide * sum.weight || square <= asked * believed(sum) * sum.weight)
-    return 0.0;
-  return kOffByMean * square / (2.0 * sum.weight * sum.weight);
+  if (!rate_alone_) return;
+  const double asked = std::max(0.0, kUnseen - relaxed_);
+  const Lanes square = sums.normalised * sums.normalised;
+  const Lanes limit = asked * wide * sums.weight;
+  if (!((square - limit).maxCoeff() > 0.0)) return;
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    const auto lane = static_cast<Eigen::Index>(a);
+    const double weight = sums.weight[lane];
+    if ((now.valid >> a & 1U) == 0 || !(square[lane] > limit[lane]) ||
+        square[lane] <= asked * believed(sums, lane) * weight)
+      continue;
+    unseen_[a] = std::max(unseen_[a], now.scale[a] * (kOffByMean * square[lane] / (2.0 * weight * weight)));
+  }
 }
 
 // Log-likelihood ratio of two predictors of unknown variance: n/2 times the logarithm of the ratio of their
@@ -113,43 +165,37 @@ double ChangeTest::unknown_variance(const Contest& contest) noexcept {
 std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const Surprise& now,
                                             const std::array<NoiseScale, kMaxAxes>& noise, double most,
                                             double lag) noexcept {
-  const double log_rest = logarithm(now.rest_factor);
   relaxed_ *= 1.0 - 1.0 / kRelaxedFor;
   double greatest = 0.0;
   suspected_ = false;
   unseen_ = {};
   std::optional<std::size_t> best;
   for (; known_ < trackers.size(); ++known_) horizons_[known_] = Horizon(horizon(trackers.memory(known_)));
-  // What all trackers are held against is worked out once.
-  Axes rest{}, spoke_for_rest{}, normalised{}, angle{};
-  for (std::size_t a = 0; a < kMaxAxes; ++a) {
-    if ((now.valid >> a & 1U) == 0) continue;
-    rest[a] = now.innovation[a] * now.innovation[a] / (now.rest_factor * now.scale[a]);
-    spoke_for_rest[a] = std::min(rest[a], 2.0 * most) + log_rest;
-    normalised[a] = now.innovation[a] / std::sqrt(now.scale[a]);
-    angle[a] = now.innovation[a] * now.covered_s[a];
-  }
+  const Measured all = measured(now, most);
+  std::uint32_t coloured = 0;
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    if ((now.valid >> a & 1U) != 0 && !noise[a].white()) coloured |= 1U << a;
+  const double rest_square = all.rest_square;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     Contest& contest = contests_[j];
     const Horizon& over = horizons_[j];
     const double h = over.samples, keep = over.keep;
-    double gained = 0.0, rest_square = 0.0, tracker_square = 0.0, widest = 1.0;
-    for (std::size_t a = 0; a < kMaxAxes; ++a) {
-      if ((now.valid >> a & 1U) == 0) continue;
-      const double apart = now.rate[a] - trackers.rate(j, a);
-      const double tracker = apart * apart / (trackers.factor(j) * now.scale[a]);
-      Sum& sum = contest.sums[a];
-      sum.angle = keep * sum.angle + angle[a];
-      const double wide = widen(sum, normalised[a], over, noise[a]);
-      if (j >= kShortestSum && h <= kWideLags * lag)
-        unseen_[a] = std::max(unseen_[a], now.scale[a] * unseen(sum, wide));
-      const double spoken =
-          0.5 * (spoke_for_rest[a] - std::min(tracker, 2.0 * most) - trackers.log_factor(j));
-      gained += wide == 1.0 ? spoken : spoken / wide;  // white noise, nearly always: without a division
-      rest_square += std::min(rest[a], kSquareClip);
-      tracker_square += std::min(tracker, kSquareClip);
-      widest = std::max(widest, wide);
+    Lanes predicted = Lanes::Zero();
+    for (std::size_t a = 0; a < kMaxAxes; ++a) predicted[static_cast<Eigen::Index>(a)] = trackers.rate(j, a);
+    const Lanes apart = all.used * (all.rate - predicted);
+    const Lanes tracker = apart * apart / (trackers.factor(j) * all.scale);
+    add(all, over, now.valid, contest.sums);
+    const Lanes wider = coloured == 0 ? Lanes(Lanes::Ones()) : wide(contest.sums, over, coloured, noise);
+    if (j >= kShortestSum && h <= kWideLags * lag) see(contest.sums, now, wider);
+    Lanes spoken = 0.5 * (all.spoke_for_rest - tracker.min(2.0 * most) - trackers.log_factor(j) * all.used);
+    if (coloured != 0) spoken /= wider;
+    const Lanes clipped = tracker.min(kSquareClip);
+    double gained = 0.0, tracker_square = 0.0, widest = 1.0;
+    for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(kMaxAxes); ++a) {
+      gained += spoken[a];
+      tracker_square += clipped[a];
     }
+    if (coloured != 0) widest = wider.maxCoeff();
     if (!rate_alone_) {
       contest.usual += (std::clamp(gained, -1.0, 1.0) - contest.usual) / (kUsualHorizons * h);
       gained -= std::max(contest.usual, 0.0);
@@ -180,14 +226,15 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
 // that are well known it is followed to b = 0.
 double ChangeTest::coloured(const TrackerBank& trackers, std::size_t axis, double lag,
                             double share) const noexcept {
+  const auto lane = static_cast<Eigen::Index>(axis);
   const double gain = 1.0 / (1.0 + lag);
   double b = 0.0, inverse = 0.0, at_zero = 0.0;
   for (std::size_t j = 1; j < trackers.size(); ++j) {
     const double h = horizon(trackers.memory(j));
-    const Sum& sum = contests_[j].sums[axis];
-    if (j > 2 && (h > kWideLags * lag || sum.horizons < kHorizonsKnown)) break;
+    const Sums& sums = contests_[j].sums;
+    if (j > 2 && (h > kWideLags * lag || sums.horizons[lane] < kHorizonsKnown)) break;
     const double here = 1.0 / h, both = gain + here;
-    const double of_noise = std::max(sum.widening - share * gain / both, kLeastNoise * here / both);
+    const double of_noise = std::max(sums.widening[lane] - share * gain / both, kLeastNoise * here / both);
     const double before = b, inverse_before = inverse;
     b = here;
     inverse = 2.0 * here / (of_noise * both);
@@ -215,11 +262,12 @@ double ChangeTest::walk(const TrackerBank& trackers, std::size_t axis, double la
   if (j <= 1) return expected;
   const double gain = 1.0 / (1.0 + lag), b = 1.0 / horizon(trackers.memory(j));
   const double before = (b + gain * expected) / (gain + b);
-  return expected * believed(contests_[j].sums[axis], before) / before;
+  return expected * believed(contests_[j].sums, static_cast<Eigen::Index>(axis), before) / before;
 }
 
-double ChangeTest::believed(const Sum& sum, double before) noexcept {
-  return (kHorizonsBelieved * before + sum.horizons * sum.widening) / (kHorizonsBelieved + sum.horizons);
+double ChangeTest::believed(const Sums& sums, Eigen::Index axis, double before) noexcept {
+  const double horizons = sums.horizons[axis];
+  return (kHorizonsBelieved * before + horizons * sums.widening[axis]) / (kHorizonsBelieved + horizons);
 }
 
 Wider ChangeTest::wider(const TrackerBank& trackers, std::size_t axis, double lag, const NoiseScale& noise,
@@ -227,7 +275,8 @@ Wider ChangeTest::wider(const TrackerBank& trackers, std::size_t axis, double la
   // What a model knows of colour is in its variance, and of its gain the rest does not hold.
   if (!rate_alone_) {
     const std::size_t j = longest(trackers, lag);
-    return {j > 1 ? std::max(1.0, believed(contests_[j].sums[axis])) : 1.0, expected.walk};
+    return {j > 1 ? std::max(1.0, believed(contests_[j].sums, static_cast<Eigen::Index>(axis))) : 1.0,
+            expected.walk};
   }
   if (noise.white()) return {1.0, walk(trackers, axis, lag, expected.walk)};
   return {coloured(trackers, axis, lag, expected.noise * expected.walk), expected.walk};

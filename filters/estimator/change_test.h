@@ -14,6 +14,7 @@
 //   tracker, though nothing moves: what a tracker gains on it all the time is no change.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -67,27 +68,23 @@ class ChangeTest {
   // Sum of the innovations an axis has had over the tracker's horizon, by the time each stands for, rad: what
   // was owed before is not this change's.
   [[nodiscard]] double fallen_short(std::size_t tracker, std::size_t axis) const noexcept {
-    return contests_[tracker].sums[axis].angle;
+    return contests_[tracker].sums.angle[static_cast<Eigen::Index>(axis)];
   }
   [[nodiscard]] static double horizon(double memory) noexcept;
 
  private:
-  struct Sum {
-    double angle = 0.0;       // of innovations by their time over the horizon
-    double normalised = 0.0;  // the same of innovations over their scale
-    double weight = 0.0;      // variance of that if they are white
-    double widening = 1.0;    // of its variance over white noise's, as found
-    double horizons = 0.0;    // from so many of them
-  };
-  struct Contest {
-    double ratio = 0.0;  // log-likelihood ratio
-    double usual = 0.0;  // what a measurement adds to it, on average over many horizons
-    // Of normalised squares over the horizon: the filter at rest's, the tracker's, and the squares of the
-    // former, for the number of measurements they stand on.
-    double rest = 0.0, tracker = 0.0, rest_squares = 0.0;
-    std::array<Sum, kMaxAxes> sums{};
-  };
+  // By axis, all of them in the same step; the last has none.
+  using Lanes = Eigen::Array<double, 4, 1>;
+  static_assert(kMaxAxes <= Lanes::SizeAtCompileTime);
 
+  // What all trackers are held against; 0 of an axis that is not measured.
+  struct Measured {
+    Lanes used = Lanes::Zero();  // 1: measured
+    Lanes rate = Lanes::Zero(), scale = Lanes::Ones();
+    Lanes rest = Lanes::Zero(), spoke_for_rest = Lanes::Zero();
+    Lanes normalised = Lanes::Zero(), angle = Lanes::Zero();
+    double rest_square = 0.0;
+  };
   // What is the same for every measurement.
   struct Horizon {
     Horizon() = default;
@@ -97,10 +94,35 @@ class ChangeTest {
     double evidence = 0.0;  // asked for: a ratio over a long horizon is not looked at afresh each time
   };
 
-  double widen(Sum& sum, double normalised, const Horizon& over, const NoiseScale& noise) noexcept;
+  struct Sums {
+    Lanes angle = Lanes::Zero();       // of innovations by their time over the horizon
+    Lanes normalised = Lanes::Zero();  // the same of innovations over their scale
+    Lanes weight = Lanes::Zero();      // variance of that if they are white
+    Lanes widening = Lanes::Ones();    // of its variance over white noise's, as found
+    Lanes horizons = Lanes::Zero();    // from so many of them
+
+    void add(const Measured& now, const Horizon& over) noexcept;
+    // Of this axis as they were.
+    void keep(const Sums& before, Eigen::Index axis) noexcept;
+  };
+
+  struct Contest {
+    double ratio = 0.0;  // log-likelihood ratio
+    double usual = 0.0;  // what a measurement adds to it, on average over many horizons
+    // Of normalised squares over the horizon: the filter at rest's, the tracker's, and the squares of the
+    // former, for the number of measurements they stand on.
+    double rest = 0.0, tracker = 0.0, rest_squares = 0.0;
+    Sums sums;
+  };
+
+  [[nodiscard]] static Measured measured(const Surprise& now, double most) noexcept;
+  static void add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) noexcept;
+  // By how much the test is to believe the sums wider than white noise's.
+  [[nodiscard]] static Lanes wide(const Sums& sums, const Horizon& over, std::uint32_t coloured,
+                                  const std::array<NoiseScale, kMaxAxes>& noise) noexcept;
+  void see(const Sums& sums, const Surprise& now, const Lanes& wide) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
-  [[nodiscard]] double unseen(const Sum& sum, double wide) const noexcept;
-  [[nodiscard]] static double believed(const Sum& sum, double before = 1.0) noexcept;
+  [[nodiscard]] static double believed(const Sums& sums, Eigen::Index axis, double before = 1.0) noexcept;
   [[nodiscard]] std::size_t longest(const TrackerBank& trackers, double lag) const noexcept;
   [[nodiscard]] double walk(const TrackerBank& trackers, std::size_t axis, double lag,
                             double expected) const noexcept;

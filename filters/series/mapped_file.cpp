@@ -5,15 +5,20 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 namespace ifog {
 namespace {
@@ -105,13 +110,87 @@ void* mapped(int fd, std::size_t bytes, int protection) {
   return at;
 }
 
-}  // namespace
+// Sizes in sixteenths of a power of two: what is nearly as long fits into the same file.
+std::size_t room_for(std::size_t bytes) {
+  const std::size_t step = std::max<std::size_t>(std::bit_floor(bytes) / 16, 1);
+  return (bytes + step - 1) / step * step;
+}
 
-void* map_new_file(std::size_t bytes) {
+struct Spare {
+  void* at;
+  std::size_t bytes;
+};
+
+void give_up(const Spare& spare) noexcept {
+  resident().remove(spare.at);
+  ::munmap(spare.at, spare.bytes);
+}
+
+// Making a file costs more than writing it: each of its pages is found, zeroed, mapped and in the end thrown
+// away. Most of what a diagnosis makes is as long as what it has just given back.
+class Spares {
+ public:
+  Spares() { all_.reserve(kMostSpare); }
+
+  // The one that was kept last, so that of its pages most are there; null: none of this size.
+  void* take(std::size_t bytes) noexcept {
+    const std::lock_guard lock(guard_);
+    const auto found =
+        std::find_if(all_.rbegin(), all_.rend(), [&](const Spare& each) { return each.bytes == bytes; });
+    if (found == all_.rend()) return nullptr;
+    void* const at = found->at;
+    all_.erase(std::next(found).base());
+    return at;
+  }
+
+  void keep(const Spare& spare) noexcept {
+    const std::lock_guard lock(guard_);
+    if (all_.size() == kMostSpare) {
+      give_up(all_.front());
+      all_.erase(all_.begin());
+    }
+    all_.push_back(spare);
+  }
+
+  // Whether there were any.
+  bool clear() noexcept {
+    const std::lock_guard lock(guard_);
+    const bool any = !all_.empty();
+    for (const Spare& each : all_) give_up(each);
+    all_.clear();
+    return any;
+  }
+
+ private:
+  std::mutex guard_;
+  std::vector<Spare> all_;  // in the order in which they were given back
+};
+
+Spares& spares() {
+  static Spares all;
+  return all;
+}
+
+void* map_new(std::size_t bytes) {
   UnnamedFile file;
   file.reserve(bytes);
   return mapped(file.descriptor(), bytes, PROT_READ | PROT_WRITE);
 }
+
+}  // namespace
+
+void* map_new_file(std::size_t bytes) {
+  const std::size_t room = room_for(bytes);
+  if (void* const spare = spares().take(room)) return spare;
+  try {
+    return map_new(room);
+  } catch (const std::runtime_error&) {
+    if (!spares().clear()) throw;
+  }
+  return map_new(room);
+}
+
+void unmap_new_file(void* at, std::size_t bytes) noexcept { spares().keep({at, room_for(bytes)}); }
 
 const void* map_file(const UnnamedFile& file, std::size_t bytes) {
   return mapped(file.descriptor(), bytes, PROT_READ);

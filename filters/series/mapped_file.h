@@ -13,12 +13,17 @@ namespace ifog {
 
 inline constexpr std::size_t kMostResident = std::size_t{256} << 20U;  // bytes
 
-// A file of so many bytes, all of them zero, to read and write. Its room is taken at once, so that no later
-// write finds the disk full. Throws std::runtime_error with one line.
+// Files that were given back and wait for the next that asks for as much.
+inline constexpr std::size_t kMostSpare = 4;
+
+// A file of so many bytes, whatever is in them, to read and write. Its room is taken at once, so that no
+// later write finds the disk full. Throws std::runtime_error with one line.
 [[nodiscard]] void* map_new_file(std::size_t bytes);
+// What that gave.
+void unmap_new_file(void* at, std::size_t bytes) noexcept;
 // The first bytes of a file that is there, to read. The file may be closed afterwards. Throws likewise.
 [[nodiscard]] const void* map_file(const UnnamedFile& file, std::size_t bytes);
-// What either gave.
+// What that gave.
 void unmap_file(const void* at, std::size_t bytes) noexcept;
 
 }  // namespace ifog

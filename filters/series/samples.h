@@ -36,7 +36,7 @@ struct FiledAllocator {
     if (n * sizeof(T) <= kInMemory)
       ::operator delete(at);
     else
-      unmap_file(at, n * sizeof(T));
+      unmap_new_file(at, n * sizeof(T));
   }
   friend bool operator==(const FiledAllocator&, const FiledAllocator&) { return true; }
 };

@@ -109,15 +109,19 @@ void subtract_effects(const BlockData& data, const std::vector<Candidate>& effec
   }
   for (std::size_t r = 0; r < errors.size(); ++r) {
     EvenError& error = errors[r];
-    error.after = error.rest;
-    error.held_out = error.rest_held_out;
-    if (p == 0) continue;
-    for (std::size_t i = 0; i < error.after.size(); ++i) {
+    if (p == 0) {
+      error.after = error.rest;
+      error.held_out = error.rest_held_out;
+      continue;
+    }
+    Samples& after = error.after.anew(error.rest.size());
+    Samples& without = error.held_out.anew(error.rest_held_out.size());
+    for (std::size_t i = 0; i < after.size(); ++i) {
       const double at =
           static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
       const Place place(grid.records[r], at);
-      error.after[i] -= place.of(all);
-      error.held_out[i] -= place.of(held_out);
+      after[i] = error.rest[i] - place.of(all);
+      without[i] = error.rest_held_out[i] - place.of(held_out);
     }
   }
 }

@@ -13,8 +13,10 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
   for (std::size_t r = 0; r < records.size(); ++r) {
     EvenError error;
     error.start_s = records[r].time_s.front();
-    Samples held_out = error_of(records[r]);
-    error.before = on_even_grid(records[r], sample_s, held_out);
+    const bool plain = records[r].reference_radps.empty();
+    Samples held_out = plain && without.ramps.empty() ? Samples() : error_of(records[r]);
+    error.before =
+        on_even_grid(records[r], sample_s, plain ? records[r].rate_radps : std::span<const double>(held_out));
     if (without.ramps.empty()) {
       error.rest = error.rest_held_out = error.before;
     } else {

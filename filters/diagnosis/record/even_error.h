@@ -6,20 +6,21 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/ramps_out.h"
+#include "filters/series/shared_samples.h"
 
 namespace ifog {
 
-// Of one record; NaN where no sample is.
+// Of one record; NaN where no sample is. What is the same is there once.
 struct EvenError {
   double start_s = 0.0;
-  Samples before;         // rate - reference
-  Samples rest;           // less ramps, and later lines: what effects are sought in
-  Samples rest_held_out;  // the same, less ramps as fitted without the sample's own part
-  Samples after;          // less the effects, too
+  SharedSamples before;         // rate - reference
+  SharedSamples rest;           // less ramps, and later lines: what effects are sought in
+  SharedSamples rest_held_out;  // the same, less ramps as fitted without the sample's own part
+  SharedSamples after;          // less the effects, too
   // Less what is corrected online, by coefficients that were fitted without the sample's own part.
-  Samples held_out;
-  Samples written;  // what the daemon's own correction leaves of `before`, by the model as written
-  Samples logged;   // the same with channels as they were logged, faults and all
+  SharedSamples held_out;
+  SharedSamples written;  // what the daemon's own correction leaves of `before`, by the model as written
+  SharedSamples logged;   // the same with channels as they were logged, faults and all
 };
 
 // after, held_out and written: still empty. Throws as on_even_grid() does.

@@ -2,11 +2,12 @@
 #include "filters/diagnosis/record/figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
-#include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/known_angles.h"
 
 namespace ifog {
 namespace {
@@ -60,23 +61,41 @@ double heading_drift(std::span<const double> error, double period_s) {
 
 }  // namespace
 
+// Four sums, so that no addition waits for the one before; one look at a time where something is missing.
+Present present(std::span<const double> values) {
+  constexpr std::size_t kLanes = 4;
+  std::array<double, kLanes> lane{};
+  std::size_t i = 0;
+  for (; i + kLanes <= values.size(); i += kLanes)
+    for (std::size_t k = 0; k < kLanes; ++k) lane[k] += values[i + k];
+  for (; i < values.size(); ++i) lane[0] += values[i];
+  const double all = (lane[0] + lane[1]) + (lane[2] + lane[3]);
+  if (std::isfinite(all)) return {all, values.size()};
+  Present there;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    there.sum += value;
+    ++there.count;
+  }
+  return there;
+}
+
 Samples means_over(std::span<const double> error, std::size_t count) {
   Samples means;
   means.reserve(error.size() / count);
   for (std::size_t from = 0; from + count <= error.size(); from += count) {
-    double sum = 0.0;
-    std::size_t n = 0;
-    for (std::size_t i = from; i < from + count; ++i) {
-      if (!std::isfinite(error[i])) continue;
-      sum += error[i];
-      ++n;
-    }
-    means.push_back(2 * n >= count && n > 0 ? sum / static_cast<double>(n) : kMissing);
+    means.push_back(present(error.subspan(from, count)).mean_of(count));
   }
   return means;
 }
 
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s) {
+  KnownAngles none;
+  return error_figures(error, period_s, none);
+}
+
+std::map<std::string, double> error_figures(std::span<const double> error, double period_s,
+                                            KnownAngles& angles) {
   std::map<std::string, double> figures;
   figures["residual_rms_radps"] = rms_about_mean(error);
   std::vector<std::string> names;
@@ -88,7 +107,7 @@ std::map<std::string, double> error_figures(std::span<const double> error, doubl
     names.emplace_back(name);
     counts.push_back(count);
   }
-  const std::vector<double> deviations = gapped_deviation(error, counts);
+  const std::vector<double> deviations = angles.gapped(error, counts);
   for (std::size_t i = 0; i < counts.size(); ++i) {
     figures["rms_" + names[i]] = rms_about_mean(means_over(error, counts[i]));
     figures["adev_" + names[i]] = deviations[i];

@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record/even_error.h"
+#include "filters/diagnosis/record/known_angles.h"
 #include "filters/diagnosis/record/known_series.h"
 
 namespace ifog {
@@ -18,6 +19,6 @@ using KnownFigures = KnownOfSeries<std::map<std::string, double>>;
 // what the other does not keep: what the written model leaves, and what effects leave that were fitted
 // without each sample's own part.
 void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, KnownFigures& known,
-                            Diagnosis& diagnosis);
+                            KnownAngles& angles, Diagnosis& diagnosis);
 
 }  // namespace ifog

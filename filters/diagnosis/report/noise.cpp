@@ -30,20 +30,20 @@ std::span<const double> error_at_rest(const Record& record, const EvenError& err
     std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
               resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
   const Samples rests = on_even_grid(record, sample_s, resting);
-  room = error.after;
+  room = error.after.values();
   for (std::size_t i = 0; i < room.size(); ++i)
     if (std::isnan(rests[i])) room[i] = std::nan("");
   return room;
 }
 
 // All records one after the other.
-AngleSum angle_at_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
-                       double sample_s) {
+NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
+                                       const std::vector<EvenError>& errors, double sample_s,
+                                       KnownAngles& angles) {
   Samples room;
-  if (records.size() == 1) {
-    const std::span<const double> rate = error_at_rest(records.front(), errors.front(), sample_s, room);
-    return AngleSum(rate, stretches({}, rate, {}));
-  }
+  if (records.size() == 1)
+    return noise_coefficients(angles.of(error_at_rest(records.front(), errors.front(), sample_s, room)),
+                              sample_s);
   Samples all;
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
@@ -52,7 +52,7 @@ AngleSum angle_at_rest(const std::vector<Record>& records, const std::vector<Eve
       parts.push_back({all.size() + part.begin, all.size() + part.end});
     all.insert(all.end(), rate.begin(), rate.end());
   }
-  return AngleSum(std::span<const double>(all), parts);
+  return noise_coefficients(AngleSum(std::span<const double>(all), parts), sample_s);
 }
 
 void write_changes(const std::vector<Record>& records, const std::vector<EvenError>& errors, double sample_s,
@@ -73,7 +73,8 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
 }  // namespace
 
 void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
-                 const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis) {
+                 const BlockGrid& grid, const NoiseFit& regression, KnownAngles& angles,
+                 Diagnosis& diagnosis) {
   NoiseTerms &value = diagnosis.noise, &error = diagnosis.noise_error;
   if (grid.dwells) {
     value = noise_terms(regression.shape, regression.white_variance, grid.block_s);
@@ -86,8 +87,7 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
   }
   write_changes(records, errors, grid.sample_s, diagnosis);
   try {
-    const NoiseCoefficients found =
-        noise_coefficients(angle_at_rest(records, errors, grid.sample_s), grid.sample_s);
+    const NoiseCoefficients found = coefficients_at_rest(records, errors, grid.sample_s, angles);
     put(found.Q, value.Q, error.Q);
     put(found.N, value.N, error.N);
     put(found.B, value.B, error.B);

@@ -150,44 +150,13 @@ double line_square(const Weights& weights, const Effect& line) {
   return 0.5 * square * kept * kept * std::norm(sum);
 }
 
-}  // namespace
-
-double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s) {
-  const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
-  const double step = aligned_s / steps;
-  const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
-  double square = 0.0;
-  for (const double w : weight) square += w * w;
-  double walk = 0.0;
-  double flicker = 0.0;
-  double variance = 0.0;
-  for (const NoisePosterior::Part& part : posterior.parts) {
-    variance += part.weight * part.white / step * square;
-    walk += part.weight * part.walk;
-    flicker += part.weight * part.flicker;
-    if (part.markov > 0.0) {
-      const double f = std::exp(-step / part.markov_s);
-      variance += part.weight * brought_by(weight, f, part.markov * (1.0 - f * f));
-    }
-  }
-  if (walk > 0.0) variance += brought_by(weight, 1.0, walk * step);
-  if (flicker > 0.0) {
-    for (const double tau : posterior.flicker_s) {
-      const double f = std::exp(-step / tau);
-      variance += brought_by(weight, f, flicker * (1.0 - f * f));
-    }
-  }
-  return variance;
-}
-
-HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
-                                  const std::vector<double>& after_s) {
+HeadingPrediction predicted(const Diagnosis& diagnosis, const BlockData& data, double aligned_s,
+                            const std::vector<double>& after_s) {
   HeadingPrediction prediction;
   prediction.aligned_s = aligned_s;
   prediction.after_s = after_s;
   std::vector<Effect> mine;
   for (const FoundEffect& found : diagnosis.effects) mine.push_back(found.effect);
-  const BlockData data = cut_to_blocks({next});
   const BlockData held = held_in_range(data, diagnosis.ranges, false);
   const BlockData followed = held_in_range(data, diagnosis.ranges, true);
   std::optional<double> ramp_s;
@@ -224,13 +193,51 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   return prediction;
 }
 
-HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records) {
+}  // namespace
+
+double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s) {
+  const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
+  const double step = aligned_s / steps;
+  const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
+  double square = 0.0;
+  for (const double w : weight) square += w * w;
+  double walk = 0.0;
+  double flicker = 0.0;
+  double variance = 0.0;
+  for (const NoisePosterior::Part& part : posterior.parts) {
+    variance += part.weight * part.white / step * square;
+    walk += part.weight * part.walk;
+    flicker += part.weight * part.flicker;
+    if (part.markov > 0.0) {
+      const double f = std::exp(-step / part.markov_s);
+      variance += part.weight * brought_by(weight, f, part.markov * (1.0 - f * f));
+    }
+  }
+  if (walk > 0.0) variance += brought_by(weight, 1.0, walk * step);
+  if (flicker > 0.0) {
+    for (const double tau : posterior.flicker_s) {
+      const double f = std::exp(-step / tau);
+      variance += brought_by(weight, f, flicker * (1.0 - f * f));
+    }
+  }
+  return variance;
+}
+
+HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
+                                  const std::vector<double>& after_s) {
+  return predicted(diagnosis, cut_to_blocks({next}), aligned_s, after_s);
+}
+
+HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records,
+                                       const BlockData* data) {
   const auto span_of = [](const Record& record) { return record.time_s.back() - record.time_s.front(); };
   const Record& longest =
       *std::max_element(records.begin(), records.end(),
                         [&](const Record& a, const Record& b) { return span_of(a) < span_of(b); });
   const double aligned = std::min(300.0, span_of(longest) / 10.0);
-  return predict_heading(diagnosis, longest, aligned, {60.0, 300.0, 600.0, 1800.0, 3600.0});
+  const std::vector<double> after_s = {60.0, 300.0, 600.0, 1800.0, 3600.0};
+  return data ? predicted(diagnosis, *data, aligned, after_s)
+              : predict_heading(diagnosis, longest, aligned, after_s);
 }
 
 }  // namespace ifog

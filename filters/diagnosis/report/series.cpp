@@ -6,8 +6,6 @@
 #include <limits>
 
 #include "filters/allan/confidence.h"
-#include "filters/allan/gapped_deviation.h"
-#include "filters/allan/stretches.h"
 
 namespace ifog {
 namespace {
@@ -32,7 +30,8 @@ double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::
 
 DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
-                          const std::vector<Eigen::VectorXd>& parts, KnownPeriodograms& known) {
+                          const std::vector<Eigen::VectorXd>& parts, KnownPeriodograms& known,
+                          KnownAngles& angles) {
   DiagnosisSeries series;
   const BlockGrid& grid = data.grid;
   const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
@@ -73,27 +72,25 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     series.tau_s.push_back(tau);
     counts.push_back(count);
   }
-  series.before_adev_radps = gapped_deviation(first.before, counts);
-  series.after_adev_radps = mark_of(first.written) == mark_of(first.before)
-                                ? series.before_adev_radps
-                                : gapped_deviation(first.written, counts);
+  series.before_adev_radps = angles.gapped(first.before, counts);
+  series.after_adev_radps =
+      first.written.is(first.before) ? series.before_adev_radps : angles.gapped(first.written, counts);
   return series;
 }
 
-void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise,
+void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise, KnownAngles& angles,
                     DiagnosisSeries& series) {
   constexpr double kOneSigma = 0.6826894921370859;
   const auto squared = [](const std::optional<double>& value) { return value ? *value * *value : 0.0; };
   const TermVariances terms{squared(noise.Q) / (sample_s * sample_s), squared(noise.N) / sample_s,
                             squared(noise.B), squared(noise.K) * sample_s};
-  const std::vector<Stretch> whole = stretches({}, std::span<const double>(error.written), {});
-  if (whole.empty()) return;
-  const AngleSum sum(std::span<const double>(error.written), whole);
+  if (angles.of(error.written).parts().empty()) return;
   std::vector<std::size_t> counts;
   for (const double tau : series.tau_s)
     counts.push_back(static_cast<std::size_t>(std::lround(tau / sample_s)));
-  const std::vector<DeviationPoint> points = deviation(sum, counts);
-  for (const AllanInterval& each : allan_intervals(sum, Deviation::kAllan, points, terms, kOneSigma)) {
+  const std::vector<DeviationPoint> points = angles.points(error.written, counts);
+  for (const AllanInterval& each :
+       allan_intervals(angles.of(error.written), Deviation::kAllan, points, terms, kOneSigma)) {
     series.after_adev_low_radps.push_back(each.lower_radps);
     series.after_adev_high_radps.push_back(each.upper_radps);
   }

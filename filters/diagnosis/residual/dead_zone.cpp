@@ -297,9 +297,10 @@ void take_out(const DeadZone& zone, const std::vector<Samples>& rates, BlockGrid
     const BlockRange& record = grid.records[r];
     std::vector<double> sum(record.size(), 0.0);
     std::vector<double> count(record.size(), 0.0);
+    Samples& rest = errors[r].rest.own();
     for (std::size_t i = 0; i < hidden.size(); ++i) {
-      const bool measured = std::isfinite(errors[r].rest[i]);
-      errors[r].rest[i] -= hidden[i];
+      const bool measured = std::isfinite(rest[i]);
+      rest[i] -= hidden[i];
       const auto step = static_cast<std::size_t>(std::floor(static_cast<double>(i) * steps + 0.5));
       const std::size_t b = std::min(step / grid.fine, record.size() - 1);
       if (!measured) continue;

@@ -81,41 +81,56 @@ double noise_beside(std::span<const double> power, std::size_t k) {
 }
 
 // Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. Several
-// frequencies at once, so that the error is read once and no carrier waits for its own last step.
+// frequencies at once, so that the error is read once; each by a table of its first turns, which a carrier
+// turns on from one table's length to the next.
 constexpr int kAtOnce = 4;
+constexpr std::size_t kTable = 64;
 using Several = Eigen::Array<double, kAtOnce, 1>;
 using Sums = std::array<std::vector<Complex>, kAtOnce>;
+
+struct Waves {
+  Several re, im;
+  [[nodiscard]] Waves times(const Waves& other) const {
+    return {re * other.re - im * other.im, re * other.im + im * other.re};
+  }
+};
+
+// of: cycles a sample; after so many samples.
+Waves waves_at(const Several& of, double samples) {
+  Waves at;
+  for (int f = 0; f < kAtOnce; ++f) {
+    const double cycles = of[f] * samples;
+    const Complex wave = std::polar(1.0, -2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+    at.re[f] = wave.real();
+    at.im[f] = wave.imag();
+  }
+  return at;
+}
 
 // of: cycles a sample.
 Sums demodulate(std::span<const double> error, double mean, const Several& of, std::size_t pieces) {
   Sums sums;
   for (std::vector<Complex>& each : sums) each.assign(pieces, Complex(0.0, 0.0));
-  Several turn_re, turn_im;
-  for (int f = 0; f < kAtOnce; ++f) {
-    const Complex turn = std::polar(1.0, -2.0 * std::numbers::pi * of[f]);
-    turn_re[f] = turn.real();
-    turn_im[f] = turn.imag();
-  }
+  std::array<Waves, kTable> table;
+  for (std::size_t k = 0; k < kTable; ++k) table[k] = waves_at(of, static_cast<double>(k));
+  const Waves on = waves_at(of, static_cast<double>(kTable));
   for (std::size_t p = 0; p < pieces; ++p) {
     const std::size_t from = p * error.size() / pieces;
     const std::size_t to = (p + 1) * error.size() / pieces;
-    Several re, im, sum_re = Several::Zero(), sum_im = Several::Zero();
-    for (int f = 0; f < kAtOnce; ++f) {
-      const double start = of[f] * static_cast<double>(from);
-      const Complex carrier = std::polar(1.0, -2.0 * std::numbers::pi * (start - std::floor(start)));
-      re[f] = carrier.real();
-      im[f] = carrier.imag();
-    }
-    for (std::size_t i = from; i < to; ++i) {
-      if (std::isfinite(error[i])) {
-        sum_re += (error[i] - mean) * re;
-        sum_im += (error[i] - mean) * im;
+    Waves carrier = waves_at(of, static_cast<double>(from)), sum{Several::Zero(), Several::Zero()};
+    for (std::size_t begin = from; begin < to; begin += kTable, carrier = carrier.times(on)) {
+      const std::span<const double> some = error.subspan(begin, std::min(kTable, to - begin));
+      Waves near{Several::Zero(), Several::Zero()};
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        if (!std::isfinite(some[k])) continue;
+        near.re += (some[k] - mean) * table[k].re;
+        near.im += (some[k] - mean) * table[k].im;
       }
-      const Several next = re * turn_re - im * turn_im;
-      im = re * turn_im + im * turn_re;
-      re = next;
+      near = near.times(carrier);
+      sum.re += near.re;
+      sum.im += near.im;
     }
-    for (int f = 0; f < kAtOnce; ++f) sums[static_cast<std::size_t>(f)][p] = {sum_re[f], sum_im[f]};
+    for (int f = 0; f < kAtOnce; ++f) sums[static_cast<std::size_t>(f)][p] = {sum.re[f], sum.im[f]};
   }
   return sums;
 }
@@ -188,8 +203,25 @@ SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex
 // Bins in which a peak has no other beside it.
 std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
 
-const Periodogram& periodogram_of(std::span<const double> error, KnownPeriodograms& known) {
-  return known.of(error, [](std::span<const double> series) { return periodogram(series); });
+const KnownPeriodogram& periodogram_of(std::span<const double> error, KnownPeriodograms& known) {
+  return known.of(error, [](std::span<const double> series) {
+    return KnownPeriodogram{periodogram(series), {}};
+  });
+}
+
+// At the frequency of peaks[i]; of those behind it some are looked at together with it.
+const std::vector<Complex>& pieces_of(const Search& in, const std::vector<std::size_t>& peaks, std::size_t i,
+                                      const KnownPeriodogram& known) {
+  if (const auto found = known.pieces.find(peaks[i]); found != known.pieces.end()) return found->second;
+  std::vector<std::size_t> bins;
+  for (std::size_t j = i; j < peaks.size() && bins.size() < kAtOnce; ++j)
+    if (!known.pieces.contains(peaks[j])) bins.push_back(peaks[j]);
+  Several of;
+  for (int f = 0; f < kAtOnce; ++f)
+    of[f] = in.cycles(bins[std::min(static_cast<std::size_t>(f), bins.size() - 1)]);
+  Sums sums = demodulate(in.error, in.mean, of, in.pieces());
+  for (std::size_t f = 0; f < bins.size(); ++f) known.pieces[bins[f]] = std::move(sums[f]);
+  return known.pieces[peaks[i]];
 }
 
 // peaks: strongest first.
@@ -214,7 +246,8 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
                                      double significance, KnownPeriodograms& known, std::size_t most) {
   std::vector<SpectralLine> lines;
   if (error.size() < 128) return lines;
-  const Periodogram& spectrum = periodogram_of(error, known);
+  const KnownPeriodogram& looked_at = periodogram_of(error, known);
+  const Periodogram& spectrum = looked_at.spectrum;
   const Samples& power = spectrum.power;
   const NoiseFloor floor(power);
   const auto tries = static_cast<double>(power.size());
@@ -229,16 +262,10 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
             [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
   const std::vector<std::size_t> apart = not_beside(peaks);
   const Search in{error, mean_of_present(error), start_s, period_s, spectrum.length, tries, significance};
-  Sums sums;
   for (std::size_t i = 0; i < apart.size() && lines.size() < most; ++i) {
     const std::size_t k = apart[i];
-    if (i % kAtOnce == 0) {
-      Several of;
-      for (int f = 0; f < kAtOnce; ++f)
-        of[f] = in.cycles(apart[std::min(i + static_cast<std::size_t>(f), apart.size() - 1)]);
-      sums = demodulate(error, in.mean, of, in.pieces());
-    }
-    SpectralLine line = refine(in, k, sums[i % kAtOnce], std::max(floor[k], noise_beside(power, k)));
+    SpectralLine line =
+        refine(in, k, pieces_of(in, apart, i, looked_at), std::max(floor[k], noise_beside(power, k)));
     if (line.p_value > significance) continue;
     std::size_t first = k;
     std::size_t last = k;
@@ -262,7 +289,7 @@ Spectrum averaged_spectrum(std::span<const double> error, double period_s, Known
                            std::size_t points) {
   Spectrum spectrum;
   if (error.size() < 64) return spectrum;
-  const auto& [power, length] = periodogram_of(error, known);
+  const auto& [power, length] = periodogram_of(error, known).spectrum;
   const double scale = 2.0 * period_s / static_cast<double>(length);
   const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
   for (std::size_t k = 1; k < power.size();) {

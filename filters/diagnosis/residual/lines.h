@@ -4,7 +4,9 @@
 // line.
 #pragma once
 
+#include <complex>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -32,8 +34,14 @@ struct Spectrum {
   std::vector<double> density;  // one-sided, unit^2/Hz
 };
 
-// Periodograms of the errors that were looked at last.
-class KnownPeriodograms : public KnownOfSeries<Periodogram> {
+struct KnownPeriodogram {
+  Periodogram spectrum;
+  // By bin of a peak that was looked at more closely: the error's sums at its frequency over equal pieces.
+  mutable std::map<std::size_t, std::vector<std::complex<double>>> pieces;
+};
+
+// Of the errors that were looked at last.
+class KnownPeriodograms : public KnownOfSeries<KnownPeriodogram> {
  public:
   KnownPeriodograms() : KnownOfSeries(3) {}
 };

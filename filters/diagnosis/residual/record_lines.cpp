@@ -143,10 +143,11 @@ void keep_proven(const SearchResult& found, std::size_t samples, double signific
 void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors) {
   for (const FastLine& fast : lines) {
     EvenError& error = errors[fast.record];
-    for (std::size_t i = 0; i < error.rest.size(); ++i) {
+    Samples& rest = error.rest.own();
+    for (std::size_t i = 0; i < rest.size(); ++i) {
       const double phase =
           2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * sample_s);
-      error.rest[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+      rest[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
     }
   }
 }

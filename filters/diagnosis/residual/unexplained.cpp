@@ -103,25 +103,71 @@ struct SlowRest {
   double share = 0.0;   // of their variance that neighbours do not see
 };
 
+// How means scatter, and how neighbours differ; NaN of a mean that is missing.
+struct Scatter {
+  double variance = 0.0, steps = 0.0, pairs = 0.0;
+};
+
+template <typename MeanOf>
+Scatter scatter_of(std::size_t means, const MeanOf& mean_of) {
+  Scatter found;
+  double sum = 0.0, there = 0.0;
+  for (std::size_t i = 0; i < means; ++i) {
+    const double mean = mean_of(i);
+    if (!std::isfinite(mean)) continue;
+    sum += mean;
+    there += 1.0;
+  }
+  if (there < 2.0) return found;
+  double before = kNaN;
+  for (std::size_t i = 0; i < means; ++i) {
+    const double mean = mean_of(i), step = mean - std::exchange(before, mean);
+    if (std::isfinite(mean)) found.variance += (mean - sum / there) * (mean - sum / there) / there;
+    if (!std::isfinite(step)) continue;
+    found.steps += step * step;
+    found.pairs += 1.0;
+  }
+  return found;
+}
+
+// Of four times as many samples each, made of the sums before; what does not fill the last one is left out.
+void join_by_four(FiledVector<Present>& sums) {
+  const std::size_t joined = sums.size() / 4;
+  for (std::size_t i = 0; i < joined; ++i) {
+    Present four;
+    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
+      four.sum += sums[k].sum;
+      four.count += sums[k].count;
+    }
+    sums[i] = four;
+  }
+  sums.resize(joined);
+}
+
+FiledVector<Present> sums_of_four(std::span<const double> left) {
+  FiledVector<Present> sums;
+  sums.reserve(left.size() / 4);
+  for (std::size_t from = 0; from + 4 <= left.size(); from += 4)
+    sums.push_back(present(left.subspan(from, 4)));
+  return sums;
+}
+
 // Slow is what makes means scatter more than neighbouring means differ (von Neumann's ratio, whose standard
 // deviation for n means of white noise is 1 / sqrt n).
 SlowRest slow_rest(std::span<const double> left, double period_s) {
   constexpr double kClear = 5.0;
   SlowRest found;
   double most = kClear;
+  FiledVector<Present> sums;
   for (std::size_t count = 1; left.size() / count >= 16; count *= 4) {
-    const Samples means = means_over(left, count);
-    double square = 0.0;
-    double n = 0.0;
-    for (std::size_t i = 1; i < means.size(); ++i) {
-      const double d = means[i] - means[i - 1];
-      if (!std::isfinite(d)) continue;
-      square += d * d;
-      n += 1.0;
-    }
-    const double all = variance_of(means);
-    if (n < 16.0 || !(square > 0.0)) continue;
-    const double neighbours = 0.5 * square / n;
+    if (count == 4) sums = sums_of_four(left);
+    if (count > 4) join_by_four(sums);
+    const Scatter scatter =
+        count == 1 ? scatter_of(left.size(), [&](std::size_t i) { return left[i]; })
+                   : scatter_of(sums.size(), [&](std::size_t i) { return sums[i].mean_of(count); });
+    const double n = scatter.pairs, all = scatter.variance;
+    if (n < 16.0 || !(scatter.steps > 0.0)) continue;
+    const double neighbours = 0.5 * scatter.steps / n;
     const double sigma = (all / neighbours - 1.0) * std::sqrt(n);
     if (sigma <= most) continue;
     most = sigma;

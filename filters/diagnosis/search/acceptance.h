@@ -24,7 +24,7 @@ bool stands(const BlockData& reconstructed, const SearchResult& found, std::size
 // chance has fewer pieces to average over. errors: as `found` leaves them; `after`: EvenError::held_out or
 // written.
 bool holds(const BlockData& reconstructed, const SearchResult& found, const std::vector<EvenError>& errors,
-           Samples EvenError::*after);
+           SharedSamples EvenError::*after);
 
 // Index of the least certain effect that is corrected online; none when there is no such effect.
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);

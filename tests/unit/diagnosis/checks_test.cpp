@@ -58,7 +58,7 @@ TEST(CrossValidation, SubtractsAnEffectFromTheSamples) {
   data.grid.error.setZero();
   add(data, candidate_of(Form::kLinear), 2.0);
   std::vector<EvenError> errors(1);
-  errors[0].rest.assign(data.grid.error.begin(), data.grid.error.end());
+  errors[0].rest.own().assign(data.grid.error.begin(), data.grid.error.end());
   errors[0].rest_held_out = errors[0].rest;
   Eigen::VectorXd coefficients(2);
   coefficients << 0.0, 2.0;

@@ -154,9 +154,9 @@ TEST(EvenError, IsRateLessReferenceLessTheRamps) {
   without.ramps[0].held_out = {{0.25, 0.0, 0.75}};
   const std::vector<EvenError> errors = even_errors({record}, without, 1.0);
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_EQ(errors[0].before, (std::vector<double>{4.0, 5.0, 5.0}));
-  EXPECT_EQ(errors[0].rest, (std::vector<double>{3.5, 5.0, 4.5}));
-  EXPECT_EQ(errors[0].rest_held_out, (std::vector<double>{3.75, 5.0, 4.25}));
+  EXPECT_EQ(errors[0].before.values(), (std::vector<double>{4.0, 5.0, 5.0}));
+  EXPECT_EQ(errors[0].rest.values(), (std::vector<double>{3.5, 5.0, 4.5}));
+  EXPECT_EQ(errors[0].rest_held_out.values(), (std::vector<double>{3.75, 5.0, 4.25}));
 }
 
 TEST(EvenError, ARateThatNeverChangesIsRefused) {

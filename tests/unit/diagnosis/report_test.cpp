@@ -78,14 +78,15 @@ TEST(BeforeAndAfter, AreTheFiguresOfTheErrorAndTheLargerOfTheWrittenAndTheHeldOu
     std::vector<EvenError> errors(1);
     for (int i = 0; i < 500; ++i) {
       const double sign = i % 2 ? 1.0 : -1.0;
-      errors[0].before.push_back(3.0 * sign);
-      errors[0].held_out.push_back(sign);
-      errors[0].written.push_back(written * sign);
-      errors[0].after.push_back(0.0);
+      errors[0].before.own().push_back(3.0 * sign);
+      errors[0].held_out.own().push_back(sign);
+      errors[0].written.own().push_back(written * sign);
+      errors[0].after.own().push_back(0.0);
     }
     Diagnosis diagnosis;
     KnownFigures known(4);
-    write_before_and_after(errors, 1.0, known, diagnosis);
+    KnownAngles angles;
+    write_before_and_after(errors, 1.0, known, angles, diagnosis);
     EXPECT_DOUBLE_EQ(diagnosis.before.at("residual_rms_radps"), 3.0);
     EXPECT_DOUBLE_EQ(diagnosis.after.at("residual_rms_radps"), std::max(1.0, written));
   }
@@ -114,7 +115,7 @@ TEST(WrittenModel, CountsRatesFromTheBiasThatStays) {
   diagnosis.covariance = {1e-12};
   diagnosis.ranges = {{"reference_rate_radps", -2.6, 2.6}};
   std::vector<EvenError> errors(1);
-  errors[0].after.assign(400, kBias);
+  errors[0].after.own().assign(400, kBias);
   run_written_model({record}, diagnosis, 1.0, errors);
   EXPECT_GT(std::sqrt(variance_of(errors[0].written)), 1e-3);
   count_rates_from_the_bias(errors, diagnosis.effects);
@@ -153,7 +154,7 @@ TEST(WrittenModel, TheEffectThatHarmsIsTheOneWithoutWhichLeastIsLeft) {
 
 TEST(SampleEffects, AreRampsThenLinesWithTheirShareOfTheVariance) {
   std::vector<EvenError> errors(1);
-  for (int i = 0; i < 1000; ++i) errors[0].before.push_back(i % 2 ? 1.0 : -1.0);
+  for (int i = 0; i < 1000; ++i) errors[0].before.own().push_back(i % 2 ? 1.0 : -1.0);
   RampFit ramp;
   ramp.effect.form = "lookup";
   ramp.ratio = 50.0;
@@ -213,10 +214,11 @@ TEST(Findings, CovarianceIsThatOfTheParametersAsTheyAreWritten) {
 TEST(Series, HasAPointABlockAndTheDeviationsOfTheError) {
   const BlockData data = white_with_temperature(400, 5);
   EvenError error;
-  for (int i = 0; i < 400; ++i) error.before.push_back(i % 2 ? 1.0 : -1.0);
+  for (int i = 0; i < 400; ++i) error.before.own().push_back(i % 2 ? 1.0 : -1.0);
   error.written = std::vector<double>(400, 0.5);
   KnownPeriodograms known;
-  const DiagnosisSeries series = series_of(data, {error}, {}, {}, {}, known);
+  KnownAngles angles;
+  const DiagnosisSeries series = series_of(data, {error}, {}, {}, {}, known, angles);
   ASSERT_EQ(series.time_s.size(), 400U);
   EXPECT_EQ(series.before_radps[7], 1.0);
   EXPECT_EQ(series.after_radps[7], 0.5);

@@ -124,8 +124,8 @@ TEST(RecordLines, AFastLineIsTakenOutOfItsRecord) {
   errors[1].start_s = 5.0;
   for (EvenError& error : errors) {
     for (std::size_t i = 0; i < 500; ++i)
-      error.rest.push_back(0.2 *
-                           std::sin(2.0 * M_PI * 12.0 * (error.start_s + kPeriod * static_cast<double>(i))));
+      error.rest.own().push_back(
+          0.2 * std::sin(2.0 * M_PI * 12.0 * (error.start_s + kPeriod * static_cast<double>(i))));
     error.rest_held_out = error.rest;
   }
   SpectralLine line;
@@ -209,7 +209,7 @@ TEST(Unexplained, OfTheLongestRecordAndALoopTakesThePlace) {
   std::vector<EvenError> errors(2);
   errors[0].before = errors[0].after = white(2000, 31);
   errors[1].before = errors[1].after = white(60000, 32);
-  for (std::size_t i = 30000; i < 60000; ++i) errors[1].after[i] *= 3.0;
+  for (std::size_t i = 30000; i < 60000; ++i) errors[1].after.own()[i] *= 3.0;
   BlockGrid grid;
   grid.block_s = 1.0;
   grid.sample_s = kPeriod;

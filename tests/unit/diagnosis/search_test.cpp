@@ -147,7 +147,7 @@ SearchResult chosen(const BlockData& data, const std::vector<Candidate>& model) 
 
 std::vector<EvenError> errors_of(const BlockData& data) {
   EvenError error;
-  error.before.assign(data.grid.error.begin(), data.grid.error.end());
+  error.before.own().assign(data.grid.error.begin(), data.grid.error.end());
   error.rest = error.rest_held_out = error.before;
   return {error};
 }
@@ -178,7 +178,7 @@ TEST(Acceptance, AnErrorThatGrowsDoesNotHold) {
   std::vector<EvenError> errors = errors_of(data);
   errors[0].held_out = errors[0].before;
   EXPECT_TRUE(holds(data, found, errors, &EvenError::held_out));
-  for (std::size_t i = 0; i < kBlocks; ++i) errors[0].held_out[i] += data.channels[1].values[i] - 12.0;
+  for (std::size_t i = 0; i < kBlocks; ++i) errors[0].held_out.own()[i] += data.channels[1].values[i] - 12.0;
   EXPECT_FALSE(holds(data, found, errors, &EvenError::held_out));
 }
 

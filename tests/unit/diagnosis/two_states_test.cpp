@@ -72,16 +72,16 @@ TEST(TwoStates, StepsThatAreJumpsOfATelegraphAreToldFromOneThatStays) {
   const SearchResult found = with_step(at_s, 1.2);
   for (const bool telegraph : {true, false}) {
     EvenError error;
-    for (const double value : white(2)) error.before.push_back(value);
+    for (const double value : white(2)) error.before.own().push_back(value);
     error.after = error.before;
     for (std::size_t i = 0; i < kSamples; ++i) {
       const double bias = telegraph ? (i % 2000 < 500 ? 0.0 : 1.2) : (i < 500 ? 0.0 : 1.2);
-      error.after[i] += bias - (i < 500 ? 0.0 : 1.2);
+      error.after.own()[i] += bias - (i < 500 ? 0.0 : 1.2);
     }
     EXPECT_EQ(steps_are_jumps({error}, grid, found), telegraph);
   }
   EvenError quiet;
-  for (const double value : white(3)) quiet.before.push_back(value);
+  for (const double value : white(3)) quiet.before.own().push_back(value);
   quiet.after = quiet.before;
   EXPECT_FALSE(steps_are_jumps({quiet}, grid, SearchResult{})) << "no step at all";
 }

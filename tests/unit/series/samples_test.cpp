@@ -10,13 +10,16 @@
 #include <cstdio>
 #include <numeric>
 #include <thread>
+#include <vector>
 
 #include "filters/series/long_series.h"
+#include "filters/series/shared_samples.h"
 
 namespace {
 
 using ifog::LongSeries;
 using ifog::Samples;
+using ifog::SharedSamples;
 
 constexpr std::size_t kFew = ifog::FiledAllocator<double>::kInMemory / sizeof(double);
 
@@ -61,6 +64,58 @@ TEST(Samples, LongOnesDoNotFillTheMemory) {
   for (std::size_t i = 0; i < kMany; i += 4099) ASSERT_EQ(samples[i], 1.0 + static_cast<double>(i));
 }
 
+// Of the program's address space.
+std::size_t mapped_at_all() {
+  std::size_t all = 0;
+  std::FILE* const file = std::fopen("/proc/self/statm", "r");
+  EXPECT_EQ(std::fscanf(file, "%zu", &all), 1);
+  std::fclose(file);
+  return all * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(Samples, TakeTheRoomThatOthersAsLongGaveBack) {
+  constexpr std::size_t kLong = 5 * kFew;
+  const double* room = nullptr;
+  {
+    const Samples first(kLong, 1.0);
+    room = first.data();
+  }
+  const Samples second(kLong - 100, 2.0);
+  EXPECT_EQ(second.data(), room);
+  EXPECT_EQ(std::accumulate(second.begin(), second.end(), 0.0), 2.0 * static_cast<double>(kLong - 100));
+  const Samples third(kLong, 3.0);  // there is no other
+  EXPECT_NE(third.data(), room);
+}
+
+TEST(Samples, KeepNoMoreRoomThanAFew) {
+  constexpr std::size_t kLong = 7 * kFew, kBytes = kLong * sizeof(double);
+  const std::size_t before = mapped_at_all();
+  {
+    std::vector<Samples> many;
+    for (std::size_t i = 0; i < 2 * ifog::kMostSpare; ++i) many.emplace_back(kLong, 1.0);
+    EXPECT_GE(mapped_at_all(), before + 2 * ifog::kMostSpare * kBytes);
+  }
+  EXPECT_LE(mapped_at_all(), before + (ifog::kMostSpare + 1) * kBytes);
+}
+
+TEST(SharedSamples, AreOneUntilOneIsChanged) {
+  SharedSamples one(std::vector<double>{1.0, 2.0, 3.0}), other = one;
+  EXPECT_TRUE(other.is(one));
+  other.own()[1] = 5.0;
+  EXPECT_FALSE(other.is(one));
+  EXPECT_EQ(one.values(), (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_EQ(other.values(), (std::vector<double>{1.0, 5.0, 3.0}));
+  const double* const where = other.data();
+  other.own()[0] = 4.0;
+  EXPECT_EQ(other.data(), where);  // nobody else's any more: no copy
+  SharedSamples third = other;
+  third.anew(2)[0] = 7.0;
+  EXPECT_EQ(third.size(), 2U);
+  EXPECT_EQ(other.values(), (std::vector<double>{4.0, 5.0, 3.0}));
+  EXPECT_TRUE(SharedSamples().empty());
+}
+
+// A size that no test before has left in the spare room.
 TEST(Samples, NoRoomIsSaidInOneLine) {
   const pid_t child = fork();
   if (child == 0) {
@@ -68,7 +123,7 @@ TEST(Samples, NoRoomIsSaidInOneLine) {
     setrlimit(RLIMIT_FSIZE, &limit);
     signal(SIGXFSZ, SIG_IGN);
     try {
-      const Samples samples(2 * kFew, 0.0);
+      const Samples samples(13 * kFew, 0.0);
       _exit(1);
     } catch (const std::runtime_error& error) {
       const std::string line = error.what();

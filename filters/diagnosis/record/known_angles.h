@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The running sum of an error and what was made of it, for the steps of a report that ask for the same.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "filters/allan/angle_sum.h"
+#include "filters/allan/deviation.h"
+#include "filters/diagnosis/record/known_series.h"
+
+namespace ifog {
+
+class KnownAngles {
+ public:
+  // Over the stretches without NaN. Valid until the next call for another series.
+  const AngleSum& of(std::span<const double> series) { return known(series).sum; }
+  // As deviation(of(series), m).
+  std::vector<DeviationPoint> points(std::span<const double> series, std::span<const std::size_t> m);
+  // As gapped_deviation(series, m).
+  std::vector<double> gapped(std::span<const double> series, std::span<const std::size_t> m);
+
+ private:
+  struct Known {
+    AngleSum sum;
+    mutable std::map<std::size_t, DeviationPoint> points;
+  };
+  const Known& known(std::span<const double> series);
+
+  KnownOfSeries<Known> known_{1};  // as long as the series itself each
+};
+
+}  // namespace ifog
