@@ -2,22 +2,24 @@
 #include "filters/diagnosis/diagnose.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "filters/diagnosis/checks/channel_delay.h"
+#include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/record/stuck_blocks.h"
 #include "filters/diagnosis/record/unused_channels.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/grown_figures.h"
 #include "filters/diagnosis/report/held_out_part.h"
 #include "filters/diagnosis/report/hidden_causes.h"
+#include "filters/diagnosis/report/left_out.h"
 #include "filters/diagnosis/report/loop_rivals.h"
 #include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
@@ -42,40 +44,6 @@ constexpr double kLate =
 constexpr std::size_t kMostDelays = 2;    // channels
 constexpr std::size_t kMoreOnDwells = 4;  // effects: a scale factor comes with its powers and products
 
-std::string in_words(const Effect& effect) {
-  return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
-}
-
-std::string dropped_in_words(const std::vector<Effect>& dropped) {
-  std::string names;
-  for (const Effect& effect : dropped) names += (names.empty() ? "" : ", ") + in_words(effect);
-  return "the innovations suggest " + names +
-         ", but a few knocks or a change of the noise make it seem so, it is not the same "
-         "all along the record, or the error on held-out data would grow: left out";
-}
-
-std::string harmful_in_words(const Effect& effect) {
-  return "the innovations suggest " + in_words(effect) +
-         ", but the daemon's own correction by it would leave a larger error than none: left out";
-}
-
-std::string judged_beside(std::size_t harmonics) {
-  if (harmonics == 0) return "";
-  return "effects were judged in the noise beside " + std::to_string(harmonics) +
-         (harmonics == 1 ? " resonance or line that moves" : " resonances or lines that move") +
-         ", which the model of the noise knows; nothing of that is subtracted";
-}
-
-std::string delay_in_words(const ChannelDelay& delay) {
-  std::array<char, 240> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "%s logged %.3g s late (+-%.2g): its effects were sought as if it were not. The daemon has it no "
-      "sooner, so the correction that is written and judged is late by as much",
-      delay.channel.c_str(), delay.delay_s, delay.std_error_s);
-  return text.data();
-}
-
 // By the reference, by more than the Earth's rate.
 bool was_turned(const std::vector<Record>& records) {
   constexpr double kTurned_radps = 1e-4;
@@ -93,17 +61,17 @@ bool was_turned(const std::vector<Record>& records) {
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
  public:
-  // as_logged: the same with channels before their faults were repaired; null where there were none.
-  Run(const std::vector<Record>& records, const std::vector<Record>* as_logged, const WithoutRamps& without,
-      const DiagnoseOptions& options)
-      : records_(records),
-        as_logged_(as_logged),
-        ramps_(without.ramps),
-        no_ramp_because_(without.remark),
+  // whole: nothing of the records is kept back.
+  Run(const PreparedRecords& prepared, bool whole, const DiagnoseOptions& options)
+      : records_(prepared.fitted()),
+        as_logged_(whole ? prepared.as_logged() : nullptr),
+        stuck_(prepared.stuck()),
+        ramps_(prepared.without_ramps().ramps),
+        no_ramp_because_(prepared.without_ramps().remark),
         options_(options),
         earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
-        data_(cut_to_blocks(without.records)),
-        errors_(even_errors(records, without, data_.grid.sample_s)) {}
+        data_(cut_to_blocks(prepared.without_ramps().records)),
+        errors_(even_errors(records_, prepared.without_ramps(), data_.grid.sample_s)) {}
 
   Diagnosis run() {
     refuse_constant(records_);
@@ -116,6 +84,7 @@ class Run {
     separate_hysteresis();
     drop_steps_of_two_states();
     drop_what_changes_sign();
+    drop_what_a_capture_denies();
     drop_what_stands_twice();
     drop_what_is_not_proven();
     fit_jointly();
@@ -146,8 +115,36 @@ class Run {
     search.most_effects = options_.most_effects + (data_.grid.dwells ? kMoreOnDwells : 0);
     search.progress = options_.progress;
     search.given = given;
-    found_ = search_effects(data_, reconstructed_, search);
+    ask_stuck_channels(search);
+    do {
+      found_ = search_effects(data_, reconstructed_, search);
+    } while (left_out_stuck());
     read_as_earth_rate(reconstructed_, earth_, found_);
+  }
+
+  // What was stuck may explain nothing until those blocks are out, and then it is used.
+  void ask_stuck_channels(const SearchOptions& search) {
+    if (stuck_.empty() || std::exchange(stuck_asked_, true)) return;
+    std::vector<std::string> all;
+    for (const StuckStretch& each : stuck_) all.push_back(each.channel);
+    BlockData read = data_;
+    BlockData without = reconstructed_;
+    leave_out_stuck(stuck_, all, read.grid);
+    if (leave_out_stuck(stuck_, all, without.grid).empty()) return;
+    found_ = search_effects(read, without, search);
+    left_out_stuck();
+  }
+
+  // Of the channels that the model uses; whether there was any that had been in the fit.
+  bool left_out_stuck() {
+    std::vector<std::string> used;
+    for (const Candidate& each : found_.fitted)
+      for (const std::size_t channel : {each.channel, each.with_channel})
+        if (channel != Candidate::kNone) used.push_back(data_.channels[channel].name);
+    leave_out_stuck(stuck_, used, reconstructed_.grid);
+    const std::vector<std::string> said = leave_out_stuck(stuck_, used, data_.grid);
+    for (const std::string& each : said) say(each);
+    return !said.empty();
   }
 
   // A delay is a parameter of the channel, and has to pay for itself: all effects sought anew with the
@@ -264,6 +261,17 @@ class Run {
     }
   }
 
+  void drop_what_a_capture_denies() {
+    while (const auto denied = denied_by_a_capture(reconstructed_, found_.fitted, found_.noise)) {
+      std::vector<Effect> effects;
+      for (const std::size_t i : denied->effects) effects.push_back(effect_of(data_, found_.fitted[i]));
+      say(denied_in_words(effects, *denied, records_));
+      for (std::size_t k = denied->effects.size(); k-- > 0;)
+        found_ = without_effect(data_, reconstructed_, std::move(found_), denied->effects[k]);
+      subtract_found(data_, found_, errors_);
+    }
+  }
+
   void report_changes_of_size() {
     for (const ByCapture& by : compare_captures(reconstructed_, found_.fitted, found_.noise))
       if (by.changes()) say(change_in_words(effect_of(data_, found_.fitted[by.effect]), by, records_));
@@ -349,8 +357,10 @@ class Run {
     if (!remark.empty()) result_.remarks.push_back(std::move(remark));
   }
 
-  const std::vector<Record>& records_;  // as given
-  const std::vector<Record>* as_logged_;
+  const std::vector<Record>& records_;    // as given
+  const std::vector<Record>* as_logged_;  // with channels before their faults were repaired; null: no faults
+  const std::vector<StuckStretch>& stuck_;
+  bool stuck_asked_ = false;
   const std::vector<RampFit>& ramps_;
   const std::string& no_ramp_because_;  // empty, or a sentence
   const DiagnoseOptions& options_;
@@ -377,8 +387,7 @@ Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& op
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
   const PreparedRecords prepared(records, share, options.significance);
-  const std::vector<Record>* const as_logged = share.whole() ? prepared.as_logged() : nullptr;
-  Diagnosis diagnosis = Run(prepared.fitted(), as_logged, prepared.without_ramps(), options).run();
+  Diagnosis diagnosis = Run(prepared, share.whole(), options).run();
   diagnosis.reference_delays = prepared.delays();
   const std::vector<std::string> remarks = prepared.remarks();
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());

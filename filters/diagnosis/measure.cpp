@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/record/stuck_blocks.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/report/findings.h"
@@ -190,7 +191,10 @@ MeasuredEffects measure_effects(const std::vector<Record>& records, const Effect
   if (!wanted.instead.empty() && wanted.instead.size() != wanted.together.size())
     throw std::invalid_argument("others in the place of effects, expected a list for each");
   const PreparedRecords prepared(records, {}, significance);
-  const BlockData data = cut_to_blocks(prepared.without_ramps().records);
+  BlockData data = cut_to_blocks(prepared.without_ramps().records);
+  std::vector<std::string> used;
+  for (const Effect& effect : wanted.together) used.insert(used.end(), {effect.channel, effect.with_channel});
+  leave_out_stuck(prepared.stuck(), used, data.grid);
   const BlockData reconstructed = with_reconstructed_channels(data);
   return Measuring(reconstructed, wanted, axis).run();
 }

@@ -80,6 +80,22 @@ class SensorTest(unittest.TestCase):
                 np.testing.assert_array_equal(x.columns[name], y.columns[name])
         self.assertEqual(a.truth, b.truth)
 
+    def test_a_capture_more_changes_nothing_of_the_others(self):
+        a, b = sensor.make(12), sensor.make(12, several=True)
+        self.assertEqual((len(a.captures), len(b.captures)), (2, 3))
+        for x, y in zip(a.captures, b.captures):
+            for name in x.columns:
+                np.testing.assert_array_equal(x.columns[name], y.columns[name])
+        again, second = b.captures[2], b.captures[1]
+        self.assertEqual(list(again.columns), list(second.columns))
+        self.assertGreater(np.std(again.own[:500] - second.own[:500]), 0)
+
+    def test_a_confounder_runs_along_in_the_first_capture_alone(self):
+        s = sensor.make(720116, "confounder", several=True)
+        along = [abs(np.corrcoef(c.effect, c.columns["laser_mA"])[0, 1]) for c in s.captures]
+        self.assertGreater(along[0], 0.97)
+        self.assertLess(max(along[1:]), 0.8)
+
     def test_the_captures_hold_what_the_truth_says(self):
         s = next(x for x in (sensor.make(k, "supply") for k in range(1, 99)) if x.truth["role"] == "visible"
                  and len(x.truth["effects"]) == 1 and not x.truth["faults"] and not x.truth["noise"]["sways"])

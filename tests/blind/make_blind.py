@@ -33,7 +33,7 @@ def write(sensor, output, truth):
     output, truth = Path(output), Path(truth)
     output.mkdir(parents=True, exist_ok=True)
     truth.mkdir(parents=True, exist_ok=True)
-    for name, c in zip(("capture1", "next"), sensor.captures):
+    for name, c in zip(("capture1", "next", "capture2"), sensor.captures):
         write_csv(output / f"{name}.csv", {"time_s": c.t, **c.columns})
         write_csv(truth / f"{name}_effect.csv", {"time_s": c.t, "rate_radps": c.effect, "true_rate_radps": c.rate})
     (truth / "truth.json").write_text(json.dumps(sensor.truth, indent=1) + "\n")

@@ -91,13 +91,14 @@ def on_rows(t, times, x):
     return np.where(np.abs(times[at] - t) < 1e-3, x[at], np.nan)
 
 
-def judged(ifog, seed, only, folder):
+def judged(ifog, seed, only, several, folder):
     """The record of one sensor."""
-    sensor = make(seed, only)
-    truth, (fit, second) = sensor.truth, sensor.captures
+    sensor = make(seed, only, several)
+    truth, (fit, second, *more) = sensor.truth, sensor.captures
     write(sensor, folder, folder / "truth")
     axis = "x_" if any(name.startswith("rate_x") for name in fit.columns) else ""
-    command = [ifog, "diagnose", folder / "capture1.csv", "--json", folder / "d.json", "--write-model",
+    given = [folder / "capture1.csv"] + [folder / "capture2.csv"] * len(more)
+    command = [ifog, "diagnose", *given, "--json", folder / "d.json", "--write-model",
                folder / "m.toml", "--report", folder / "d.html", "--quiet"] + (["--axis", "x"] if axis else [])
     record = {"seed": seed, "truth": truth, "verdict": "failed", "failure": None, "error": None, "unfounded": [],
               "claims": [], "contradictions": [], "odd_words": [], "worse": False}
@@ -130,11 +131,11 @@ def judged(ifog, seed, only, folder):
 
 
 def score(job):
-    ifog, seed, only, keep = job
+    ifog, seed, only, several, keep = job
     folder = Path(keep) / str(seed) if keep else Path(tempfile.mkdtemp(prefix="blind."))
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        return judged(ifog, seed, only, folder)
+        return judged(ifog, seed, only, several, folder)
     finally:
         if not keep:
             shutil.rmtree(folder, ignore_errors=True)
@@ -144,7 +145,8 @@ def scored(options):
     seeds = options.only or range(options.first, options.first + options.count)
     records = []
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
-        for record in pool.map(score, [(options.ifog, s, options.kind, options.keep) for s in seeds]):
+        for record in pool.map(score, [(options.ifog, s, options.kind, options.captures > 1, options.keep)
+                                          for s in seeds]):
             records.append(record)
             print(tables.line(record), flush=True)
     return records
@@ -169,6 +171,7 @@ def main():
     parser.add_argument("--count", type=int, default=19)
     parser.add_argument("--only", type=int, nargs="*", help="these seeds")
     parser.add_argument("--kind", choices=list(KINDS), help="every sensor of this kind")
+    parser.add_argument("--captures", type=int, choices=(1, 2), default=1, help="diagnosed together")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--json", help="all records and the summary")
     parser.add_argument("--markdown", help="the tables")

@@ -52,8 +52,9 @@ def draw_role(rng, seed, only):
     return str(role), chosen
 
 
-def make(seed, only=None):
-    """The sensor of a seed; `only`: of this kind, whatever its turn."""
+def make(seed, only=None, several=False):
+    """The sensor of a seed; `only`: of this kind, whatever its turn; `several`: with a capture more to diagnose, last,
+    in the environment of the second one and with surroundings of its own."""
     rng = np.random.default_rng([seed, 0x1F06])
     role, names = draw_role(rng, seed, only)
     # a clean sensor stands where a sensor with this seed's kind would stand
@@ -85,6 +86,11 @@ def make(seed, only=None):
     truth["limit_radps"] = limit
     truth["stale_radps"] = limits.from_stale_channels(worlds[1], intact[1].effect, logger.staleness(faults, causal))
     captures = [_damage(rng, w, capture, faults) for w, capture in zip(worlds, intact)]
+    if several:
+        again = np.random.default_rng([seed, 0x1F06, 2])
+        world = World(again, plan, 1)
+        extra = _record(again, world, noise, hidden, laws, sizes, wanted, flags, host_law)
+        captures.append(_damage(again, world, extra, faults))
     truth["samples"], truth["accidents"] = len(captures[0].t), [c.accidents for c in captures]
     return Sensor(truth, captures)
 

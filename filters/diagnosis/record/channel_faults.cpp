@@ -23,6 +23,7 @@ constexpr double kLongestExcursion_s = 60.0;
 // In excursions together but for those to one number; the least of a stretch that stands still.
 constexpr double kMostOfRecord = 0.02;
 constexpr double kJump = 8.0;          // usual changes
+constexpr std::size_t kAlone = 20;     // times as long as any other stretch of one value
 constexpr double kPlaceholder = 30.0;  // interquartile ranges from the median
 constexpr std::size_t kFewValues = 5;
 constexpr std::size_t kShortest = 2;   // samples of the rate that a knock shakes, and comes back
@@ -143,18 +144,32 @@ std::vector<Run> excursions(const Readings& of, const Usual& usual) {
   return found;
 }
 
-std::vector<Run> stuck_stretches(std::span<const double> values, const Usual& usual) {
+struct Stuck {
+  Run run;
+  bool leaps;  // when it ends
+};
+
+// A value that stands still for long and then leaps, or for many times as long as any other.
+std::vector<Stuck> stuck_stretches(std::span<const double> values, const Usual& usual) {
   const auto least =
       static_cast<std::size_t>(kMostOfRecord * static_cast<double>(values.size())) + std::size_t{16};
-  std::vector<Run> found;
+  std::vector<Stuck> found;
+  std::size_t longest = 0;
+  std::size_t second = 0;
   for (std::size_t from = 0; from < values.size();) {
     std::size_t to = from + 1;
     while (to < values.size() && values[to] == values[from]) ++to;
-    if (to < values.size() && to - from >= least &&
-        std::abs(values[to] - values[from]) > kJump * usual.change)
-      found.push_back({from, to});
+    const std::size_t length = to - from;
+    second = std::max(second, std::min(length, longest));
+    longest = std::max(longest, length);
+    if (to < values.size() && length >= least)
+      found.push_back({{from, to}, std::abs(values[to] - values[from]) > kJump * usual.change});
     from = to;
   }
+  std::erase_if(found, [&](const Stuck& each) {
+    const std::size_t length = each.run.to - each.run.from;
+    return !each.leaps && (length < longest || length < kAlone * second);
+  });
   return found;
 }
 
@@ -191,7 +206,7 @@ std::string excursions_in_words(std::span<const double> values, const std::vecto
 
 // The channel with its faults repaired, each told in `remarks`; nothing where it has none.
 std::optional<Samples> repaired_channel(const Record& record, const RecordChannel& channel,
-                                        const std::string& where, std::vector<std::string>& remarks) {
+                                        const std::string& where, RepairedRecords& repaired) {
   const Readings of(record, channel.values);
   const Usual usual = usual_of(of.values);
   if (!usual.varied) return std::nullopt;
@@ -199,17 +214,21 @@ std::optional<Samples> repaired_channel(const Record& record, const RecordChanne
   Samples values;  // none where they are as they were read
   if (!away.empty()) values.assign(of.values.begin(), of.values.end());
   for (const Run& run : away) interpolate(of, run, values);
-  const std::vector<Run> stuck =
-      usual.slow ? stuck_stretches(away.empty() ? of.values : values, usual) : std::vector<Run>{};
+  const std::vector<Stuck> stuck =
+      usual.slow ? stuck_stretches(away.empty() ? of.values : values, usual) : std::vector<Stuck>{};
   if (away.empty() && stuck.empty()) return std::nullopt;
   if (away.empty()) values.assign(of.values.begin(), of.values.end());
-  if (!away.empty()) remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
-  for (const Run& run : stuck) {
-    remarks.push_back(
+  if (!away.empty()) repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
+  for (const auto& [run, leaps] : stuck) {
+    const double from_s = of.time_s[run.from];
+    const double to_s = of.time_s[run.to];
+    repaired.remarks.push_back(
         channel.name + where +
-        text(" stands at %.6g from %.6g s to %.6g s and then jumps: taken for stuck, interpolated",
-             values[run.from], of.time_s[run.from] - record.time_s.front(),
-             of.time_s[run.to] - record.time_s.front()));
+        text(" stands at %.6g from %.6g s to %.6g s and %s: taken for stuck, interpolated", values[run.from],
+             from_s - record.time_s.front(), to_s - record.time_s.front(),
+             leaps ? "then jumps" : "never else for a twentieth as long"));
+    const auto index = static_cast<std::size_t>(&record - repaired.records.data());
+    repaired.stuck.push_back({index, channel.name, from_s, to_s});
     interpolate(of, {run.from + 1, run.to}, values);
   }
   if (of.rows.empty()) return values;
@@ -269,7 +288,7 @@ RepairedRecords repair_records(const std::vector<Record>& records) {
     if (auto rate = rate_without_knocks(record, where, repaired.remarks))
       record.rate_radps = keep(std::move(*rate));
     for (RecordChannel& channel : record.channels)
-      if (auto values = repaired_channel(record, channel, where, repaired.remarks))
+      if (auto values = repaired_channel(record, channel, where, repaired))
         channel.values = keep(std::move(*values));
   }
   return repaired;

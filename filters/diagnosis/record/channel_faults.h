@@ -3,6 +3,7 @@
 // DS18B20), a glitch of the logger, a value that stands still while the sensor moves on.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,16 +12,25 @@
 
 namespace ifog {
 
+// What the channel did meanwhile nobody knows.
+struct StuckStretch {
+  std::size_t record = 0;
+  std::string channel;
+  double from_s = 0.0, to_s = 0.0;  // in the record's time
+};
+
 struct RepairedRecords {
   std::vector<Record> records;       // as given, but for the columns repaired
   std::vector<Samples> values;       // which those columns' spans show; keep as long as `records`
   std::vector<std::string> remarks;  // one a fault found, for people
+  std::vector<StuckStretch> stuck;   // of those that were interpolated
 };
 
 // Values that cannot be the channel's, interpolated between those beside them:
 // - leaps as the channel never makes, and back within a minute; of channels that do not move slowly only
 //   those of twenty spans, for a blow is no fault of an accelerometer;
-// - of slow channels, stretches of one value, a fiftieth of the record or more, that end in such a leap.
+// - of slow channels, stretches of one value, a fiftieth of the record or more, that end in such a leap or
+//   are twenty times as long as any other.
 // Channels of a few values are left alone: a switch may be off for an hour. Missing values stay missing.
 // Of the rate, a sample or two that leap by twenty spans and back become missing.
 RepairedRecords repair_records(const std::vector<Record>& records);

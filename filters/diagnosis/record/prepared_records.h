@@ -34,6 +34,7 @@ class PreparedRecords {
   // As whole(), with channels before their faults were repaired; null where there were none.
   [[nodiscard]] const std::vector<Record>* as_logged() const;
   [[nodiscard]] const std::vector<ReferenceDelay>& delays() const { return aligned_.delays; }
+  [[nodiscard]] const std::vector<StuckStretch>& stuck() const { return repaired_.stuck; }
   [[nodiscard]] std::vector<std::string> remarks() const;  // in the order of the steps
 
  private:

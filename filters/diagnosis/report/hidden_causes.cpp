@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "filters/effects/meaning.h"
@@ -38,6 +39,18 @@ std::string change_in_words(const Effect& effect, const ByCapture& by, const std
   return words + (by.changes_sign()
                       ? ": that is no effect of this channel but of something that ran beside it, left out"
                       : ": part of it is of another form, or of something that was not logged");
+}
+
+std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
+                            const std::vector<Record>& records) {
+  std::string words;
+  for (const Effect& effect : effects) words += (words.empty() ? "" : " and ") + named(effect);
+  words += std::isfinite(denied.share)
+               ? text(": of what the other captures predict %.2g ± %.2g is there in ", denied.share,
+                      denied.share_error) +
+                     records[denied.record].name
+               : ": nothing of it is seen in " + records[denied.record].name + ", where as much moved";
+  return words + ", so that is no effect of this channel but of something that ran beside it, left out";
 }
 
 std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures) {

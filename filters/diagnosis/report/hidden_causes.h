@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filters/diagnosis/checks/between_captures.h"
+#include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record.h"
 
@@ -13,6 +14,10 @@ namespace ifog {
 
 // An effect whose coefficient is another one in another capture, with each capture's own.
 std::string change_in_words(const Effect& effect, const ByCapture& by, const std::vector<Record>& records);
+
+// Effects of one channel that a capture denies.
+std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
+                            const std::vector<Record>& records);
 
 // Beside much that stays unexplained a channel that was logged may only run along with the cause; empty where
 // little is, or no effect was traced to a channel. captures: diagnosed together.

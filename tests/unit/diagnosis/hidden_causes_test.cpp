@@ -71,6 +71,49 @@ TEST(BetweenCaptures, ACaptureInWhichTheChannelStandsStillSaysNothing) {
   EXPECT_FALSE(by.changes());
 }
 
+std::optional<DeniedEffects> denied(const BlockData& data, const std::vector<Form>& forms) {
+  std::vector<Candidate> effects;
+  for (const Form form : forms) effects.push_back(candidate_of(form));
+  return denied_by_a_capture(data, effects, {});
+}
+
+// In white noise the share is what the slopes of the captures by themselves are to each other.
+TEST(PredictedCapture, WhereTheChannelOnlyRanAlongNothingOfThePredictionIsThere) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const BlockData data = captures_with({0.5, 0.0}, seed);
+    const auto found = denied(data, {Form::kLinear});
+    ASSERT_TRUE(found) << seed;
+    const ByCapture by = compared(data);
+    EXPECT_EQ(found->effects, (std::vector<std::size_t>{0}));
+    if (found->record == 0) continue;  // nothing was predicted, and much is seen
+    EXPECT_NEAR(found->share, by.value[1] / by.value[0], 1e-6) << seed;
+    EXPECT_NEAR(found->share_error, by.std_error[1] / by.value[0], 0.1 * by.std_error[1] / by.value[0])
+        << seed;
+  }
+}
+
+TEST(PredictedCapture, WhatIsThereInAllOfThemOrWasTriedInOneIsNotDenied) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    EXPECT_FALSE(denied(captures_with({0.5, 0.5, 0.5}, seed), {Form::kLinear})) << seed;
+    EXPECT_FALSE(denied(captures_with({0.5, 0.4}, seed), {Form::kLinear})) << seed;
+    EXPECT_FALSE(denied(captures_with({0.5}, seed), {Form::kLinear})) << seed;
+    BlockData still = captures_with({0.5, 0.0}, seed);
+    for (std::size_t b = 600; b < 1200; ++b) still.channels[0].values[b] = 25.0;
+    EXPECT_FALSE(denied(still, {Form::kLinear})) << seed;
+  }
+}
+
+// A square whose turning point lies in the second capture makes a slope of the first one alone.
+TEST(PredictedCapture, ALawThatIsSeenInOneCaptureOnlyThoughAsMuchMovedIsDenied) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    BlockData data = captures_with({0.5, 0.0}, seed);
+    for (std::size_t b = 600; b < 1200; ++b) data.channels[0].values[b] += 30.0;
+    const auto found = denied(data, {Form::kLinear, Form::kQuadratic});
+    ASSERT_TRUE(found) << seed;
+    EXPECT_EQ(found->effects, (std::vector<std::size_t>{0, 1})) << "one law of two effects";
+  }
+}
+
 struct Rows {
   std::vector<double> time_s, rate, temperature;
 };
@@ -119,6 +162,32 @@ TEST(Diagnose, AnEffectThatChangesItsSignIsLeftOutAndOneThatChangesItsSizeIsSaid
   const Diagnosis opposes = together(against);
   EXPECT_TRUE(said(opposes, "changes its sign between the captures"));
   for (const FoundEffect& found : opposes.effects) EXPECT_NE(found.effect.form, "linear");
+}
+
+// A square that is flat where the second capture is would do for both together.
+TEST(Diagnose, AChannelThatFollowedTheCauseInOneCaptureIsNotSubtracted) {
+  const Rows followed = capture_of(4e-7, 6.0, 1);
+  Rows alone = capture_of(0.0, 6.0, 2);
+  for (double& temperature : alone.temperature) temperature += 8.0;
+  const Diagnosis found = diagnose({record_of(followed, "first"), record_of(alone, "second")}, {});
+  for (const FoundEffect& each : found.effects) EXPECT_NE(each.effect.channel, "temperature_degC");
+  EXPECT_TRUE(said(found, "is no effect of this channel but of something that ran beside it"));
+}
+
+TEST(HiddenCauses, DeniedEffectsAreNamedWithTheCaptureThatDeniesThem) {
+  Effect linear, square;
+  linear.form = "linear";
+  square.form = "quadratic";
+  linear.channel = square.channel = "laser_mA";
+  const std::vector<Record> records = {record_of({}, "first"), record_of({}, "second")};
+  const std::string said = denied_in_words({linear, square}, {{0, 1}, 1, 0.02, 0.05}, records);
+  EXPECT_EQ(said.find("linear of laser_mA and quadratic of laser_mA: of what the other captures predict "
+                      "0.02 ± 0.05 is there in second"),
+            0U)
+      << said;
+  EXPECT_NE(
+      denied_in_words({linear}, {{0}, 1, std::nan(""), 0.0}, records).find("nothing of it is seen in second"),
+      std::string::npos);
 }
 
 TEST(HiddenCauses, AClaimBesideMuchThatIsUnexplainedAsksForASecondCapture) {

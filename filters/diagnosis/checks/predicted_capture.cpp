@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/checks/predicted_capture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "filters/diagnosis/regression/projection.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kCertain = 4.0;    // standard errors
+constexpr double kVisible = 5.0;    // standard deviations, of what is predicted
+constexpr double kUncertain = 0.2;  // of the prediction's square, the most that may be doubt of it
+constexpr double kMoves = 1e-6;     // of the regressors' square here, the least in the others
+constexpr double kAsMuch = 0.25;    // of the regressors' squares in all others together
+constexpr double kUnseen = 9.0;     // twice the log-likelihood that a capture gains by the law of all
+
+struct Split {
+  Columns columns;         // measurement, all else, the group in the other records, the group in this one
+  Eigen::Index group = 0;  // columns of it
+};
+
+Split split_at(const BlockData& data, const std::vector<Candidate>& effects,
+               const std::vector<std::size_t>& group, std::size_t record) {
+  const Columns joint = design(data, effects);
+  std::vector<Eigen::Index> mine;
+  for (const std::size_t i : group)
+    for (Eigen::Index k = 0; k < effects[i].width(); ++k)
+      mine.push_back(column_of(data.grid, effects, i) + k);
+  const auto g = static_cast<Eigen::Index>(mine.size());
+  Split split{Columns::Zero(joint.rows(), joint.cols() + g), g};
+  Eigen::Index at = 0;
+  for (Eigen::Index j = 0; j < joint.cols(); ++j)
+    if (std::find(mine.begin(), mine.end(), j) == mine.end()) split.columns.col(at++) = joint.col(j);
+  const BlockRange& here = data.grid.records[record];
+  for (Eigen::Index k = 0; k < g; ++k) {
+    const auto column = joint.col(mine[static_cast<std::size_t>(k)]);
+    split.columns.col(at + k) = column;
+    split.columns.col(at + k).segment(here.row(), here.rows()).setZero();
+    split.columns.col(at + g + k).segment(here.row(), here.rows()) = column.segment(here.row(), here.rows());
+  }
+  return split;
+}
+
+// Whitened, with all else taken out.
+struct Whitened {
+  Eigen::VectorXd error;
+  Eigen::MatrixXd others, here;  // the group's columns
+  double variance = 0.0;         // of an innovation
+};
+
+Whitened whitened(const BlockGrid& grid, const Split& split, const NoiseFit& noise) {
+  // The noise that was fitted beside one coefficient for all has swallowed what they differ by.
+  Columns white = split.columns;
+  Whitening(grid, fit_noise(grid, split.columns, noise.shape).shape).apply(white);
+  const Eigen::Index g = split.group;
+  const Eigen::Index p = white.cols() - 1;
+  Columns kept(white.rows(), 1 + 2 * g);
+  kept << white.col(0), white.rightCols(2 * g);
+  Projection(white.middleCols(1, p - 2 * g)).take_out_of(kept);
+  const double left = left_by(Columns(kept.rightCols(2 * g)), kept.col(0)).squaredNorm();
+  return {kept.col(0), kept.middleCols(1, g), kept.rightCols(g),
+          left / std::max(1.0, static_cast<double>(grid.used()) - static_cast<double>(p))};
+}
+
+// What the coefficients of the other records are worth in this one.
+bool prediction_fails(const Whitened& of, DeniedEffects& found) {
+  if (of.others.squaredNorm() < kMoves * of.here.squaredNorm()) return false;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> by_others(of.others);
+  if (by_others.rank() < of.others.cols()) return false;
+  const Eigen::VectorXd c = by_others.solve(of.error);
+  const Eigen::MatrixXd covariance = of.variance * (of.others.transpose() * of.others).inverse();
+  const Eigen::VectorXd predicted = of.here * c;
+  const double square = predicted.squaredNorm();
+  const double doubt = ((of.here.transpose() * of.here) * covariance).trace();
+  if (square < kVisible * kVisible * of.variance || doubt > kUncertain * square) return false;
+  found.share = predicted.dot(of.error) / square;
+  const Eigen::VectorXd slope = of.here.transpose() * (of.error - 2.0 * found.share * predicted) / square;
+  found.share_error = std::sqrt(of.variance / square + slope.dot(covariance * slope));
+  return found.share + kCertain * found.share_error < 0.5;
+}
+
+// Seen by the others, not by this one, though it was tried as hard here.
+bool unseen_though_moved(const Whitened& of, DeniedEffects& found) {
+  for (Eigen::Index k = 0; k < of.here.cols(); ++k)
+    if (of.here.col(k).squaredNorm() < kAsMuch * of.others.col(k).squaredNorm()) return false;
+  const Eigen::MatrixXd all = of.others + of.here;
+  const Eigen::VectorXd c = all.colPivHouseholderQr().solve(of.error);
+  const auto gain = [&](const Eigen::MatrixXd& columns) {
+    const Eigen::VectorXd taken = columns * c;
+    return taken.dot(2.0 * of.error - taken) / of.variance;
+  };
+  if (gain(of.others) < kVisible * kVisible || gain(of.here) > kUnseen) return false;
+  found.share = std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
+// Those that share a channel with effect `at`, or with one that does.
+std::vector<std::size_t> one_law(const std::vector<Candidate>& effects, std::size_t at) {
+  const auto of_a_channel = [](const Candidate& each) {
+    return each.channel != Candidate::kNone && each.first_reading == FirstReading::kError;
+  };
+  std::vector<std::size_t> group;
+  if (!of_a_channel(effects[at])) return group;
+  std::set<std::size_t> channels;
+  for (std::size_t before = 0; channels.size() != before || before == 0;) {
+    before = channels.size();
+    group.clear();
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      const Candidate& each = effects[i];
+      const bool shares = channels.contains(each.channel) || channels.contains(each.with_channel);
+      if (i != at && !(of_a_channel(each) && shares)) continue;
+      group.push_back(i);
+      channels.insert(each.channel);
+      if (each.with_channel != Candidate::kNone) channels.insert(each.with_channel);
+    }
+  }
+  return group;
+}
+
+}  // namespace
+
+std::optional<DeniedEffects> denied_by_a_capture(const BlockData& data, const std::vector<Candidate>& effects,
+                                                 const NoiseFit& noise) {
+  const std::size_t records = data.grid.records.size();
+  if (records < 2) return std::nullopt;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const std::vector<std::size_t> group = one_law(effects, i);
+    if (group.empty() || group.front() != i) continue;
+    for (std::size_t r = 0; r < records; ++r) {
+      const Whitened of = whitened(data.grid, split_at(data, effects, group, r), noise);
+      DeniedEffects found{group, r, 0.0, 0.0};
+      if (prediction_fails(of, found) || unseen_though_moved(of, found)) return found;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace ifog
