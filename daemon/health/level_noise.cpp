@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <vector>
 
 namespace ifog {
 namespace {
@@ -22,111 +23,71 @@ constexpr double kUnlikelier = 0.5;
 // A mean counts for this many variances at most, once there are a few: a step or a slow turn is no noise, and
 // would hide the next ones for as long as the watch has run.
 constexpr double kClip = 25.0, kFew = 30.0;
+// What has been learned from so many blocks is chosen from anew after a twentieth as many.
+constexpr double kChosenAnew = 1.05;
 
 double sum(const LevelNoise::Vector& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
+std::vector<LevelFilters::Ratios> table() {
+  std::vector<LevelFilters::Ratios> out;
+  for (int b = 0; b < kInstabilities; ++b)
+    for (int k = 0; k < kWalks; ++k)
+      out.push_back({b == 0 ? 0.0 : std::pow(10.0, kLeastInstability + kStepOfTable * (b - 1)),
+                     k == 0 ? 0.0 : std::pow(10.0, kLeastWalk + kStepOfTable * (k - 1))});
+  return out;
+}
+
 }  // namespace
 
-LevelNoise::LevelNoise() {
-  for (int b = 0; b < kInstabilities; ++b)
-    for (int k = 0; k < kWalks; ++k) {
-      Filter filter;
-      if (b > 0) filter.instability = std::pow(10.0, kLeastInstability + kStepOfTable * (b - 1));
-      if (k > 0) filter.walk = std::pow(10.0, kLeastWalk + kStepOfTable * (k - 1));
-      filters_.push_back(filter);
-    }
-}
-
-double LevelNoise::Filter::level() const noexcept { return sum(state); }
-
-// The walk's start is diffuse: after one mean it is that mean, less what the other states and the noise have.
-void LevelNoise::Filter::begin(double mean) noexcept {
-  state = {};
-  state[kWalk] = mean;
-  covariance = {};
-  double others = 0.0;
-  for (std::size_t i = 0; i < kWalk; ++i) {
-    covariance[i][i] = instability;
-    covariance[i][kWalk] = covariance[kWalk][i] = -instability;
-    others += instability;
-  }
-  covariance[kWalk][kWalk] = others + 1.0;
-}
-
-void LevelNoise::Filter::predict(const Vector& keep, double blocks) noexcept {
-  for (std::size_t i = 0; i < kStates; ++i) {
-    state[i] *= keep[i];
-    for (std::size_t j = 0; j < kStates; ++j) covariance[i][j] *= keep[i] * keep[j];
-  }
-  for (std::size_t i = 0; i < kWalk; ++i) covariance[i][i] += instability * (1.0 - keep[i] * keep[i]);
-  covariance[kWalk][kWalk] += walk * blocks;
-}
-
-// Returns the innovation.
-double LevelNoise::Filter::update(double mean, double most_square) noexcept {
-  Vector of_sum{};
-  for (std::size_t i = 0; i < kStates; ++i)
-    for (std::size_t j = 0; j < kStates; ++j) of_sum[j] += covariance[i][j];
-  total = sum(of_sum) + 1.0;
-  const double innovation = mean - level();
-  for (std::size_t i = 0; i < kStates; ++i) gain[i] = of_sum[i] / total;
-  for (std::size_t i = 0; i < kStates; ++i) {
-    state[i] += gain[i] * innovation;
-    for (std::size_t j = 0; j < kStates; ++j) covariance[i][j] -= gain[i] * of_sum[j];
-  }
-  squares += std::min(innovation * innovation / total, most_square);
-  log_variance += std::log(total);
-  return innovation;
-}
+LevelNoise::LevelNoise() : filters_(table()) {}
 
 double LevelNoise::level() const noexcept {
-  return has_level_ ? filters_[chosen_].level() : std::numeric_limits<double>::quiet_NaN();
+  return has_level_ ? filters_.level(chosen_) : std::numeric_limits<double>::quiet_NaN();
+}
+
+// squares: of the filter in use, before this mean. The noise is not known better than the blocks so far
+// allow: its variance as large as two standard errors make it.
+void LevelNoise::innovate(double squares) noexcept {
+  const double noise = count_ > 0.0 ? squares / count_ * (1.0 + kTwoErrors * std::sqrt(2.0 / count_)) : 0.0;
+  if (!(noise > 0.0)) return;
+  innovation_.known = true;
+  innovation_.scale = std::sqrt(filters_.total(chosen_));
+  innovation_.spread = innovation_.scale * std::sqrt(noise);
+  innovation_.value = filters_.innovation(chosen_) / innovation_.spread;
+  innovation_.gain = filters_.gain(chosen_);
 }
 
 const LevelNoise::Innovation& LevelNoise::take(double mean, double blocks) noexcept {
   innovation_.known = false;
   if (!has_level_) {
-    for (Filter& filter : filters_) filter.begin(mean);
+    filters_.begin(mean);
     has_level_ = true;
     return innovation_;
   }
   innovation_.keep[kWalk] = 1.0;
   for (std::size_t i = 0; i < kWalk; ++i) innovation_.keep[i] = std::exp(-blocks / kTimes[i]);
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    Filter& filter = filters_[i];
-    // The noise is not known better than the blocks so far allow: its variance as large as two standard
-    // errors make it.
-    const double noise = i == chosen_ && count_ > 0.0
-                             ? filter.squares / count_ * (1.0 + kTwoErrors * std::sqrt(2.0 / count_))
-                             : 0.0;
-    filter.predict(innovation_.keep, blocks);
-    const double innovation = filter.update(
-        mean, count_ > kFew ? kClip * filter.squares / count_ : std::numeric_limits<double>::infinity());
-    if (!(noise > 0.0)) continue;
-    innovation_.known = true;
-    innovation_.scale = std::sqrt(filter.total);
-    innovation_.spread = innovation_.scale * std::sqrt(noise);
-    innovation_.value = innovation / innovation_.spread;
-    innovation_.gain = filter.gain;
-  }
+  const double squares = filters_.squares(chosen_);
+  filters_.take(mean, blocks, innovation_.keep, count_ > kFew ? count_ : 0.0, kClip);
+  innovate(squares);
   count_ += 1.0;
-  choose();
+  if (count_ >= kChosenAnew * chosen_at_) choose();
   return innovation_;
 }
 
 // The quickest level that may well be the right one: one that is taken for slower than it is looks like
 // steps.
 void LevelNoise::choose() noexcept {
-  const auto likelihood = [&](const Filter& filter) {
-    return filter.squares > 0.0 ? -0.5 * (count_ * std::log(filter.squares / count_) + filter.log_variance)
-                                : -std::numeric_limits<double>::infinity();
-  };
-  double best = -std::numeric_limits<double>::infinity();
-  for (const Filter& filter : filters_) best = std::max(best, likelihood(filter));
+  chosen_at_ = count_;
+  std::vector<double> likelihood(filters_.size());
+  for (std::size_t i = 0; i < filters_.size(); ++i)
+    likelihood[i] = filters_.squares(i) > 0.0
+                        ? -0.5 * (count_ * std::log(filters_.squares(i) / count_) + filters_.log_variance(i))
+                        : -std::numeric_limits<double>::infinity();
+  const double best = *std::max_element(likelihood.begin(), likelihood.end());
   double quickest = -1.0;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    if (likelihood(filters_[i]) < best - kUnlikelier) continue;
-    const double follows = sum(filters_[i].gain);
+    if (likelihood[i] < best - kUnlikelier) continue;
+    const double follows = sum(filters_.gain(i));
     if (follows <= quickest) continue;
     quickest = follows;
     chosen_ = i;

@@ -5,20 +5,21 @@
 //
 // The state is one Gauss-Markov process a decade of time, from one block to 10 000, of equal variance, whose
 // sum has a spectrum of 1/f between (M. S. Keshner, Proc. IEEE 70, 1982), and a walk, whose start is
-// anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise; the likelihood
-// chooses.
+// anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise (level_filters.h);
+// the likelihood chooses, for as long as the sensor rests: what is learned in an hour is a guess beside what
+// days show.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <vector>
+
+#include "daemon/health/level_filters.h"
 
 namespace ifog {
 
 class LevelNoise {
  public:
-  static constexpr std::size_t kStates = 6;
-  using Vector = std::array<double, kStates>;
+  static constexpr std::size_t kStates = LevelFilters::kStates;
+  using Vector = LevelFilters::Vector;
   struct Innovation {
     bool known = false;
     double value = 0.0;   // of variance 1
@@ -37,25 +38,16 @@ class LevelNoise {
   [[nodiscard]] double blocks() const noexcept { return count_; }
   // In units of the white noise of a block's mean: variance of a decade of the bias instability; variance of
   // the walk's step from block to block.
-  [[nodiscard]] double instability() const noexcept { return filters_[chosen_].instability; }
-  [[nodiscard]] double walk() const noexcept { return filters_[chosen_].walk; }
+  [[nodiscard]] double instability() const noexcept { return filters_.ratios(chosen_).instability; }
+  [[nodiscard]] double walk() const noexcept { return filters_.ratios(chosen_).walk; }
 
  private:
-  struct Filter {
-    double instability = 0.0, walk = 0.0;
-    Vector state{}, gain{};
-    std::array<Vector, kStates> covariance{};
-    double squares = 0.0, log_variance = 0.0, total = 1.0;
-    void begin(double mean) noexcept;
-    void predict(const Vector& keep, double blocks) noexcept;
-    double update(double mean, double most_square) noexcept;
-    [[nodiscard]] double level() const noexcept;
-  };
+  void innovate(double squares) noexcept;
   void choose() noexcept;
-  std::vector<Filter> filters_;
+  LevelFilters filters_;
   Innovation innovation_;
   std::size_t chosen_ = 0;
-  double count_ = 0.0;
+  double count_ = 0.0, chosen_at_ = 0.0;
   bool has_level_ = false;
 };
 

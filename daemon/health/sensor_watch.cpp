@@ -19,7 +19,6 @@ constexpr double kTurned = 1e-3;
 constexpr int kSilence = 10;  // looks without a sample: the device may have been off
 constexpr double kRange_s = 600.0, kRangeShare = 0.5;
 constexpr double kTellStep = 360.0;  // blocks
-constexpr double kForStep = 0.8;     // of the false alarms allowed
 constexpr double kCusums = 3.0;
 constexpr double kLatest = 0.2;  // weight of a block in how loud it is now
 

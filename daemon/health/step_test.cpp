@@ -14,8 +14,19 @@ double distribution(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2)
 
 // The variance of sums is taken for that of white innovations until so many independent sums say otherwise.
 constexpr double kBelieved = 100.0;
+// Sums weigh by their number, the newest most, as what filter is in use changes while it learns: of n,
+// weights 1 … n, the mean is known as by three quarters of them.
+constexpr double kNewestWeighs = 2.0, kKnownAs = 0.75;
 // Below it nothing is near.
 constexpr double kLeastOfNote = 2.5;
+
+// Over that of white innovations: more, where the level's noise is none of the table's, and less where the
+// filter takes the level for quicker than it is. As large as one standard error makes it: it is not known
+// better, and moves while the filter's choice does.
+double variance_of_sums(double mean_square, double independent) {
+  const double known_by = kBelieved + independent;
+  return (kBelieved + independent * mean_square) / known_by * (1.0 + std::sqrt(2.0 / known_by));
+}
 
 }  // namespace
 
@@ -52,9 +63,7 @@ double StepTest::look(std::size_t number) noexcept {
   const Window& window = windows_[(begun_ - kLengths[number]) % kLongest];
   Spread& seen = spreads_[number];
   const double s = std::clamp(1.0 - window.neighbours / window.squares, 1e-3, 1.0);
-  const double independent = s * seen.count;
-  const double variance =
-      std::max(1.0, (kBelieved + independent * seen.mean_square) / (kBelieved + independent));
+  const double variance = variance_of_sums(seen.mean_square, kKnownAs * s * seen.count);
   const double square = window.sum * window.sum / window.squares;
   const double z = std::sqrt(square / variance);
   seen.latest = square;
@@ -74,7 +83,8 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
     // Of a step nothing is learned that the next one is measured by.
     for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {
       spreads_[i].count += 1.0;
-      spreads_[i].mean_square += (spreads_[i].latest - spreads_[i].mean_square) / spreads_[i].count;
+      spreads_[i].mean_square +=
+          kNewestWeighs / (spreads_[i].count + 1.0) * (spreads_[i].latest - spreads_[i].mean_square);
     }
     return false;
   }

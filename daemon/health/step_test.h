@@ -4,11 +4,11 @@
 // some lengths are looked at that end at the newest block, each weighted by that response, which is the
 // likelihood ratio of a step at its beginning.
 //
-// Each length has its share of the false alarms, the longest most: it decides what is found within ten
-// minutes, the others find a larger step sooner. Windows of one length that begin at neighbouring blocks are
-// correlated by 1 - s; a value z is then exceeded, on either side, so many times a block (D. Siegmund and B.
-// Yakir, The Statistics of Gene Mapping, 2007, and as an asymptote in D. Siegmund, Sequential Analysis,
-// 1985):
+// Each length has its share of the false alarms, the longest nine tenths: it decides what is found within ten
+// minutes. The others find larger steps sooner, which stand out enough for the little that they are given.
+// Windows of one length that begin at neighbouring blocks are correlated by 1 - s; a value z is then
+// exceeded, on either side, so many times a block (D. Siegmund and B. Yakir, The Statistics of Gene Mapping,
+// 2007, and as an asymptote in D. Siegmund, Sequential Analysis, 1985):
 //
 //   2 z phi(z) s nu(z sqrt(2 s)),   nu(x) = (2 / x) (Phi(x / 2) - 1/2) / ((x / 2) Phi(x / 2) + phi(x / 2))
 #pragma once
@@ -28,7 +28,7 @@ class StepTest {
  public:
   // In blocks. The longest leaves a minute of ten for a step that comes in the middle of a block.
   static constexpr std::array<std::size_t, 7> kLengths{1, 2, 4, 8, 15, 30, 58};
-  static constexpr std::array<double, 7> kShares{0.05, 0.05, 0.05, 0.05, 0.1, 0.2, 0.5};
+  static constexpr std::array<double, 7> kShares{0.01, 0.01, 0.01, 0.01, 0.02, 0.04, 0.9};
 
   // A false alarm in so many blocks.
   explicit StepTest(double blocks_between_alarms) : alarms_per_block_(1.0 / blocks_between_alarms) {}

@@ -160,15 +160,36 @@ void Housekeeping::publish(Sensor& sensor) {
     sensor.log->warn("LCM did not take the status message");
 }
 
+// A thread that gets no processor is not stuck, nor is the other one that waits for it or whose step it does:
+// to start the daemon again would not help either.
+void Housekeeping::count_idle(Sensor& sensor) {
+  Pipeline& pipeline = *sensor.parts.pipeline;
+  const char* const starved = pipeline.starved();
+  const std::uint64_t turns = pipeline.reader().counters().turns.value();
+  const bool filter_came = sensor.answered || pipeline.ended();
+  const bool reader_came = turns != sensor.reader_turns || pipeline.ended();
+  sensor.reader_turns = turns;
+  const int counts = starved == nullptr ? 1 : 0;
+  sensor.unanswered = filter_came ? 0 : sensor.unanswered + counts;
+  sensor.reader_stuck = reader_came ? 0 : sensor.reader_stuck + counts;
+  if (filter_came && reader_came) {
+    if (sensor.starved >= kStuck_s) sensor.log->info("its threads get a processor again");
+    sensor.starved = 0;
+  } else if (starved != nullptr && ++sensor.starved == kStuck_s) {
+    sensor.log->warn(
+        "the {} thread is ready and has had no processor for {} s: something of a higher priority keeps it, "
+        "look "
+        "with `ps -eLo rtprio,pcpu,comm` and give one of them other processors (realtime.cpus)",
+        starved, kStuck_s);
+  }
+}
+
 void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   sensor.answered = pipeline.filter().take_snapshot(sensor.snapshot);
   // A filter that does not come round takes nothing from what the reader brings: that waits.
   if (!sensor.answered) sensor.snapshot.reader = pipeline.reader().books();
-  sensor.unanswered = sensor.answered || pipeline.ended() ? 0 : sensor.unanswered + 1;
-  const std::uint64_t turns = pipeline.reader().counters().turns.value();
-  sensor.reader_stuck = turns != sensor.reader_turns || pipeline.ended() ? 0 : sensor.reader_stuck + 1;
-  sensor.reader_turns = turns;
+  count_idle(sensor);
   if (sensor.unworded > 0) sensor.log->warn("{} more such lines in this second", sensor.unworded);
   sensor.worded = sensor.unworded = 0;
   if (sensor.parts.recorder != nullptr) sensor.report.update(*sensor.parts.recorder);

@@ -45,6 +45,7 @@ class Housekeeping {
     int unanswered = 0;    // seconds since it did
     std::uint64_t reader_turns = 0;
     int reader_stuck = 0;      // seconds since the reader last came round
+    int starved = 0;           // seconds in which a thread did not come round for want of a processor
     std::int32_t state = -1;   // as last logged
     std::string fault{};       // as last logged
     std::uint64_t worded = 0;  // events logged in this second
@@ -66,6 +67,8 @@ class Housekeeping {
   void start_all();
   void drain_events(Sensor& sensor);
   void report_second(Sensor& sensor, double interval_s);
+  // Counts the seconds that a thread does not come round.
+  static void count_idle(Sensor& sensor);
   void publish(Sensor& sensor);
   // The status of every sensor, and the service manager's sign of life.
   void each_second(double interval_s);

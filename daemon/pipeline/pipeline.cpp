@@ -28,19 +28,20 @@ void Pipeline::open() {
 
 std::string Pipeline::start() {
   std::promise<std::string> filter_ready, reader_ready;
-  const auto prepare = [](const ThreadPlan& plan, std::promise<std::string>& ready) {
+  const auto prepare = [](const ThreadPlan& plan, ThreadWatch& watch, std::promise<std::string>& ready) {
+    watch.begin();
     prefault_stack();
     ready.set_value(apply_to_this_thread(plan));
   };
   filter_thread_ = std::thread([this, &filter_ready, prepare] {
-    prepare(plan_.filter, filter_ready);
+    prepare(plan_.filter, filter_watch_, filter_ready);
     filter_.run(plan_.spin);
     ended_.store(true, std::memory_order_release);
   });
   std::string missed = filter_ready.get_future().get();
   try {
     reader_thread_ = std::thread([this, &reader_ready, prepare] {
-      prepare(plan_.reader, reader_ready);
+      prepare(plan_.reader, reader_watch_, reader_ready);
       reader_.run();
     });
   } catch (const std::system_error&) {
@@ -52,6 +53,11 @@ std::string Pipeline::start() {
   const std::string reader_missed = reader_ready.get_future().get();
   if (!missed.empty() && !reader_missed.empty()) missed += "; ";
   return missed + reader_missed;
+}
+
+const char* Pipeline::starved() {
+  const bool reader = reader_watch_.starved(), filter = filter_watch_.starved();
+  return reader ? "reader" : filter ? "filter" : nullptr;
 }
 
 void Pipeline::stop() noexcept {

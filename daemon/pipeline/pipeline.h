@@ -11,6 +11,7 @@
 #include "daemon/pipeline/filter_stage.h"
 #include "daemon/pipeline/reader.h"
 #include "daemon/realtime/realtime.h"
+#include "daemon/realtime/thread_watch.h"
 
 namespace ifog {
 
@@ -50,6 +51,9 @@ class Pipeline {
   [[nodiscard]] FilterStage& filter() noexcept { return filter_; }
   [[nodiscard]] const IncrementQueue& queue() const noexcept { return queue_; }
   [[nodiscard]] const HandOver& hand_over() const noexcept { return hand_over_; }
+  // One thread, once a second: which of the two got no processor since this was asked last though it was
+  // ready to run, "reader" or "filter"; null: neither.
+  [[nodiscard]] const char* starved();
   // What the transport could not get and does without, once; "" for nothing new.
   std::string take_transport_warning() { return reader_.transport().take_warning(); }
   // Next event of either thread.
@@ -67,6 +71,7 @@ class Pipeline {
   HandOver hand_over_;
   Reader reader_;
   std::atomic<bool> ended_{false};
+  ThreadWatch reader_watch_, filter_watch_;
   std::thread reader_thread_, filter_thread_;
 };
 

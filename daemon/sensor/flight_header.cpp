@@ -75,6 +75,7 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
   for (const ChannelConfig& channel : sensor.channels)
     if (channel.source != ChannelConfig::Source::frame) out.channels.push_back(channel.name);
   out.powered_ns = powered_ns(sensor);
+  if (out.powered_ns) out.boot = boot_id();
   out.configuration = sensor.text;
   out.configuration_file = std::filesystem::absolute(config.file).string();
   if (!noise.empty()) out.files[noise_file_name(sensor.name)] = noise;

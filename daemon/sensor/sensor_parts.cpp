@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
@@ -207,6 +209,17 @@ ChainChoice chain_choice(const SensorConfig& sensor, const Model* model) {
 std::optional<std::int64_t> powered_ns(const SensorConfig& sensor) {
   if (!sensor.powered_with_computer) return std::nullopt;
   return arrival_clock_at_boot_ns();
+}
+
+std::string boot_id() {
+  std::string out;
+  if (const char* const told = std::getenv("IFOGD_BOOT_ID"))
+    out = told;
+  else
+    std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), out);
+  // As one has it with dashes, the other without.
+  std::erase(out, '-');
+  return out;
 }
 
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor) {

@@ -74,6 +74,8 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
     out.opened_ns = number<std::int64_t>(key, value);
   else if (key == "powered_ns")
     out.powered_ns = time_of_day(key, value);
+  else if (key == "boot")
+    out.boot = std::move(value);
   else if (key == "program")
     out.program = std::move(value);
   else if (key == "sensor")
@@ -129,6 +131,7 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   if (header.settings != 0) add("settings", std::to_string(header.settings));
   add("opened_ns", std::to_string(header.opened_ns));
   if (header.powered_ns) add("powered_ns", std::to_string(*header.powered_ns));
+  if (!header.boot.empty()) add("boot", header.boot);
   add("configuration_file", header.configuration_file);
   add("configuration", header.configuration);
   add_named("file.", header.files);

@@ -33,9 +33,10 @@ struct FlightHeader {
   std::map<std::string, std::string> options;  // of the driver
   std::vector<std::string> channels;           // those that came from elsewhere, by their index
   std::optional<std::int64_t> powered_ns;      // arrival clock when the sensor was switched on
-  std::string configuration;                   // the sensor's part of ifogd.toml, as text
-  std::string configuration_file;              // where that stood
-  std::map<std::string, std::string> files;    // what options and configuration name, by path: DBC, model
+  std::string boot;  // of the computer's run in which powered_ns was, as its kernel names it; "": not known
+  std::string configuration;                 // the sensor's part of ifogd.toml, as text
+  std::string configuration_file;            // where that stood
+  std::map<std::string, std::string> files;  // what options and configuration name, by path: DBC, model
 
   bool operator==(const FlightHeader&) const = default;
 };

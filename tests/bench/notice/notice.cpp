@@ -4,6 +4,7 @@
 //
 // usage: notice_bench blocks MONTHS SEED [WORD]  months of each kind of noise, in blocks of ten seconds
 //        notice_bench steps TRIALS SEED [WORD]   steps of the bias and louder noise, after three days at rest
+//        notice_bench limits BLOCKS SEED [WORD]  what nobody, or nobody of some knowledge, can beat
 //        notice_bench chain DAYS SEED            a gyro at 200 Hz through signal chain and watch
 // WORD: only kinds of noise whose name has it.
 #include <algorithm>
@@ -13,42 +14,27 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/health/sensor_watch.h"
 #include "filters/chain/signal_chain.h"
+#include "tests/bench/notice/noise_kinds.h"
 #include "tests/bench/notice/slow_noise.h"
 #include "tests/bench/notice/step_bound.h"
+#include "tests/bench/notice/step_limits.h"
 
 namespace {
 
 using ifog::RestSums;
 using ifog::SensorWatch;
+using ifog::bench::bias_instability;
 using ifog::bench::NoiseKind;
 using ifog::bench::SlowNoise;
 
 constexpr double kRate = 200.0, kBlock_s = SensorWatch::kBlock_s;
 constexpr double kLook_s = 600.0, kAlarmEvery_s = 30.0 * 86400.0;
 constexpr int kPerDay = static_cast<int>(86400.0 / kBlock_s), kPerMonth = 30 * kPerDay;
-
-// Kinds whose Allan deviation reaches 0.664 B, or the least of N and K, after so long.
-std::vector<NoiseKind> kinds() {
-  std::vector<NoiseKind> out{{"white", 1.0, 0.0, 0.0}};
-  for (const double floor_s : {30.0, 100.0, 300.0, 1000.0})
-    out.push_back({"N, B from " + std::to_string(static_cast<int>(floor_s)) + " s", 1.0,
-                   1.0 / std::sqrt(floor_s) / 0.664, 0.0});
-  for (const double floor_s : {100.0, 300.0, 1000.0})
-    out.push_back({"N, K from " + std::to_string(static_cast<int>(floor_s)) + " s", 1.0, 0.0,
-                   std::sqrt(3.0) / floor_s});
-  return out;
-}
-
-// Bias instability B as IEEE Std 952 has it: the floor of the Allan deviation is 0.664 of it.
-double bias_instability(const NoiseKind& kind) {
-  if (kind.B > 0.0) return kind.B;
-  if (kind.K > 0.0) return std::sqrt(2.0 / std::sqrt(3.0) * kind.N * kind.K) / 0.664;
-  return 0.0;
-}
 
 // A sensor block by block: what ten seconds of samples add to the sums.
 class Blocks {
@@ -84,7 +70,9 @@ class Blocks {
 };
 
 void months(int count, unsigned seed, const std::string& word) {
-  for (const NoiseKind& kind : kinds()) {
+  std::vector<NoiseKind> all = ifog::bench::kinds();
+  for (NoiseKind& kind : ifog::bench::wandering_kinds()) all.push_back(std::move(kind));
+  for (const NoiseKind& kind : all) {
     if (kind.name.find(word) == std::string::npos) continue;
     int noise = 0, colour = 0, bias = 0;
     double nearest = 1e9;
@@ -143,7 +131,7 @@ void look_for(Change& change, Blocks blocks) {
 
 // The share found within ten minutes, the median time of those found, and what nobody can beat.
 void steps(int trials, unsigned seed, const std::string& word) {
-  for (const NoiseKind& kind : kinds()) {
+  for (const NoiseKind& kind : ifog::bench::kinds()) {
     if (kind.name.find(word) == std::string::npos) continue;
     std::vector<Change> wanted = changes(kind);
     for (int trial = 0; trial < trials; ++trial) {
@@ -157,7 +145,8 @@ void steps(int trials, unsigned seed, const std::string& word) {
                   change.what.c_str(), change.found.size(), change.trials,
                   change.found.empty() ? 0.0 : kBlock_s * change.found[change.found.size() / 2]);
       if (change.step != 0.0) {
-        const double d = ifog::bench::deviations_of_step(kind, change.step, kBlock_s, kLook_s);
+        const double d = ifog::bench::deviations(ifog::bench::left_of_step(
+            kind, change.step, kBlock_s, static_cast<std::size_t>(kLook_s / kBlock_s)));
         std::printf("; d %.2f, at best %.1f %%", d,
                     100.0 * ifog::bench::best_share(d, kLook_s, kAlarmEvery_s));
       }
@@ -224,12 +213,15 @@ int main(int argc, char** argv) {
     months(std::atoi(argv[2]), seed, word);
   } else if (mode == "steps" && argc <= 5) {
     steps(std::atoi(argv[2]), seed, word);
+  } else if (mode == "limits" && argc <= 5) {
+    ifog::bench::print_limits(static_cast<std::size_t>(std::atof(argv[2])), seed, word);
   } else if (mode == "chain" && argc == 4) {
     chain(std::atof(argv[2]), seed);
   } else {
-    std::fprintf(
-        stderr,
-        "usage: notice_bench blocks MONTHS SEED [WORD] | steps TRIALS SEED [WORD] | chain DAYS SEED\n");
+    std::fprintf(stderr,
+                 "usage: notice_bench blocks MONTHS SEED [WORD] | steps TRIALS SEED [WORD] | limits BLOCKS "
+                 "SEED [WORD] | "
+                 "chain DAYS SEED\n");
     return 2;
   }
   return 0;

@@ -12,9 +12,12 @@ namespace ifog::bench {
 struct NoiseKind {
   std::string name;
   double N = 1.0, B = 0.0, K = 0.0;
+  // A temperature in the rate, in its unit: half of what is between day and night, and the deviation of what
+  // wanders in an hour.
+  double day = 0.0, hour = 0.0;
 };
 
-// Bias instability and rate random walk, step by step.
+// Bias instability, rate random walk and temperature, step by step.
 class SlowNoise {
  public:
   SlowNoise(const NoiseKind& kind, double step_s, std::mt19937_64& random);
@@ -27,7 +30,10 @@ class SlowNoise {
 
  private:
   std::vector<Markov> processes_;
+  double temperature(std::mt19937_64& random);
   double walk_ = 0.0, walk_step_;
+  double day_, hour_, step_s_, time_s_ = 0.0;
+  double room_ = 0.0, sensor_ = 0.0;  // what wanders, and what follows it
   std::normal_distribution<double> normal_;
 };
 

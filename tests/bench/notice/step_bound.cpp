@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace ifog::bench {
 namespace {
@@ -16,7 +17,7 @@ double normal(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 }  // namespace
 
-double deviations_of_step(const NoiseKind& kind, double step, double block_s, double look_s) {
+std::vector<double> left_of_step(const NoiseKind& kind, double step, double block_s, std::size_t blocks) {
   std::mt19937_64 unused(1);
   const SlowNoise noise(kind, block_s, unused);
   const auto n = static_cast<Eigen::Index>(noise.processes().size() + 1);
@@ -32,20 +33,24 @@ double deviations_of_step(const NoiseKind& kind, double step, double block_s, do
   }
   drive[n - 1] = kind.K * kind.K * block_s;
   covariance(n - 1, n - 1) = kAnyBias * white;
-  const double past = kPast_s / block_s, all = past + look_s / block_s;
-  double square = 0.0;
+  const double past = kPast_s / block_s, all = past + static_cast<double>(blocks);
+  std::vector<double> out;
   for (double block = 0.0; block < all; block += 1.0) {
     const Eigen::VectorXd of_sum = covariance.rowwise().sum();
     const double total = of_sum.sum() + white;
     // The step alone goes through the filter; before it there is nothing.
     const double left = block < past ? 0.0 : step - state.sum();
-    square += left * left / total;
+    if (block >= past) out.push_back(left / std::sqrt(total));
     state = keep.cwiseProduct(state + of_sum * (left / total));
     covariance -= of_sum * of_sum.transpose() / total;
     covariance = keep.asDiagonal() * covariance * keep.asDiagonal();
     covariance.diagonal() += drive;
   }
-  return std::sqrt(square);
+  return out;
+}
+
+double deviations(const std::vector<double>& left) {
+  return std::sqrt(std::inner_product(left.begin(), left.end(), left.begin(), 0.0));
 }
 
 double best_share(double deviations, double look_s, double alarm_every_s) {

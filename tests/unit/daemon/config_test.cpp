@@ -255,6 +255,17 @@ TEST(Config, ASensorPoweredWithTheComputerHasBeenOnSinceBoot) {
   EXPECT_GE(since_s, boot_s - 60.0);  // however long this test was held up in between
 }
 
+// systemd's name of a run has no dashes, the kernel's has.
+TEST(Config, TheComputersRunHasTheNameThatTheKernelGivesIt) {
+  std::string name;
+  ASSERT_TRUE(std::ifstream("/proc/sys/kernel/random/boot_id") >> name);
+  std::erase(name, '-');
+  EXPECT_EQ(boot_id(), name);
+  ASSERT_EQ(setenv("IFOGD_BOOT_ID", "0f8fad5b-d9cb469fa16570867728950e", 1), 0);
+  EXPECT_EQ(boot_id(), "0f8fad5bd9cb469fa16570867728950e");
+  unsetenv("IFOGD_BOOT_ID");
+}
+
 TEST(Config, NothingToDoIsAnError) {
   EXPECT_EQ(complaint("[daemon]\n"), "f.toml: no [[sensor]]: expected at least one");
 }

@@ -99,11 +99,12 @@ class PoweredRecordings : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   // A closed file of so many bytes, of a sensor that was switched on then.
-  void record(std::optional<std::int64_t> powered_ns, std::size_t bytes) {
+  void record(std::optional<std::int64_t> powered_ns, std::size_t bytes, const std::string& boot = "") {
     FlightHeader header;
     header.sensor = "nose";
     header.driver = "kvh1750";
     header.powered_ns = powered_ns;
+    header.boot = boot;
     FlightArchive archive(make_flight_folder((folder_ / "nose").string()), {}, header);
     std::vector<std::uint8_t> payload(bytes);
     // That no compression makes smaller.
@@ -131,6 +132,15 @@ TEST_F(PoweredRecordings, OfSeveralPowerUpsTheLongestIsJudged) {
   EXPECT_EQ(judged(), (std::vector<std::uint64_t>{2, 3}));
   record(7 * kDay, 9000);
   EXPECT_EQ(judged(), (std::vector<std::uint64_t>{4, 5}));
+}
+
+TEST_F(PoweredRecordings, AComputerWithoutAClockBeginsEveryDayAtTheSameTime) {
+  constexpr std::int64_t kDay = 86'400'000'000'000;
+  record(kDay, 2500, "one");
+  record(kDay, 2000, "other");
+  record(kDay + 1'000'000'000, 2000, "other");
+  record(kDay, 3000, "third");
+  EXPECT_EQ(judged(), (std::vector<std::uint64_t>{2, 3}));
 }
 
 TEST_F(PoweredRecordings, AllAreWhereNobodySaysWhenItWas) {

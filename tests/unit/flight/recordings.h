@@ -136,6 +136,7 @@ inline FlightHeader some_header() {
   out.options = {{"format", "b"}, {"rate_hz", "200"}};
   out.channels = {"supply_V", "coil_degC"};
   out.powered_ns = 1'795'000'000'123'456'789;
+  out.boot = "0f8fad5bd9cb469fa16570867728950e";
   out.configuration = "[[sensor]]\nname = \"nose\"\npath = 'C:\\new'\n";
   out.configuration_file = "/etc/ifogd/ifogd.toml";
   out.files = {{"/etc/model.toml", std::string("a=b\n\\n\0c", 9)}};

@@ -32,17 +32,29 @@ std::string opened_at(std::string_view name) {
          ":" + date.substr(13, 3);
 }
 
-// When the sensor was switched on, as the file says it; one that cannot be read says nothing, and is told of
-// when it is.
-std::optional<std::int64_t> powered_ns(const RecordedFile& file) try {
+struct PowerUp {
+  std::int64_t powered_ns;
+  std::string boot;
+};
+
+// Of the sensor, as the file says it; one that cannot be read says nothing, and is told of when it is.
+std::optional<PowerUp> power_up(const RecordedFile& file) try {
   InputFile input(file.path);
-  return FlightInput(input).header().powered_ns;
+  const FlightInput flight(input);
+  if (!flight.header().powered_ns) return std::nullopt;
+  return PowerUp{*flight.header().powered_ns, flight.header().boot};
 } catch (const std::exception&) {
   return std::nullopt;
 }
 
 // The arrival clock of another run of the daemon may be off by what the wall clock was set.
 constexpr std::int64_t kOnePowerUp_ns = 10'000'000'000;
+
+// A clock that begins at the same time each day tells none apart: the computer's runs have names.
+bool same(const PowerUp& a, const PowerUp& b) {
+  if (!a.boot.empty() && !b.boot.empty() && a.boot != b.boot) return false;
+  return std::abs(a.powered_ns - b.powered_ns) <= kOnePowerUp_ns;
+}
 
 // Rows begin … end − 1 of the stretches.
 std::vector<Stretch> from_row(const std::vector<Stretch>& all, std::size_t begin) {
@@ -82,10 +94,10 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
 std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files) {
   std::vector<RecordedFile> best, these;
   std::uint64_t most = 0, bytes = 0;
-  std::optional<std::int64_t> since;
+  std::optional<PowerUp> since;
   for (const RecordedFile& file : files) {
-    const std::optional<std::int64_t> now = powered_ns(file);
-    if (now && since && std::abs(*now - *since) > kOnePowerUp_ns) {
+    const std::optional<PowerUp> now = power_up(file);
+    if (now && since && !same(*now, *since)) {
       these.clear();
       bytes = 0;
     }
