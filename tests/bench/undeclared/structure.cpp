@@ -15,17 +15,22 @@ namespace {
 constexpr double kTower_hz = 0.54;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
+// The order of two draws in one expression is the compiler's, and another one's on aarch64.
+std::complex<double> deviate(Draw& draw) {
+  const double imaginary = draw.normal(), real = draw.normal();
+  return {real, imaginary};
+}
+
 // The angle is a damped oscillator's driven by white noise, a sample what it turns in its time.
 void sway(const Capture& c, double rms, double quality, Draw& draw, std::vector<double>& rate) {
   const double angle = rms / (kTurn * kTower_hz);
-  std::complex<double> state = angle * std::complex<double>(draw.normal(), draw.normal());
+  std::complex<double> state = angle * deviate(draw);
   double dt = c.time_s[1] - c.time_s[0];
   for (std::size_t k = 0; k < rate.size(); ++k) {
     if (k > 0) dt = c.time_s[k] - c.time_s[k - 1];
     const double left = std::exp(-dt * std::numbers::pi * kTower_hz / quality);
-    const std::complex<double> next =
-        state * std::polar(left, kTurn * kTower_hz * dt) +
-        angle * std::sqrt(1.0 - left * left) * std::complex<double>(draw.normal(), draw.normal());
+    const std::complex<double> next = state * std::polar(left, kTurn * kTower_hz * dt) +
+                                      angle * std::sqrt(1.0 - left * left) * deviate(draw);
     rate[k] += (next.real() - state.real()) / dt;
     state = next;
   }

@@ -119,17 +119,23 @@ class Tower {
  public:
   Tower(double frequency_hz, double quality, double angle, std::uint64_t seed)
       : random_(seed), angle_(angle), frequency_hz_(frequency_hz), quality_(quality) {
-    state_ = angle_ * std::complex<double>(normal_(random_), normal_(random_));
+    state_ = angle_ * deviate();
   }
   double turned_in(double dt) {
     const double left = std::exp(-dt * std::numbers::pi * frequency_hz_ / quality_);
     const std::complex<double> before = state_;
     state_ = state_ * std::polar(left, kTurn * frequency_hz_ * dt) +
-             angle_ * std::sqrt(1.0 - left * left) * std::complex<double>(normal_(random_), normal_(random_));
+             angle_ * std::sqrt(1.0 - left * left) * deviate();
     return (state_.real() - before.real()) / dt;
   }
 
  private:
+  // The order of two draws in one expression is the compiler's, and another one's on aarch64.
+  std::complex<double> deviate() {
+    const double imaginary = normal_(random_), real = normal_(random_);
+    return {real, imaginary};
+  }
+
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   double angle_, frequency_hz_, quality_;
