@@ -182,11 +182,11 @@ char CsvLayout::parse_separator(const std::string& text) {
 }
 
 std::string option_for(const CsvColumn& column, const std::string& unit) {
-  return "--column " + shell_word(printable(column.name + "=" + column.header + ":" + unit, kLongestMessage));
+  return "--column " + shell_word(column.name + "=" + column.header + ":" + unit);
 }
 
 std::string option_for(const CsvTime& time, const std::string& unit) {
-  return "--time " + shell_word(printable(time.header + ":" + unit, kLongestMessage));
+  return "--time " + shell_word(time.header + ":" + unit);
 }
 
 std::string suggested_options(const std::vector<std::string>& headers) {

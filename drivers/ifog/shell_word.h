@@ -2,17 +2,36 @@
 // Words of a command that is printed to be copied, or kept to be run again. The one home of this rule.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 
-// A word as a shell takes it again, whatever it holds: in quotes unless it is a plain name.
+// A word as a shell takes it again, whatever it holds: in quotes unless it is a plain name. What a terminal
+// would act on, and nobody could copy, stands as $'\033' (bash, zsh, ksh; POSIX since 2024).
 inline std::string shell_word(std::string_view word) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) return std::string(word);
-  std::string out = "'";
+  std::string out;
+  bool all_seen = true;
+  for (std::size_t at = 0; at < word.size();) {
+    const std::size_t length = quoting::visible(word.substr(at, 4));
+    const auto byte = static_cast<unsigned char>(word[at]);
+    if (length == 0)
+      out += {'\\', static_cast<char>('0' + (byte >> 6U)), static_cast<char>('0' + (byte >> 3U & 7U)),
+              static_cast<char>('0' + (byte & 7U))};
+    else
+      out += (byte == '\'' || byte == '\\' ? "\\" : "") + std::string(word.substr(at, length));
+    all_seen = all_seen && length != 0;
+    at += std::max<std::size_t>(length, 1);
+  }
+  if (!all_seen) return "$'" + out + "'";
+  out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
 }

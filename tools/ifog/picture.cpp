@@ -18,6 +18,7 @@
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
+#include "tools/report/time_axis.h"
 
 namespace ifog::tools {
 namespace {
@@ -39,10 +40,8 @@ void run(const Arguments& a) {
   const auto from_first = [first](const std::vector<double>& values, double scale) {
     return report::scaled({values.begin() + static_cast<std::ptrdiff_t>(first), values.end()}, scale);
   };
-  const report::TimeUnit unit = report::time_unit(table.time_s.back() - table.time_s[first]);
-  report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.",
-                     {std::string("time (") + unit.name + ")", false, table.time_s[first] / unit.seconds,
-                      table.time_s.back() / unit.seconds},
+  const report::TimeAxis time(table.time_s[first], table.time_s.back());
+  report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.", time.axis(),
                      {"rate (°/h)", false, {}, {}});
   std::size_t axes = 0, curves = 0;
   for (const CaptureColumn& column : table.columns) {
@@ -51,8 +50,7 @@ void run(const Arguments& a) {
     if (!raw && !denoised) continue;
     ++curves;
     rate.line_in_time(raw ? report::Role::kRaw : report::Role::kAfter, raw ? "raw" : "denoised",
-                      from_first(table.time_s, 1.0 / unit.seconds),
-                      from_first(column.values, 1.0 / kDegreePerHour));
+                      time(from_first(table.time_s, 1.0)), from_first(column.values, 1.0 / kDegreePerHour));
   }
   if (curves != 2)
     throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +

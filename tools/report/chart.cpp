@@ -58,6 +58,31 @@ std::string words(const char* style, double x, double y, const char* anchor, con
          "\" text-anchor=\"" + anchor + "\">" + escaped(text) + "</text>\n";
 }
 
+// Their texts beside each other along x, none over another or beyond the edge: fewer where they are long.
+std::vector<Tick> side_by_side(const Scale& scale, double edge) {
+  constexpr double kApart = 10.0;
+  for (int wanted = 7;; --wanted) {
+    std::vector<Tick> ticks = scale.ticks(wanted);
+    std::vector<std::pair<double, double>> taken;
+    bool all = true;
+    for (const bool major : {true, false})
+      for (Tick& tick : ticks) {
+        if (tick.major != major) continue;
+        const double half = 0.5 * text_width(tick.text), at = scale(tick.at);
+        const bool beyond = at + half > edge;
+        const bool room = std::none_of(taken.begin(), taken.end(), [&](const auto& other) {
+          return at - half < other.second + kApart && at + half > other.first - kApart;
+        });
+        if (room && !beyond)
+          taken.emplace_back(at - half, at + half);
+        else
+          tick.text.clear();
+        all = all && (room || beyond);
+      }
+    if (all || scale.log() || wanted == 2) return ticks;
+  }
+}
+
 // A path through the points; pixel columns that hold several are covered from their least to their most.
 std::string path(const std::vector<double>& x, const std::vector<double>& y, const Scale& sx,
                  const Scale& sy) {
@@ -193,15 +218,17 @@ std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double
   for (const double v : sx.minor_ticks()) minor += upright(sx(v));
   for (const double v : sy.minor_ticks()) minor += level(sy(v));
   if (!minor.empty()) rule("minor", minor);
-  for (const double v : sx.ticks(7)) {
-    if (sx(v) < f.left - 0.5 || sx(v) > f.right + 0.5) continue;
-    rule("grid", upright(sx(v)));
-    if (x_.numbered) out += words("tick", sx(v), f.bottom + 16.0, "middle", sx.tick_text(v));
+  for (const Tick& tick : side_by_side(sx, f.right + kRight)) {
+    const double px = sx(tick.at);
+    if (px < f.left - 0.5 || px > f.right + 0.5) continue;
+    rule("grid", upright(px));
+    if (x_.numbered && !tick.text.empty()) out += words("tick", px, f.bottom + 16.0, "middle", tick.text);
   }
-  for (const double v : sy.ticks(y_ticks(f.bottom - f.top))) {
-    if (sy(v) < f.top - 0.5 || sy(v) > f.bottom + 0.5) continue;
-    rule("grid", level(sy(v)));
-    if (y_.numbered) out += words("tick", f.left - 7.0, sy(v) + 4.0, "end", sy.tick_text(v));
+  for (const Tick& tick : sy.ticks(y_ticks(f.bottom - f.top))) {
+    const double py = sy(tick.at);
+    if (py < f.top - 0.5 || py > f.bottom + 0.5) continue;
+    rule("grid", level(py));
+    if (y_.numbered) out += words("tick", f.left - 7.0, py + 4.0, "end", tick.text);
   }
   for (const auto& [value, label] : marks_) {
     if (!sx.drawable(value) || sx(value) < f.left || sx(value) > f.right) continue;
@@ -250,7 +277,7 @@ std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) cons
 double Chart::left_margin(double height) const {
   double widest = 0.0;
   const Scale sy(y_, bounds(false), height, 0.0);
-  for (const double v : sy.ticks(y_ticks(height))) widest = std::max(widest, text_width(sy.tick_text(v)));
+  for (const Tick& tick : sy.ticks(y_ticks(height))) widest = std::max(widest, text_width(tick.text));
   return (y_.label.empty() ? 8.0 : 26.0) + (y_.numbered ? widest + 7.0 : 0.0);
 }
 

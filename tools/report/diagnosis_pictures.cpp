@@ -11,6 +11,7 @@
 #include "tools/report/account.h"
 #include "tools/report/chart.h"
 #include "tools/report/text.h"
+#include "tools/report/time_axis.h"
 #include "tools/report/traced.h"
 #include "tools/report/words.h"
 
@@ -35,13 +36,6 @@ std::string figure_html(const std::string& svg, const std::string& caption) {
   return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
 }
 
-// From the record's first moment: seconds since 1970 would leave a picture no digits.
-Series since_start(const Series& time_s, const TimeUnit& unit) {
-  Series out;
-  for (const double t : time_s) out.push_back((t - time_s.front()) / unit.seconds);
-  return out;
-}
-
 // "in 1 s means": the series are block means of whatever length kept them drawable.
 std::string block_words(const DiagnosisSeries& s) {
   if (s.time_s.size() < 2) return "";
@@ -53,17 +47,17 @@ std::string block_words(const DiagnosisSeries& s) {
 std::string time_picture(const Diagnosis& d) {
   const DiagnosisSeries& s = d.series;
   if (s.time_s.empty()) return "";
-  const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
+  const TimeAxis time(s.time_s.front(), s.time_s.back());
   Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
-              {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
-  const Series t = since_start(s.time_s, unit);
+              {time.label(), false, {}, {}}, {"error (°/h)", false, {}, {}});
+  const Series t = time(s.time_s);
   chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
   // Bursts come in clusters: a word where there is room for one.
   double named = -1e300;
   for (const double burst : d.unexplained.times_s) {
     const bool room = burst - named > 0.1 * (s.time_s.back() - s.time_s.front());
-    chart.mark_x((burst - s.time_s.front()) / unit.seconds, room ? "burst" : "");
+    chart.mark_x(time(burst), room ? "burst" : "");
     if (room) named = burst;
   }
   return figure_html(chart.svg(), "The error, " + block_words(s) + ", about its mean.");
@@ -121,8 +115,8 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   if (index >= s.contribution_radps.size() || s.contribution_radps[index].size() != s.time_s.size())
     return "";
   if (s.time_s.empty()) return "";
-  const TimeUnit unit = time_unit(s.time_s.back() - s.time_s.front());
-  const Series t = since_start(s.time_s, unit);
+  const TimeAxis time(s.time_s.front(), s.time_s.back());
+  const Series t = time(s.time_s);
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
   Series with(effect), drawn(effect);
@@ -135,7 +129,7 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
     if ((effect[k] - effect[k - 1]) * (effect[k - 1] - effect[k - 2]) < 0.0) ++turns;
   if (turns > 250 && turns > part.size() / 3) return "";
   Chart chart("The effect over time", "The error without the other effects, and this effect's part of it.",
-              {std::string("time (") + unit.name + ")", false, {}, {}}, {"error (°/h)", false, {}, {}});
+              {time.label(), false, {}, {}}, {"error (°/h)", false, {}, {}});
   chart.line(Role::kBefore, "measured", t, scaled(with, 1.0 / kDegreePerHour));
   chart.line(Role::kFit, "fitted", t, scaled(drawn, 1.0 / kDegreePerHour));
   return figure_html(chart.svg(480, 320), "The same over time, " + block_words(s) + ".");

@@ -11,6 +11,8 @@ constexpr const char* kScript = R"js(
 (() => {
 const floats = t => new Float32Array(Uint8Array.from(atob(t), c => c.charCodeAt(0)).buffer);
 const text = (v, digits = 5) => String(Number(v.toPrecision(digits))).replace('-', '\u2212');
+// At an axis: as many digits as neighbours need to differ.
+const beside = (v, all) => text(v, all.length < 2 ? 4 : Math.min(15, Math.max(1, 1 + Math.ceil(Math.log10(Math.abs(v) / Math.abs(all[1] - all[0]) + 1e-9)))));
 const make = (parent, name, attributes, content) => {
   const e = document.createElementNS('http://www.w3.org/2000/svg', name);
   for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
@@ -95,13 +97,14 @@ for (const chart of document.querySelectorAll('svg[data-plot]')) {
     still.style.display = whole ? '' : 'none';
     moving.replaceChildren();
     if (whole) { curves.innerHTML = as_drawn; return; }
-    for (const v of ticks(plot.x, ...view, 7)) {
+    const along = ticks(plot.x, ...view, 7), up = ticks(plot.y, low, high, 6);
+    for (const v of along) {
       make(moving, 'path', {class: 'grid', d: `M${sx.px(v)} ${top}V${bottom}`});
-      make(moving, 'text', {class: 'tick', x: sx.px(v), y: bottom + 16, 'text-anchor': 'middle'}, text(v, 6));
+      make(moving, 'text', {class: 'tick', x: sx.px(v), y: bottom + 16, 'text-anchor': 'middle'}, beside(v, along));
     }
-    for (const v of ticks(plot.y, low, high, 6)) {
+    for (const v of up) {
       make(moving, 'path', {class: 'grid', d: `M${left} ${sy.px(v)}H${right}`});
-      make(moving, 'text', {class: 'tick', x: left - 7, y: sy.px(v) + 4, 'text-anchor': 'end'}, text(v, 3));
+      make(moving, 'text', {class: 'tick', x: left - 7, y: sy.px(v) + 4, 'text-anchor': 'end'}, beside(v, up));
     }
     curves.replaceChildren();
     for (const s of plot.series) make(curves, 'path', {class: s.style, d: path(s)});

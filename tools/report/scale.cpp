@@ -7,17 +7,6 @@
 #include "tools/report/text.h"
 
 namespace ifog::report {
-namespace {
-
-std::string trimmed(std::string text) {
-  if (text.find('.') == std::string::npos || text.find("×") != std::string::npos) return text;
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
-}  // namespace
-
 void Bounds::take(double value, bool log) {
   if (!std::isfinite(value) || (log && value <= 0.0)) return;
   low = std::min(low, value);
@@ -36,6 +25,11 @@ Scale::Scale(const ChartAxis& axis, const Bounds& data, double from_px, double t
   const double margin = span > 0.0 ? 0.04 * span : (log_ ? 0.5 : std::max(std::abs(low_), 1e-30));
   if (!axis.low) low_ -= margin;
   if (!axis.high) high_ += margin;
+  const double least = std::max(1e-12 * std::max(std::abs(low_), std::abs(high_)), 1e-300);
+  if (high_ - low_ < least) {
+    low_ -= least;
+    high_ += least;
+  }
 }
 
 double Scale::operator()(double value) const {
@@ -50,19 +44,30 @@ bool Scale::drawable(double value) const { return std::isfinite(value) && (!log_
 
 bool Scale::inside(double exponent) const { return exponent >= low_ - 1e-9 && exponent <= high_ + 1e-9; }
 
-std::vector<double> Scale::ticks(int wanted) const {
-  std::vector<double> out;
+std::vector<Tick> Scale::ticks(int wanted) const {
+  std::vector<Tick> out;
   if (log_) {
     const bool dense = high_ - low_ < 0.5 * wanted;
     for (int d = static_cast<int>(std::floor(low_)); d <= static_cast<int>(std::ceil(high_)); ++d)
       for (const double m : {1.0, 2.0, 5.0})
-        if ((dense || m == 1.0) && inside(d + std::log10(m))) out.push_back(m * std::pow(10.0, d));
+        if ((dense || m == 1.0) && inside(d + std::log10(m)))
+          out.push_back({m * std::pow(10.0, d), number(m * std::pow(10.0, d), 1), m == 1.0});
     return out;
   }
   const double raw = (high_ - low_) / wanted;
-  const double ten = std::pow(10.0, std::floor(std::log10(raw)));
+  int decade = static_cast<int>(std::floor(std::log10(raw)));
+  const double ten = std::pow(10.0, decade);
   const double step = ten * (raw / ten < 1.5 ? 1.0 : raw / ten < 3.5 ? 2.0 : raw / ten < 7.5 ? 5.0 : 10.0);
-  for (double v = std::ceil(low_ / step); v * step <= high_; v += 1.0) out.push_back(v * step);
+  if (raw / ten >= 7.5) ++decade;
+  const double reach = std::max(std::abs(low_), std::abs(high_));
+  int power = static_cast<int>(std::floor(std::log10(reach)));
+  if (power >= -4 && power < 6) power = 0;
+  const double first = std::ceil(low_ / step);
+  const int count = static_cast<int>(std::floor(high_ / step) - first) + 1;
+  for (int k = 0; k < count; ++k) {
+    const double at = (first + k) * step;
+    out.push_back({at, at_power(at, std::max(0, power - decade), power), true});
+  }
   return out;
 }
 
@@ -73,16 +78,6 @@ std::vector<double> Scale::minor_ticks() const {
     for (int m = 2; m < 10; ++m)
       if (inside(d + std::log10(m))) out.push_back(m * std::pow(10.0, d));
   return out;
-}
-
-std::string Scale::tick_text(double value) const {
-  if (log_) return number(value, 1);
-  const double reach = std::max(std::abs(low_), std::abs(high_));
-  if (std::abs(value) < 1e-9 * reach) return "0";
-  const double span = high_ - low_;
-  // As many digits as neighbours need to differ.
-  const int digits = 1 + std::max(0, static_cast<int>(std::ceil(std::log10(std::abs(value) / span))) + 1);
-  return trimmed(number(value, std::min(digits + 1, 9)));
 }
 
 }  // namespace ifog::report

@@ -24,9 +24,16 @@ struct Bounds {
   [[nodiscard]] bool empty() const { return !(low <= high); }
 };
 
+struct Tick {
+  double at;  // in data
+  std::string text;
+  bool major = true;  // has the first claim to its place, before the 2 and 5 of a logarithmic axis
+};
+
 class Scale {
  public:
-  // Where the axis does not say its ends, those of the data with a little room.
+  // Where the axis does not say its ends, those of the data with a little room. Never so close together that
+  // doubles have no steps between them.
   Scale(const ChartAxis& axis, const Bounds& data, double from_px, double to_px);
 
   [[nodiscard]] double operator()(double value) const;
@@ -35,10 +42,11 @@ class Scale {
   [[nodiscard]] double low() const;
   [[nodiscard]] double high() const;
   // About so many: decades (with 2 and 5 when those are few), or steps of 1, 2, 5.
-  [[nodiscard]] std::vector<double> ticks(int wanted) const;
+  // Those of a linear axis have the same power of ten and as many decimals as their step has.
+  [[nodiscard]] std::vector<Tick> ticks(int wanted) const;
   // Between the decades of a logarithmic axis: 2, 3, … 9; none on a linear one.
   [[nodiscard]] std::vector<double> minor_ticks() const;
-  [[nodiscard]] std::string tick_text(double value) const;
+  [[nodiscard]] bool log() const { return log_; }
 
  private:
   [[nodiscard]] bool inside(double exponent) const;

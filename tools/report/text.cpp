@@ -76,7 +76,13 @@ std::string number(double value, int digits) {
   const double rounded = std::strtod(printed("%.*e", digits - 1, value).c_str(), nullptr);
   const int power = decade(rounded);
   if (power >= -4 && power < 6) return typeset(printed("%.*f", std::max(0, digits - 1 - power), rounded));
-  return typeset(printed("%.*f", digits - 1, rounded / std::pow(10.0, power))) + " × 10" + superscript(power);
+  return at_power(rounded, digits - 1, power);
+}
+
+std::string at_power(double value, int decimals, int power) {
+  if (value == 0.0) return "0";
+  const std::string plain = typeset(printed("%.*f", decimals, value / std::pow(10.0, power)));
+  return power == 0 ? plain : plain + " × 10" + superscript(power);
 }
 
 std::string with_error(double value, double std_error) {

@@ -37,13 +37,18 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
   series.contribution_radps.resize(parts.size());
   series.channel.resize(parts.size());
-  double offset = 0.0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Effect& effect = effects[i].effect;
     series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));
   }
   for (std::size_t r = 0; r < grid.records.size(); ++r) {
     const BlockRange& record = grid.records[r];
+    // The first in its own time, each other from where the one before ends: clocks of captures may have any
+    // beginning.
+    const double offset =
+        series.time_s.empty() || record.size() == 0
+            ? 0.0
+            : series.time_s.back() + static_cast<double>(stride) * grid.block_s - grid.time_s[record.first];
     for (std::size_t b = record.first; b < record.end; b += stride) {
       const auto row = static_cast<Eigen::Index>(b);
       series.time_s.push_back(offset + grid.time_s[b]);
@@ -56,7 +61,6 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
           series.channel[i].push_back(data.channels[channel].values[b * grid.fine]);
       }
     }
-    offset = series.time_s.back();
   }
   const EvenError& first = errors.front();
   const Spectrum before = averaged_spectrum(first.before, grid.sample_s, known);

@@ -8,9 +8,15 @@
 
 namespace {
 
+std::string in_single_quotes(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 // What a shell makes of it.
 std::string by_a_shell(const std::string& word) {
-  std::FILE* const shell = popen(("printf %s " + word).c_str(), "r");
+  std::FILE* const shell = popen(("exec bash -c " + in_single_quotes("printf %s " + word)).c_str(), "r");
   std::string out;
   std::array<char, 256> piece{};
   while (const std::size_t n = fread(piece.data(), 1, piece.size(), shell)) out.append(piece.data(), n);
@@ -24,6 +30,18 @@ TEST(ShellWord, AShellTakesItAsItWas) {
     EXPECT_EQ(by_a_shell(ifog::shell_word(word)), word);
   EXPECT_EQ(ifog::shell_word(""), "''");
   EXPECT_EQ(ifog::shell_word("a/b_c-1.csv"), "a/b_c-1.csv");
+}
+
+// A name that a terminal would act on is printed so that it does not, and still is that name to a shell.
+TEST(ShellWord, WhatCannotBeSeenIsCopiedAllTheSame) {
+  for (const char* const word : {"a\x1b[31m.csv", "line\nend", "\n", "tab\there", "bell\a7", "it's \x01",
+                                 "back\\slash\x7f", "\xff\xfe", "turned\xe2\x80\xae", "° \x1b", "$HOME\r`id`",
+                                 "\x1b"
+                                 "1"}) {
+    const std::string printed = ifog::shell_word(word);
+    EXPECT_EQ(by_a_shell(printed), word) << printed;
+    EXPECT_EQ(ifog::printable(printed), printed) << "raw control characters in it";
+  }
 }
 
 TEST(ShellWord, AFileIsNoOption) {

@@ -227,6 +227,24 @@ TEST(Series, HasAPointABlockAndTheDeviationsOfTheError) {
   EXPECT_NEAR(series.after_adev_radps[0], 0.0, 1e-12);
 }
 
+// Captures whose clocks count from 1970 or from their own start: one behind the other, in the time of the
+// first.
+TEST(Series, RecordsFollowEachOtherWhateverTheirClocksCountFrom) {
+  for (const double start : {0.0, 1.7e9, -2e6}) {
+    BlockData data = white_with_temperature(400, 5);
+    data.grid.records = {{0, 250}, {250, 400}};
+    for (std::size_t b = 0; b < 400; ++b)
+      data.grid.time_s[b] = (b < 250 ? start : 3.0 * start - 50000.0) + static_cast<double>(b) + 0.5;
+    EvenError first, second;
+    first.before = first.written = std::vector<double>(250, 1.0);
+    second.before = second.written = std::vector<double>(150, 1.0);
+    KnownPeriodograms known;
+    const DiagnosisSeries series = series_of(data, {first, second}, {}, {}, {}, known);
+    ASSERT_EQ(series.time_s.size(), 400U);
+    for (std::size_t b = 0; b < 400; ++b) EXPECT_EQ(series.time_s[b], start + static_cast<double>(b) + 0.5);
+  }
+}
+
 // A constant that is off by sigma: after the alignment nothing of it is left; a slope that goes on is.
 TEST(Prediction, OfTheLongestRecordLeavesOutAlignedBias) {
   std::vector<double> time, rate;

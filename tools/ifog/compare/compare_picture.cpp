@@ -10,7 +10,7 @@
 #include "filters/units/field_units.h"
 #include "tools/report/picture.h"
 #include "tools/report/plot_data.h"
-#include "tools/report/text.h"
+#include "tools/report/time_axis.h"
 
 namespace ifog::tools {
 namespace {
@@ -37,9 +37,10 @@ AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const
 }
 
 // A curve in the units that it is shown in, in no more points than are drawn.
-report::Thinned drawn(const CaptureView& capture, double unit_s, std::span<const double> rate_radps) {
+report::Thinned drawn(const CaptureView& capture, const report::TimeAxis& axis,
+                      std::span<const double> rate_radps) {
   Samples time(capture.time_s), rate(rate_radps);
-  for (double& t : time) t = (static_cast<double>(capture.origin_s) + t) / unit_s;
+  for (double& t : time) t = axis(static_cast<double>(capture.origin_s) + t);
   for (double& r : rate) r *= 1.0 / kDegreePerHour;
   return report::thinned(time, rate);
 }
@@ -70,16 +71,14 @@ class AxisRows {
            std::size_t axis)
       : rules_(rules),
         prefix_(capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": "),
-        unit_(report::time_unit(capture.time_s.back() - capture.time_s.front())),
-        first_(capture.told_time_s(0) / unit_.seconds),
-        last_(capture.told_time_s(capture.size() - 1) / unit_.seconds),
-        raw_(drawn(capture, unit_.seconds, capture.rate_radps[axis])) {
+        time_(capture.told_time_s(0), capture.told_time_s(capture.size() - 1)),
+        raw_(drawn(capture, time_, capture.rate_radps[axis])) {
     const SampleClock clock = sample_clock(capture.time_s);
     raw_allan_ = allan(capture, capture.rate_radps[axis], clock);
     std::vector<const Samples*> outputs;
     for (std::size_t r = 0; r < rules.size(); ++r) {
       outputs.push_back(&result.denoised[r][axis]);
-      outputs_.push_back(drawn(capture, unit_.seconds, *outputs.back()));
+      outputs_.push_back(drawn(capture, time_, *outputs.back()));
       allan_.push_back(allan(capture, *outputs.back(), clock));
     }
     keep_range(rate_, outputs);
@@ -102,7 +101,7 @@ class AxisRows {
     rows.push_back({kRow, {{raw_chart(), 2.0}, {allan_chart("raw", nullptr, false), 1.0}}});
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool last = r + 1 == rules_.size();
-      Chart rate(prefix_ + rules_[r], "Denoised rate over time.", time_axis(last), rate_);
+      Chart rate(prefix_ + rules_[r], "Denoised rate over time.", time_.axis(last), rate_);
       rate.line_in_time(Role::kAfter, "", outputs_[r].x, outputs_[r].y);
       rows.push_back({last ? kRow + kNumbers : kRow,
                       {{std::move(rate), 2.0}, {allan_chart(rules_[r], &allan_[r], last), 1.0}}});
@@ -110,11 +109,8 @@ class AxisRows {
   }
 
  private:
-  [[nodiscard]] ChartAxis time_axis(bool last) const {
-    return {last ? std::string("time (") + unit_.name + ")" : "", false, first_, last_, last};
-  }
   [[nodiscard]] Chart raw_chart() const {
-    Chart chart(prefix_ + "raw, in a range of its own", "Raw rate over time.", time_axis(false),
+    Chart chart(prefix_ + "raw, in a range of its own", "Raw rate over time.", time_.axis(false),
                 {"°/h", false, {}, {}});
     chart.line_in_time(Role::kRaw, "", raw_.x, raw_.y);
     return chart;
@@ -133,8 +129,7 @@ class AxisRows {
 
   const std::vector<std::string>& rules_;
   std::string prefix_;
-  report::TimeUnit unit_;
-  double first_, last_;  // times
+  report::TimeAxis time_;
   report::Thinned raw_;
   std::vector<report::Thinned> outputs_;
   AllanCurve raw_allan_;

@@ -34,6 +34,7 @@
 #include "tools/ifog/denoise/offline_chain.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
+#include "tools/report/time_axis.h"
 
 namespace ifog::tools {
 namespace {
@@ -87,8 +88,8 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
 
 // A row an axis, one more where a model corrects it, with one time axis below all of them.
 void draw(const std::string& path, const DenoisedColumns& columns, const OfflineResult& result) {
-  const report::TimeUnit unit = report::time_unit(columns.time_s.back() - columns.time_s.front());
-  const std::vector<double> time = report::scaled(columns.time_s, 1.0 / unit.seconds);
+  const report::TimeAxis axis_of_time(columns.time_s.front(), columns.time_s.back());
+  const std::vector<double> time = axis_of_time(columns.time_s);
   std::vector<report::PictureRow> rows;
   const auto row = [&](const std::string& title, const char* noisy, const std::vector<double>& values,
                        const DenoisedAxis& axis, bool last) {
@@ -98,9 +99,8 @@ void draw(const std::string& path, const DenoisedColumns& columns, const Offline
     for (const double value : axis.compensated) range.take(value / kDegreePerHour, false);
     report::ChartAxis rate{"rate (°/h)", false, {}, {}};
     if (range.low < range.high) rate.low = range.low, rate.high = range.high;
-    report::Chart chart(
-        title, "The rate before and after the filter, over time.",
-        {last ? std::string("time (") + unit.name + ")" : "", false, time.front(), time.back(), last}, rate);
+    report::Chart chart(title, "The rate before and after the filter, over time.", axis_of_time.axis(last),
+                        rate);
     chart.line_in_time(report::Role::kRaw, noisy, time, report::scaled(values, 1.0 / kDegreePerHour));
     chart.line_in_time(report::Role::kAfter, "denoised", time,
                        report::scaled(axis.denoised, 1.0 / kDegreePerHour));

@@ -97,7 +97,7 @@ class SlurmEngine : public Engine {
 
   // Nothing of the manifest is in it. What a person typed is, each word in quotes.
   [[nodiscard]] std::string script(std::size_t first, const std::vector<std::size_t>& numbers) const {
-    std::string text = "#!/bin/sh\n#SBATCH --job-name=" + name_ + "\n#SBATCH --array=" + ranges_of(numbers);
+    std::string text = "#!/bin/bash\n#SBATCH --job-name=" + name_ + "\n#SBATCH --array=" + ranges_of(numbers);
     if (jobs_ > 0) text += "%" + std::to_string(jobs_);
     text +=
         "\n#SBATCH --ntasks=1\n#SBATCH --requeue\n#SBATCH --input=/dev/null\n#SBATCH --output=/dev/null\n"
