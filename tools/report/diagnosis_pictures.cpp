@@ -63,7 +63,7 @@ std::string time_picture(const Diagnosis& d) {
   double named = -1e300;
   for (const double burst : d.unexplained.times_s) {
     const bool room = burst - named > 0.1 * (s.time_s.back() - s.time_s.front());
-    chart.mark_x((burst - s.time_s.front()) / unit.seconds, room ? "burst" : "");
+    chart.mark_x((s.origin.since(burst) - s.time_s.front()) / unit.seconds, room ? "burst" : "");
     if (room) named = burst;
   }
   return figure_html(chart.svg(), "The error, " + block_words(s) + ", about its mean.");

@@ -10,6 +10,7 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -204,12 +205,11 @@ std::optional<Samples> repaired_channel(const Record& record, const RecordChanne
   if (away.empty() && stuck.empty()) return std::nullopt;
   if (away.empty()) values.assign(of.values.begin(), of.values.end());
   if (!away.empty()) remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
+  const auto told = [&](std::size_t i) { return told_time(record.origin.told(of.time_s[i])); };
   for (const Run& run : stuck) {
-    remarks.push_back(
-        channel.name + where +
-        text(" stands at %.6g from %.6g s to %.6g s and then jumps: taken for stuck, interpolated",
-             values[run.from], of.time_s[run.from] - record.time_s.front(),
-             of.time_s[run.to] - record.time_s.front()));
+    remarks.push_back(channel.name + where +
+                      text(" stands at %.6g from %s s to %s s and then jumps: taken for stuck, interpolated",
+                           values[run.from], told(run.from).c_str(), told(run.to).c_str()));
     interpolate(of, {run.from + 1, run.to}, values);
   }
   if (of.rows.empty()) return values;

@@ -11,6 +11,7 @@ namespace ifog {
 
 // Of one record; NaN where no sample is.
 struct EvenError {
+  RecordOrigin origin{};  // that start_s is counted from
   double start_s = 0.0;
   Samples before;         // rate - reference
   Samples rest;           // less ramps, and later lines: what effects are sought in

@@ -39,7 +39,7 @@ AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const
 // A curve in the units that it is shown in, in no more points than are drawn.
 report::Thinned drawn(const CaptureView& capture, double unit_s, std::span<const double> rate_radps) {
   Samples time(capture.time_s), rate(rate_radps);
-  for (double& t : time) t = (static_cast<double>(capture.origin_s) + t) / unit_s;
+  for (double& t : time) t = capture.origin.told(t) / unit_s;
   for (double& r : rate) r *= 1.0 / kDegreePerHour;
   return report::thinned(time, rate);
 }

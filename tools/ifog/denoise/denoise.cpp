@@ -16,6 +16,7 @@
 #include "filters/estimator/smoother.h"
 #include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight_input.h"
@@ -170,10 +171,10 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   tell_unusable(options.capture, rows, result);
   if (result.not_as_published_from_s && options.config.empty())
     warn(
-        "%s: from %.3f s on, until the filter has settled, this need not be what was published: the "
+        "%s: from %s s on, until the filter has settled, this need not be what was published: the "
         "recording "
         "lacks something there\n",
-        options.capture.c_str(), *result.not_as_published_from_s);
+        options.capture.c_str(), told_time(rows.origin().told(*result.not_as_published_from_s)).c_str());
   say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
       gaps_in_words(result.counts).c_str());
   if (result.runs > 1 || result.exchanges > 0)
@@ -265,7 +266,7 @@ void run(DenoiseOptions options) {
   } else {
     LongTable table = options.input.read_long(capture);
     keep_usable_axes(table, options.capture);
-    rows.count_from(table.origin_s);
+    rows.count_from(table.origin);
     OfflineSettings of = settings();
     tell_other_rate(options, of.sensor.nominal_rate_hz, table);
     const std::string model = of.model ? of.model->identity() : "";
@@ -332,9 +333,8 @@ void add_denoise(CLI::App& app) {
                    "warm_up is not corrected")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
-  command->add_option("--from", options->part.from_s,
-                      "Write nothing before this time, s; filter from the beginning");
-  command->add_option("--to", options->part.to_s, "Write nothing from this time on, s");
+  options->part.add_to(*command, "Write nothing before this time, s; filter from the beginning",
+                       "Write nothing from this time on, s");
   command->add_option("--json", options->json, "Summary as JSON")->type_name("FILE");
   command->add_option("--plot", options->picture, "Picture, .svg or .png")
       ->check(report::wrong_picture_name, "")
