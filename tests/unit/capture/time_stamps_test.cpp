@@ -191,7 +191,8 @@ TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
           ASSERT_EQ(got.time_s[i],
                     static_cast<double>(ns - got.origin.s * 1'000'000'000 - got.origin.ns) / 1e9)
               << unit.name << " row " << i;
-          if (start_ns != 5'000'000) ASSERT_EQ(got.time_s[i], from_0.time_s[i]) << unit.name << " row " << i;
+          if (start_ns == 5'000'000) continue;
+          ASSERT_EQ(got.time_s[i], from_0.time_s[i]) << unit.name << " row " << i;
         }
       }
 }

@@ -8,6 +8,7 @@
 #include "filters/allan/deviation.h"
 #include "filters/allan/stretches.h"
 #include "filters/units/field_units.h"
+#include "tools/ifog/captures/time_axis.h"
 #include "tools/report/picture.h"
 #include "tools/report/plot_data.h"
 #include "tools/report/text.h"
@@ -39,7 +40,7 @@ AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const
 // A curve in the units that it is shown in, in no more points than are drawn.
 report::Thinned drawn(const CaptureView& capture, double unit_s, std::span<const double> rate_radps) {
   Samples time(capture.time_s), rate(rate_radps);
-  for (double& t : time) t = capture.origin.told(t) / unit_s;
+  for (double& t : time) t /= unit_s;
   for (double& r : rate) r *= 1.0 / kDegreePerHour;
   return report::thinned(time, rate);
 }
@@ -71,8 +72,9 @@ class AxisRows {
       : rules_(rules),
         prefix_(capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": "),
         unit_(report::time_unit(capture.time_s.back() - capture.time_s.front())),
-        first_(capture.told_time_s(0) / unit_.seconds),
-        last_(capture.told_time_s(capture.size() - 1) / unit_.seconds),
+        origin_(capture.origin),
+        first_(capture.time_s.front() / unit_.seconds),
+        last_(capture.time_s.back() / unit_.seconds),
         raw_(drawn(capture, unit_.seconds, capture.rate_radps[axis])) {
     const SampleClock clock = sample_clock(capture.time_s);
     raw_allan_ = allan(capture, capture.rate_radps[axis], clock);
@@ -111,7 +113,7 @@ class AxisRows {
 
  private:
   [[nodiscard]] ChartAxis time_axis(bool last) const {
-    return {last ? std::string("time (") + unit_.name + ")" : "", false, first_, last_, last};
+    return {last ? time_axis_label(origin_, unit_.name) : "", false, first_, last_, last};
   }
   [[nodiscard]] Chart raw_chart() const {
     Chart chart(prefix_ + "raw, in a range of its own", "Raw rate over time.", time_axis(false),
@@ -134,7 +136,8 @@ class AxisRows {
   const std::vector<std::string>& rules_;
   std::string prefix_;
   report::TimeUnit unit_;
-  double first_, last_;  // times
+  TimeOrigin origin_;
+  double first_, last_;  // times since it
   report::Thinned raw_;
   std::vector<report::Thinned> outputs_;
   AllanCurve raw_allan_;

@@ -23,6 +23,7 @@
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/reading_progress.h"
+#include "tools/ifog/captures/time_axis.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
@@ -87,7 +88,8 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
 }
 
 // A row an axis, one more where a model corrects it, with one time axis below all of them.
-void draw(const std::string& path, const DenoisedColumns& columns, const OfflineResult& result) {
+void draw(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
+          const OfflineResult& result) {
   const report::TimeUnit unit = report::time_unit(columns.time_s.back() - columns.time_s.front());
   const std::vector<double> time = report::scaled(columns.time_s, 1.0 / unit.seconds);
   std::vector<report::PictureRow> rows;
@@ -101,7 +103,7 @@ void draw(const std::string& path, const DenoisedColumns& columns, const Offline
     if (range.low < range.high) rate.low = range.low, rate.high = range.high;
     report::Chart chart(
         title, "The rate before and after the filter, over time.",
-        {last ? std::string("time (") + unit.name + ")" : "", false, time.front(), time.back(), last}, rate);
+        {last ? time_axis_label(origin, unit.name) : "", false, time.front(), time.back(), last}, rate);
     chart.line_in_time(report::Role::kRaw, noisy, time, report::scaled(values, 1.0 / kDegreePerHour));
     chart.line_in_time(report::Role::kAfter, "denoised", time,
                        report::scaled(axis.denoised, 1.0 / kDegreePerHour));
@@ -279,7 +281,7 @@ void run(DenoiseOptions options) {
   rows.finish(options.capture);
   tell(options, rows, result);
   if (!options.json.empty()) write_json(options.json, summary(options, rows, result));
-  if (!options.picture.empty()) draw(options.picture, rows.columns(), result);
+  if (!options.picture.empty()) draw(options.picture, rows.columns(), rows.origin(), result);
 }
 
 }  // namespace

@@ -131,7 +131,6 @@ void DenoisedRows::finish(const std::string& name) {
   }
   flush();
   file_->finish();
-  for (double& time : columns_.time_s) time = origin_.told(time);
 }
 
 }  // namespace ifog::tools
