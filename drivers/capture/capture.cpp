@@ -24,6 +24,7 @@ Capture capture_of(Table table, const std::string& path) {
     capture.comments.emplace_back(rest.substr(0, end));
     rest.remove_prefix(end + 1);
   }
+  capture.origin = table.origin;
   capture.time_s = std::move(table.time_s);
   capture.axes = shape.axes;
   capture.rate_radps.resize(shape.axes.size());
@@ -106,7 +107,7 @@ void write_capture(const Capture& capture, const std::string& path) {
   for (std::size_t row = 0; row < capture.size(); row += kRows) {
     for (std::size_t c = 0; c < columns.size(); ++c)
       piece[c] = std::span(*columns[c].second).subspan(row, std::min(kRows, capture.size() - row));
-    file.rows(piece);
+    file.rows(piece, capture.origin);
   }
   file.finish();
 }

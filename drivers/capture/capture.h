@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,6 +14,7 @@
 #include "drivers/capture/csv_layout.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/capture/time_stamps.h"
 
 namespace ifog {
 
@@ -34,7 +34,7 @@ struct Capture {
   std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
   std::vector<std::string> faults;                        // cells taken for missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
-  std::int64_t origin_s = 0;  // that time_s is counted from: not 0 in the pieces of a long table only
+  TimeOrigin origin;                       // that time_s is counted from
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
@@ -42,6 +42,7 @@ struct Capture {
 // The columns as they stand in the file, whatever they are called; `ifog denoise` writes such a file without
 // a rate.
 struct Table : RowNotes {
+  TimeOrigin origin;  // that time_s is counted from
   std::vector<double> time_s;
   std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
 };

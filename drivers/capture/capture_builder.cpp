@@ -44,9 +44,10 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
 }
 
 // Whatever a device says: what has no room wraps, and is a clock that jumps.
-std::int64_t ns_since(std::int64_t origin_s, std::int64_t time_ns) {
+std::int64_t ns_since(const TimeOrigin& origin, std::int64_t time_ns) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
-                                   static_cast<std::uint64_t>(origin_s) * 1'000'000'000U);
+                                   static_cast<std::uint64_t>(origin.s) * 1'000'000'000U -
+                                   static_cast<std::uint64_t>(origin.ns));
 }
 
 }  // namespace
@@ -79,8 +80,8 @@ void CaptureBuilder::choose_clock(const ifog_sample& sample) {
   const bool rate_known = description_.nominal_rate_hz > 0.0;
   if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) {
     clock_ = Clock::device;
-    device_from_s_ = time_origin_s(sample.device_time_ns);
-    if (taken_ + capture_.size() == 0) capture_.origin_s = device_from_s_;
+    device_from_ = TimeOrigin::of(sample.device_time_ns);
+    if (taken_ + capture_.size() == 0) capture_.origin = device_from_;
   } else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known) {
     clock_ = Clock::counter;
   } else if (sample.arrival_ns != 0) {
@@ -121,7 +122,7 @@ double CaptureBuilder::seconds(const ifog_sample& sample) const {
       1e9;  // divided by, so that the result is the double nearest to the decimal time
   switch (clock_) {
     case Clock::device:
-      return static_cast<double>(ns_since(device_from_s_, sample.device_time_ns)) / kNsPerSecond + offset_s_;
+      return static_cast<double>(ns_since(device_from_, sample.device_time_ns)) / kNsPerSecond + offset_s_;
     case Clock::arrival:
       return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
     default:
@@ -156,14 +157,17 @@ void CaptureBuilder::begin_anew(const ifog_sample& sample) {
 }
 
 void CaptureBuilder::refuse(double now) const {
-  const auto origin = static_cast<double>(capture_.origin_s);
+  const auto told = [this](double time_s) {
+    std::string text;
+    append_time(text, capture_.origin, time_s);
+    return text;
+  };
   throw std::runtime_error("sample " + std::to_string(taken_ + capture_.size() + 1) + ": its time is " +
-                           std::to_string(origin + now) + " s by " +
+                           told(now) + " s by " +
                            (clock_ == Clock::device    ? "the device's clock"
                             : clock_ == Clock::counter ? "its counter"
                                                        : "its arrival") +
-                           ", expected more than the " + std::to_string(origin + last_s_) +
-                           " s of the sample before");
+                           ", expected more than the " + told(last_s_) + " s of the sample before");
 }
 
 void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double period) {
@@ -276,7 +280,7 @@ std::vector<std::string> CaptureBuilder::names() const {
 void CaptureBuilder::next_rows(RowBlock& rows) {
   taken_ += capture_.size();
   rows.columns.clear();
-  rows.origin_s = capture_.origin_s;
+  rows.origin = capture_.origin;
   rows.time_s = std::exchange(capture_.time_s, {});
   for (std::vector<double>& rate : capture_.rate_radps) rows.columns.push_back(std::exchange(rate, {}));
   for (CaptureColumn& channel : capture_.channels) rows.columns.push_back(std::exchange(channel.values, {}));
@@ -284,8 +288,6 @@ void CaptureBuilder::next_rows(RowBlock& rows) {
 
 Capture CaptureBuilder::finish() {
   if (capture_.time_s.empty()) throw std::runtime_error("holds no sample that the driver understands");
-  for (double& time : capture_.time_s) time += static_cast<double>(capture_.origin_s);
-  capture_.origin_s = 0;
   for (std::size_t i = capture_.axes.size(); i-- > 0;) {
     if (!never_known(capture_.rate_radps[i])) continue;
     capture_.dead_axes.push_back(capture_.axes[i]);

@@ -84,7 +84,7 @@ class CaptureBuilder {
   ClockSteps clock_steps_;
   std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
-  std::int64_t device_from_s_ = 0;  // of the device's clock, that its times are counted from
+  TimeOrigin device_from_;  // of the device's clock, that its times are counted from
   std::size_t missing_ = 0, repeated_ = 0, impossible_ = 0, at_full_scale_ = 0, implausible_ = 0;
   std::vector<Measurable> channel_range_;
   std::size_t taken_ = 0;  // rows, by next_rows()

@@ -66,8 +66,7 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   const ifog_description& d = driver.description();
   rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
   timed_ = d.has_device_time != 0 || driver.takes_can();
-  const double first_s =
-      capture.size() > 0 ? static_cast<double>(capture.origin_s) + capture.time_s.front() : 0;
+  const double first_s = capture.size() > 0 ? capture.origin.told(capture.time_s.front()) : 0;
   if (timed_ && first_s < 0.0) {
     later_s_ = static_cast<std::int64_t>(std::ceil(-first_s));
     notices_.push_back("begins at " + seven_digits(first_s) +
@@ -128,7 +127,8 @@ ifog_sample CaptureEncoder::next_sample() {
     told_s_ += static_cast<double>(shown) / rate_hz_;
   }
 
-  sample_.arrival_ns = (capture_.origin_s + later_s_) * kSecond_ns + std::llround(now * 1e9);
+  sample_.arrival_ns =
+      (capture_.origin.s + later_s_) * kSecond_ns + capture_.origin.ns + std::llround(now * 1e9);
   sample_.device_time_ns = sample_.arrival_ns;
   sample_.flags = IFOG_SAMPLE_DEVICE_TIME;
   if (d.sequence_modulus != 0) {
@@ -168,9 +168,9 @@ bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const 
   ifog_sample sample = next_sample();
   const ifog_description& d = driver_.description();
   const auto refuse = [&](const std::runtime_error& error) {
-    throw std::runtime_error("at " +
-                             std::to_string(static_cast<double>(capture_.origin_s) + capture_.time_s[row_]) +
-                             " s: " + error.what());
+    std::string at;
+    append_time(at, capture_.origin, capture_.time_s[row_]);
+    throw std::runtime_error("at " + at + " s: " + error.what());
   };
   try {
     (driver_.*encode)(sample, out);

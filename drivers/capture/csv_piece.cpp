@@ -128,10 +128,10 @@ std::optional<std::string_view> first_time(std::string_view text, const CsvHeade
 }
 
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
-                         const TimeStamps& stamps, const std::string& path, std::size_t lines_before,
-                         double time_before) {
+                         const TimeStamps& stamps, double unit_s, const std::string& path,
+                         std::size_t lines_before, double time_before) {
   CsvPiece piece;
-  piece.rows.origin_s = stamps.origin_s();
+  piece.rows.origin = stamps.origin();
   Rows rows(piece, header, separator, stamps, path);
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
@@ -164,7 +164,8 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char se
     const double before = times.size() > 1 ? times[times.size() - 2] : time_before;
     if (times.back() <= before)
       fail_at(path, lines.number(),
-              printable(time.name) + " is " + printable(said()) + ", expected more than in the row before");
+              printable(time.name) + " is " + printable(said()) + ", " +
+                  expected_to_go_on((before - times.back()) * unit_s));
   }
   piece.lines = lines.number() - lines_before;
   return piece;

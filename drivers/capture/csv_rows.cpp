@@ -143,7 +143,7 @@ void CsvRows::in_order(TextPieces& pieces, std::string text) {
     count_from_first(piece.text);
     const auto parse = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
       try {
-        return parse_csv_piece(piece.text, header_, layout_.separator, stamps, path_, 0);
+        return parse_csv_piece(piece.text, header_, layout_.separator, stamps, unit_s(), path_, 0);
       } catch (const std::runtime_error&) {
         return std::nullopt;
       }
@@ -164,8 +164,8 @@ void CsvRows::deliver(Piece& piece) {
   std::optional<CsvPiece> parsed = piece.parsed.get();
   if (!parsed || (parsed->rows.size() > 0 && parsed->rows.time_s.front() <= last_)) {
     // Here it is known where the piece stands, and so what to say.
-    parsed = parse_csv_piece(piece.text, header_, layout_.separator, stamps_.value_or(TimeStamps()), path_,
-                             lines_, last_);
+    parsed = parse_csv_piece(piece.text, header_, layout_.separator, stamps_.value_or(TimeStamps()), unit_s(),
+                             path_, lines_, last_);
   }
   piece.text = {};
   merge(*parsed);

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "drivers/capture/time_stamps.h"
-
 namespace ifog {
 namespace {
 
@@ -37,13 +35,13 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
   file_.write(text_);
 }
 
-void CsvWriter::rows(std::span<const std::span<const double>> columns, std::int64_t origin_s) {
+void CsvWriter::rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin) {
   text_.clear();
   for (std::size_t row = 0; row < columns.front().size(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c != 0) text_ += ',';
-      if (c == 0 && origin_s != 0)
-        append_time(text_, origin_s, columns[c][row]);
+      if (c == 0 && origin != TimeOrigin{})
+        append_time(text_, origin, columns[c][row]);
       else
         append(text_, columns[c][row]);
     }

@@ -2,12 +2,12 @@
 // A capture's text, written while its rows come.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/capture/time_stamps.h"
 
 namespace ifog {
 
@@ -17,9 +17,9 @@ class CsvWriter {
   // comments: as in RowNotes. Throws as OutputFile does, all of it.
   CsvWriter(const std::string& path, const std::string& comments, const std::vector<std::string>& names);
 
-  // By column, in the order of the names, all of one length. origin_s: that the first, a time, is counted
+  // By column, in the order of the names, all of one length. origin: that the first, a time, is counted
   // from; with one it has as many digits as tell it from other doubles since then.
-  void rows(std::span<const std::span<const double>> columns, std::int64_t origin_s = 0);
+  void rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin = {});
   // Without it a regular file stays as it was.
   void finish() { file_.finish(); }
 

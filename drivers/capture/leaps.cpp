@@ -78,7 +78,7 @@ void Leaps::look_at(std::size_t r) {
 
 void Leaps::hand_on(std::size_t rows) {
   RowBlock kept;
-  kept.origin_s = held_.origin_s;
+  kept.origin = held_.origin;
   kept.columns.resize(held_.columns.size());
   const auto cut = [rows](std::vector<double>& from, std::vector<double>& to) {
     to.assign(from.begin() + static_cast<std::ptrdiff_t>(rows), from.end());

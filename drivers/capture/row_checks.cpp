@@ -2,6 +2,8 @@
 #include "drivers/capture/row_checks.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "drivers/capture/column_names.h"
@@ -34,6 +36,24 @@ std::string what_no_sensor_measures(const std::string& name, const std::string& 
 
 std::string in_row(std::size_t row) { return " in row " + std::to_string(row + 1); }
 
+std::string expected_to_go_on(double back_s) {
+  struct Round {
+    double length_s;
+    const char* what;
+  };
+  constexpr double kTwo32 = 4294967296.0, kAbout_s = 2.0;
+  constexpr std::array<Round, 4> kRounds{{{604'800.0, "a GPS week"},
+                                          {86'400.0, "a day"},
+                                          {kTwo32 * 1e-6, "a count of µs in 32 bits"},
+                                          {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
+  std::string text = "expected more than in the row before";
+  for (const Round& round : kRounds)
+    if (std::abs(back_s - round.length_s) < kAbout_s)
+      text += std::string("; it looks as if ") + round.what +
+              " began anew there: " + shortest(round.length_s) + " s to be added from there on";
+  return text;
+}
+
 RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns,
                      RowSink& sink, RowNotes& notes)
     : path_(path),
@@ -48,11 +68,12 @@ RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vect
 
 void RowChecks::take(RowBlock& rows, const ExactSteps& steps) {
   if (layout_.chooses()) convert(rows, layout_, steps, notes_, path_, rows_, last_s_);
+  look_for_set_clock(rows.time_s);
   last_s_ = rows.time_s.back();
   times_.take(rows.time_s);
   rows_ += rows.size();
   if (!all_) return leaps_.take(rows);
-  all_->origin_s = rows.origin_s;
+  all_->origin = rows.origin;
   all_->columns.resize(rows.columns.size());
   all_->time_s.insert(all_->time_s.end(), rows.time_s.begin(), rows.time_s.end());
   for (std::size_t c = 0; c < rows.columns.size(); ++c)
@@ -67,8 +88,30 @@ void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known,
   }
   leaps_.finish();
   tell_leaps();
+  tell_set_clock();
   if (const auto notice = times_.notice(path_); notice && !layout_.time && !unit_known)
     notes_.notices.push_back(*notice);
+}
+
+void RowChecks::look_for_set_clock(const std::vector<double>& time_s) {
+  constexpr double kYear_s = 365.0 * 86'400.0;
+  double before_s = rows_ > 0 ? last_s_ : time_s.front();
+  for (std::size_t row = 0; row < time_s.size() && !clock_set_; ++row) {
+    const double step_s = time_s[row] - std::exchange(before_s, time_s[row]);
+    if (step_s < kYear_s) continue;
+    clock_set_ = rows_ + row;
+    clock_set_by_s_ = step_s;
+  }
+}
+
+void RowChecks::tell_set_clock() {
+  if (!clock_set_) return;
+  const std::size_t line = notes_.line_of_row(*clock_set_);
+  notes_.notices.push_back(
+      path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": its time goes on " +
+      std::to_string(std::llround(clock_set_by_s_)) + " s later" + (line == 0 ? in_row(*clock_set_) : "") +
+      ", as where a clock is set or recordings of two are put together: taken for a hole, "
+      "behind which times are coarser");
 }
 
 void RowChecks::told(std::size_t row, const std::string& what) {

@@ -36,6 +36,9 @@ std::string what_no_sensor_measures(const std::string& name, const std::string& 
                                     const Measurable& range);
 // " in row 3", of a file that has no lines.
 std::string in_row(std::size_t row);
+// What was expected of a time that is back_s before the one in the row before, with what begins anew at such
+// a step.
+std::string expected_to_go_on(double back_s);
 
 class RowChecks {
  public:
@@ -58,6 +61,8 @@ class RowChecks {
  private:
   void tell_impossible(const FileColumn& column, const ImpossibleValues& found);
   void tell_leaps();
+  void look_for_set_clock(const std::vector<double>& time_s);
+  void tell_set_clock();
   void told(std::size_t row, const std::string& what);
 
   const std::string& path_;
@@ -69,7 +74,9 @@ class RowChecks {
   std::optional<RowBlock> all_;  // where angles become rates
   WholeTimes times_;
   std::size_t rows_ = 0;
-  double last_s_ = 0.0;  // time of the row before, once there is one
+  double last_s_ = 0.0;                   // time of the row before, once there is one
+  std::optional<std::size_t> clock_set_;  // the first row behind a step that no recording has
+  double clock_set_by_s_ = 0.0;
 };
 
 }  // namespace ifog

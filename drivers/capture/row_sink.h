@@ -4,11 +4,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "drivers/capture/time_stamps.h"
 
 namespace ifog {
 
@@ -19,7 +20,7 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 struct RowBlock {
   std::vector<double> time_s;                // strictly increasing, within and from block to block; never NaN
   std::vector<std::vector<double>> columns;  // in the order of the names, each as long as time_s
-  std::int64_t origin_s = 0;  // what time_s is counted from, the same in all blocks (time_stamps.h)
+  TimeOrigin origin{};                         // what time_s is counted from, the same in all blocks
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };

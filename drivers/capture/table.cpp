@@ -23,7 +23,7 @@ class TableSink final : public RowSink {
   }
   void take(RowBlock& rows) override {
     if (table_.time_s.empty() && bytes_ > kCsvPiece) reserve(rows.size());
-    for (double& time : rows.time_s) time += static_cast<double>(rows.origin_s);
+    table_.origin = rows.origin;
     table_.time_s.insert(table_.time_s.end(), rows.time_s.begin(), rows.time_s.end());
     for (std::size_t c = 0; c < rows.columns.size(); ++c)
       table_.columns[c].values.insert(table_.columns[c].values.end(), rows.columns[c].begin(),

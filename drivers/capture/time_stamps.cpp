@@ -6,11 +6,14 @@
 #include <charconv>
 #include <cmath>
 
+#include "drivers/ifog/decimal.h"
+
 namespace ifog {
 namespace {
 
 constexpr int kExactPower = 15;  // ten to it, and a whole number below 2^53, are doubles
 constexpr double kWholeDoubles = 9007199254740992.0;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kMostWhole = 4'600'000'000'000'000'000;  // the differences of two are 64 bits
 
 constexpr std::array<std::int64_t, 19> kTen = [] {
@@ -65,45 +68,85 @@ void complement(std::string& digits) {
   digits.back() = static_cast<char>(digits.back() + 1);
 }
 
+// To digits behind the point; whether that makes one before it. No zeros stay at their end.
+bool add_ns(std::string& digits, std::int64_t ns) {
+  constexpr std::size_t kOfNs = 9;
+  if (ns == 0) return false;
+  if (digits.size() < kOfNs) digits.resize(kOfNs, '0');
+  std::int64_t carry = ns;
+  for (std::size_t i = kOfNs; i-- > 0; carry /= 10) {
+    carry += digits[i] - '0';
+    digits[i] = static_cast<char>('0' + carry % 10);
+  }
+  digits.erase(digits.find_last_not_of('0') + 1);
+  return carry > 0;
+}
+
 }  // namespace
 
-std::int64_t time_origin_s(std::int64_t first_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  if (std::abs(static_cast<double>(first_ns)) * 1e-9 < kFineTimes_s) return 0;
-  return first_ns / kSecond - (first_ns % kSecond < 0 ? 1 : 0);
+TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
+  if (std::abs(static_cast<double>(first_ns)) * 1e-9 < kFineTimes_s) return {};
+  const std::int64_t ns = first_ns - floor_to(first_ns, kNsPerSecond);
+  return {first_ns / kNsPerSecond - (first_ns % kNsPerSecond < 0 ? 1 : 0), ns};
+}
+
+std::optional<SaidTime> SaidTime::parse(std::string_view text) {
+  if (Plain time; read_plain(text, time))
+    return SaidTime{static_cast<double>(time.whole),
+                    static_cast<double>(time.fraction) / static_cast<double>(ten_to(time.decimals))};
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = read_decimal(text.data(), end, value);
+  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
+  return SaidTime{value, 0.0};
 }
 
 TimeStamps::TimeStamps(std::string_view first, double unit_s) {
   Plain time;
   if (!read_plain(first, time) || std::abs(static_cast<double>(time.whole)) * unit_s < kFineTimes_s) return;
   const std::int64_t below = time.whole - (time.fraction < 0 ? 1 : 0);
-  if (const std::int64_t of_second = whole(1.0 / unit_s); of_second != 0) {
-    origin_ = floor_to(below, of_second);
-    origin_s_ = origin_ / of_second;
+  const auto part = std::find(kTen.begin(), kTen.begin() + 10, whole(1.0 / unit_s));  // of a second: a unit
+  if (part != kTen.begin() + 10) {
+    const std::int64_t of_second = *part, ns_a_unit = kNsPerSecond / of_second;
+    whole_ = below;
+    decimals_ = 9 - static_cast<int>(part - kTen.begin());  // of a ns in this unit
+    const std::int64_t fraction = time.fraction < 0 ? ten_to(time.decimals) + time.fraction : time.fraction;
+    fraction_ = time.decimals > decimals_ ? fraction / ten_to(time.decimals - decimals_)
+                                          : fraction * ten_to(decimals_ - time.decimals);
+    origin_.s = floor_to(below, of_second) / of_second;
+    origin_.ns = (below - floor_to(below, of_second)) * ns_a_unit + fraction_;
+    for (; decimals_ > 0 && fraction_ % 10 == 0; --decimals_) fraction_ /= 10;
   } else if (const std::int64_t seconds = whole(unit_s);
              seconds != 0 && std::abs(below) < kMostWhole / seconds) {
-    origin_ = below;
-    origin_s_ = below * seconds;
+    whole_ = below;
+    origin_.s = below * seconds;
   }
+}
+
+double TimeStamps::beyond() const {
+  return static_cast<double>(fraction_) / static_cast<double>(ten_to(decimals_));
 }
 
 bool TimeStamps::since(std::string_view text, double& value, int& decimals) const {
   Plain time;
   if (!read_plain(text, time)) return false;
-  decimals = std::max(decimals, time.decimals);
-  const std::int64_t since = time.whole - origin_;
-  const auto ten = static_cast<double>(ten_to(time.decimals));
+  const int behind = std::max(time.decimals, decimals_);
+  decimals = std::max(decimals, behind);
+  const std::int64_t since = time.whole - whole_;
+  const std::int64_t fraction =
+      time.fraction * ten_to(behind - time.decimals) - fraction_ * ten_to(behind - decimals_);
+  const auto ten = static_cast<double>(ten_to(behind));
   // Then the one division is all that rounds.
-  if (time.decimals <= kExactPower && std::abs(static_cast<double>(since)) < kWholeDoubles / ten - 1.0) {
-    value = static_cast<double>(since * ten_to(time.decimals) + time.fraction) / ten;
+  if (behind <= kExactPower && std::abs(static_cast<double>(since)) < kWholeDoubles / ten - 2.0) {
+    value = static_cast<double>(since * ten_to(behind) + fraction) / ten;
     return true;
   }
-  if (origin_ == 0) return false;
-  value = static_cast<double>(since) + static_cast<double>(time.fraction) / ten;
+  if (origin_ == TimeOrigin{}) return false;
+  value = static_cast<double>(since) + static_cast<double>(fraction) / ten;
   return true;
 }
 
-void append_time(std::string& out, std::int64_t origin_s, double since_s) {
+void append_time(std::string& out, const TimeOrigin& origin, double since_s) {
   const double below_s = std::floor(since_s);
   std::array<char, 400> text{};
   // The digits of a number that is not negative, and of one that is turned round.
@@ -113,7 +156,8 @@ void append_time(std::string& out, std::int64_t origin_s, double since_s) {
   char* const point = std::find(text.data(), end, '.');
   std::string fraction(point == end ? end : point + 1, end);
   if (since_s < 0.0 && !fraction.empty()) complement(fraction);
-  const std::int64_t seconds = origin_s + static_cast<std::int64_t>(below_s);
+  const std::int64_t seconds =
+      origin.s + static_cast<std::int64_t>(below_s) + (add_ns(fraction, origin.ns) ? 1 : 0);
   if (seconds >= 0 || fraction.empty()) {
     out += std::to_string(seconds);
   } else {

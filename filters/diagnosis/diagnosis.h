@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/record.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/noise_change.h"
 
@@ -99,6 +100,7 @@ struct ChannelDelay {
 // What a report draws. Decimated to a few thousand points.
 struct DiagnosisSeries {
   std::vector<double> time_s, before_radps, after_radps;  // block means of the error
+  RecordOrigin origin;                                    // that time_s is counted from
   std::vector<std::string> names;                         // one entry an effect
   std::vector<std::vector<double>> contribution_radps,
       channel;  // by effect, at time_s; channel empty without one

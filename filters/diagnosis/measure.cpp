@@ -52,12 +52,12 @@ std::vector<Candidate> events_named(const BlockData& data, const Effect& effect)
   const BlockGrid& grid = data.grid;
   Candidate event;
   event.form = *form_named(effect.form);
-  event.time_s = parameter(effect, "time_s");
   event.frequency_hz = parameter(effect, "frequency_hz");
   std::vector<Candidate> found;
   for (event.record = 0; event.record < grid.records.size(); ++event.record) {
     const BlockRange& record = grid.records[event.record];
     const bool step = event.form == Form::kStep;
+    event.time_s = step ? grid.origin_of(event.record).since(parameter(effect, "time_s")) : 0.0;
     if (step && (event.time_s <= grid.time_s[record.first] || event.time_s >= grid.time_s[record.end - 1]))
       continue;
     if (!step && event.frequency_hz * grid.block_s > 0.5) continue;  // the blocks average it away

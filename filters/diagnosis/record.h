@@ -18,6 +18,15 @@ struct RecordChannel {
   double period = 0.0;             // of an angle whose wraps were taken out, in its unit; 0: none
 };
 
+// What a record's times are counted from, where they are large numbers: the sum of the two.
+struct RecordOrigin {
+  double whole_s = 0.0, beyond_s = 0.0;
+
+  // A time of the record as its capture says it, and back.
+  [[nodiscard]] double told(double time_s) const { return whole_s + (beyond_s + time_s); }
+  [[nodiscard]] double since(double told_s) const { return told_s - whole_s - beyond_s; }
+};
+
 struct Record {
   std::string name;
   std::span<const double> time_s;             // strictly increasing
@@ -28,6 +37,7 @@ struct Record {
   // Rates of the same sensor, by the names of their columns: it rests when all of them do.
   std::vector<RecordChannel> other_axes;
   std::vector<Stretch> at_rest;  // samples, in order; empty: not looked for, all
+  RecordOrigin origin;           // that time_s is counted from
 };
 
 // Of the channel of that name; empty when the record has none.

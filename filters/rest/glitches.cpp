@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "filters/units/told_time.h"
+
 namespace ifog {
 namespace {
 
@@ -112,11 +114,11 @@ std::string in_words(const Glitches& glitches, const std::function<double(std::s
   const bool one = glitches.count == 1;
   std::array<char, 200> text{};
   std::snprintf(text.data(), text.size(),
-                "%zu sample%s away and back (%sat %.6g s, up to %.2g times the noise): a fault of the logger "
+                "%zu sample%s away and back (%sat %s s, up to %.2g times the noise): a fault of the logger "
                 "or the line, which "
                 "these figures take for noise",
-                glitches.count, one ? " leaps" : "s leap", one ? "" : "the first ", time_s(glitches.first),
-                glitches.most_times);
+                glitches.count, one ? " leaps" : "s leap", one ? "" : "the first ",
+                told_time(time_s(glitches.first)).c_str(), glitches.most_times);
   return text.data();
 }
 

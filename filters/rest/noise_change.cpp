@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "filters/rest/held.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -356,15 +357,15 @@ std::string in_words(std::span<const NoiseChange> changes) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const NoiseChange& change = changes[i];
     std::array<char, 160> text{};
+    const std::string from = told_time(change.from_s), to = told_time(change.to_s);
     words += i > 0 ? "," : "";
     if (!(change.times > 0.0)) {
-      std::snprintf(text.data(), text.size(), " it stands still in %.6g … %.6g s", change.from_s,
-                    change.to_s);
+      std::snprintf(text.data(), text.size(), " it stands still in %s … %s s", from.c_str(), to.c_str());
       words += text.data();
       continue;
     }
-    std::snprintf(text.data(), text.size(), " %.2g times as loud in %.6g … %.6g s", change.times,
-                  change.from_s, change.to_s);
+    std::snprintf(text.data(), text.size(), " %.2g times as loud in %s … %s s", change.times, from.c_str(),
+                  to.c_str());
     words += text.data();
     if (change.range_hz.low > 0.0)
       std::snprintf(text.data(), text.size(), " (%.2g to %.3g Hz)", change.range_hz.low,

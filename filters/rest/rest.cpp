@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/units/told_time.h"
+
 namespace ifog {
 namespace {
 
@@ -230,9 +232,8 @@ std::string in_words(const Rest& rest, double period_s, double first_s) {
   std::sort(longest.begin(), longest.end(),
             [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
   for (std::size_t i = 0; i < longest.size(); ++i) {
-    std::snprintf(text.data(), text.size(), "%s %.4g … %.4g s", i > 0 ? "," : "",
-                  first_s + seconds(longest[i].begin), first_s + seconds(longest[i].end));
-    words += text.data();
+    words += (i > 0 ? ", " : " ") + told_time(first_s + seconds(longest[i].begin)) + " … " +
+             told_time(first_s + seconds(longest[i].end)) + " s";
   }
   if (rest.at_rest.empty()) words += " nowhere";
   if (rest.at_rest.size() > kShown)

@@ -57,7 +57,7 @@ void run(const Arguments& a) {
                              (axes == 1 ? "none, the sensor has one axis" : "x, y or z"));
   AllanOptions options;
   options.axis = a.axis;
-  options.part.from_s = a.from_s;
+  options.part.from.whole_s = a.from_s;
   options.keep_motion = true;  // what was denoised is shown, moving or not
   std::vector<AllanRecord> records;
   for (AllanRecord& record : allan_records(a.log, long_table(table), options))

@@ -36,6 +36,13 @@ std::string figure_html(const std::string& svg, const std::string& caption) {
   return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
 }
 
+// As the captures' columns say them.
+Series told_times(const DiagnosisSeries& s) {
+  Series told = s.time_s;
+  for (double& time : told) time = s.origin.told(time);
+  return told;
+}
+
 // "in 1 s means": the series are block means of whatever length kept them drawable.
 std::string block_words(const DiagnosisSeries& s) {
   if (s.time_s.size() < 2) return "";
@@ -47,10 +54,10 @@ std::string block_words(const DiagnosisSeries& s) {
 std::string time_picture(const Diagnosis& d) {
   const DiagnosisSeries& s = d.series;
   if (s.time_s.empty()) return "";
-  const TimeAxis time(s.time_s.front(), s.time_s.back());
+  const TimeAxis time(s.origin.told(s.time_s.front()), s.origin.told(s.time_s.back()));
   Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
               {time.label(), false, {}, {}}, {"error (°/h)", false, {}, {}});
-  const Series t = time(s.time_s);
+  const Series t = time(told_times(s));
   chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
   // Bursts come in clusters: a word where there is room for one.
@@ -115,8 +122,12 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   if (index >= s.contribution_radps.size() || s.contribution_radps[index].size() != s.time_s.size())
     return "";
   if (s.time_s.empty()) return "";
-  const TimeAxis time(s.time_s.front(), s.time_s.back());
-  const Series t = time(s.time_s);
+  const TimeAxis time(s.origin.told(s.time_s.front()), s.origin.told(s.time_s.back()));
+  const auto told = [&](Series since) {
+    for (double& value : since) value = s.origin.told(value);
+    return since;
+  };
+  const Series t = time(told_times(s));
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
   Series with(effect), drawn(effect);

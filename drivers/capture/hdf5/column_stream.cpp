@@ -47,6 +47,9 @@ void send_header(const SendBytes& send, const Hdf5Header& header) {
   append(body, header.notices);
   append(body, header.rows);
   append(body, header.by_column ? 1 : 0);
+  append(body, header.time_from ? 1 : 0);
+  append(body, static_cast<std::uint64_t>(header.time_from.value_or(0)));
+  append(body, header.exact_time ? 1 : 0);
   send(head(static_cast<unsigned char>(ColumnStream::Kind::header), body.size()));
   send(body);
 }
@@ -73,8 +76,11 @@ ColumnStream::ColumnStream(ReceiveBytes receive) : receive_(std::move(receive)) 
   header_.rows = number();
   const std::uint64_t by_column = number();
   header_.by_column = by_column == 1;
+  const std::uint64_t whole_time = number(), time_from = number(), exact_time = number();
+  header_.exact_time = exact_time == 1;
+  if (whole_time == 1) header_.time_from = static_cast<std::int64_t>(time_from);
   if (header_.names.empty() || header_.units.size() != header_.names.size() || header_.rows == 0 ||
-      by_column > 1)
+      by_column > 1 || whole_time > 1 || exact_time > 1)
     no_stream();
   left_ = header_.rows;
 }

@@ -11,7 +11,11 @@
 
 namespace ifog {
 
-inline constexpr const char* kHdf5Units = "units";        // on a dataset, as the CF conventions call it
+inline constexpr const char* kHdf5Units = "units";  // on a dataset, as the CF conventions call it
+inline constexpr const char* kHdf5Time = "time_s";
+// Beside time_s where doubles of that size lose digits: the same times as integers, which the attribute says.
+inline constexpr const char* kHdf5ExactTime = "time_ns";
+inline constexpr const char* kHdf5Of = "of";
 inline constexpr const char* kHdf5Comments = "comments";  // on the group: the `#` lines, without the '#'
 
 // Of an attribute that is a text or an array of texts, at most so many of at most so many bytes each; empty

@@ -114,6 +114,14 @@ std::vector<std::string> members_of(hid_t type) {
   return names;
 }
 
+// What reads one member of a record.
+Hdf5Id one_member(const std::string& name, hid_t number) {
+  Hdf5Id one(H5Tcreate(H5T_COMPOUND, H5Tget_size(number)));
+  hdf5_demand(one.good() && H5Tinsert(one, name.c_str(), 0, number) >= 0,
+              in_quotes(name) + " cannot be read");
+  return one;
+}
+
 }  // namespace
 
 Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
@@ -134,6 +142,27 @@ Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   if (header_.comments.empty() && H5Aexists(place_, kHdf5Comments) > 0)
     header_.notices.push_back("passed over: its comments, expected an attribute of texts");
   check_size(wanted);
+  time_ = header_.exact_time ? kHdf5ExactTime : wanted.time;
+}
+
+// A time of 64 bits without a sign has room in one with, until the year 2262.
+void Hdf5Columns::count_times_from_first() {
+  const auto found = std::find(header_.names.begin(), header_.names.end(), time_);
+  if (found == header_.names.end()) return;
+  const auto column = static_cast<std::size_t>(found - header_.names.begin());
+  Column& of = columns_[column];
+  const Hdf5Id stored(H5Dget_type(of.dataset));
+  const bool member = H5Tget_class(stored) == H5T_COMPOUND;
+  const Hdf5Id kind(
+      member ? H5Tget_member_type(stored, static_cast<unsigned>(H5Tget_member_index(stored, time_.c_str())))
+             : H5Tcopy(stored));
+  hdf5_demand(kind.good(), in_quotes(time_) + " cannot be read");
+  if (H5Tget_class(kind) != H5T_INTEGER) return;
+  of.in_memory = member ? one_member(time_, H5T_NATIVE_INT64) : Hdf5Id(H5Tcopy(H5T_NATIVE_INT64));
+  whole_time_ = column;
+  std::int64_t first = 0;
+  read_as_they_are(column, 0, 1, &first);
+  header_.time_from = first;
 }
 
 void Hdf5Columns::open(const Hdf5Source& source) {
@@ -194,8 +223,22 @@ std::vector<std::string> Hdf5Columns::datasets_of_group() {
   return names;
 }
 
+// As Hdf5Writer leaves it.
+bool Hdf5Columns::has_exact_time() {
+  if (H5Lexists(place_, kHdf5ExactTime, access_) <= 0) return false;
+  const Hdf5Id exact(H5Dopen2(place_, kHdf5ExactTime, access_));
+  return exact.good() &&
+         hdf5_texts(exact, kHdf5Of, 1, kLongestHdf5Name) == std::vector<std::string>{kHdf5Time};
+}
+
 void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
-  const std::vector<std::string> names = wanted.names.empty() ? datasets_of_group() : wanted.names;
+  std::vector<std::string> names = wanted.names.empty() ? datasets_of_group() : wanted.names;
+  const auto time = std::find(names.begin(), names.end(), kHdf5Time);
+  if (wanted.time == kHdf5Time && time != names.end() && has_exact_time()) {
+    header_.exact_time = true;
+    if (wanted.names.empty()) std::erase(names, kHdf5ExactTime);
+    *std::find(names.begin(), names.end(), kHdf5Time) = kHdf5ExactTime;
+  }
   if (!names.empty()) keep_unpacked(std::clamp(kKeptOfAll / names.size(), kLeastKept, kMostKept));
   for (const std::string& name : names) add_dataset(name);
   header_.by_column = chunk_bytes_ > kept_;
@@ -288,12 +331,9 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
     stored_ += header_.rows * H5Tget_size(kind);
     Hdf5Id dataset(H5Dopen2(place_, ".", access_));
     hdf5_demand(dataset.good(), in_quotes(wanted.group) + " cannot be read");
-    Hdf5Id one(H5Tcreate(H5T_COMPOUND, sizeof(double)));
-    hdf5_demand(one.good() && H5Tinsert(one, name.c_str(), 0, H5T_NATIVE_DOUBLE) >= 0,
-                in_quotes(name) + " cannot be read");
     header_.names.push_back(name);
     header_.units.emplace_back();
-    columns_.push_back({std::move(dataset), std::move(one)});
+    columns_.push_back({std::move(dataset), one_member(name, H5T_NATIVE_DOUBLE)});
   }
 }
 
@@ -319,14 +359,26 @@ void Hdf5Columns::turn_to(std::size_t column) {
 }
 
 void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double> to) {
+  if (column != whole_time_) return read_as_they_are(column, first, to.size(), to.data());
+  whole_.resize(to.size());
+  read_as_they_are(column, first, to.size(), whole_.data());
+  std::transform(whole_.begin(), whole_.end(), to.begin(), [from = *header_.time_from](std::int64_t value) {
+    std::int64_t since = 0;
+    return __builtin_sub_overflow(value, from, &since)
+               ? static_cast<double>(value) - static_cast<double>(from)
+               : static_cast<double>(since);
+  });
+}
+
+void Hdf5Columns::read_as_they_are(std::size_t column, std::uint64_t first, std::size_t many, void* to) {
   if (header_.by_column) turn_to(column);
   const Column& from = columns_[column];
-  const hsize_t start = first, count = to.size();
+  const hsize_t start = first, count = many;
   const Hdf5Id space(H5Dget_space(from.dataset)), memory(H5Screate_simple(1, &count, nullptr));
   hdf5_demand(
       space.good() && memory.good() &&
           H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr) >= 0 &&
-          H5Dread(from.dataset, from.in_memory, memory, space, H5P_DEFAULT, to.data()) >= 0,
+          H5Dread(from.dataset, from.in_memory, memory, space, H5P_DEFAULT, to) >= 0,
       in_quotes(header_.names[column]) + " cannot be read from row " + std::to_string(first + 1) + " on");
 }
 

@@ -24,6 +24,7 @@ struct Hdf5Source {
 struct Hdf5Wanted {
   std::string group;               // path of the group or table; "": the file's root
   std::vector<std::string> names;  // datasets as paths from there, or members; empty: every dataset of it
+  std::string time;                // which of them is the time
   std::uint64_t file_bytes = 0;
 };
 
@@ -33,6 +34,10 @@ struct Hdf5Header {
   std::vector<std::string> comments;
   std::vector<std::string> notices;
   std::uint64_t rows = 0;
+  // Of a time in integers, which a double may not hold: the first of them, that all of its values are counted
+  // from.
+  std::optional<std::int64_t> time_from;
+  bool exact_time = false;  // it is time_ns, which stood beside time_s and is in its place
   // Each column comes whole before the next one: some are packed in chunks larger than may be kept of every
   // column at once.
   bool by_column = false;
@@ -49,22 +54,28 @@ class Hdf5Columns {
   Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted);
 
   [[nodiscard]] const Hdf5Header& header() const { return header_; }
+  // Looks at the first time, which unpacks a chunk; the header says then what the times are counted from.
+  // Before anything is read. Throws likewise.
+  void count_times_from_first();
   // Rows to read at once: whole chunks of the file, within reason.
   [[nodiscard]] std::size_t block_rows() const { return block_rows_; }
   // Bytes of the largest chunk, unpacked.
   [[nodiscard]] std::size_t chunk_bytes() const { return chunk_bytes_; }
-  // Rows from `first` on of a column, as double. By column, one is read after the other and each from its
-  // first row to its last, so that a chunk is unpacked once. Throws likewise.
+  // Rows from `first` on of a column, as double; a time in integers from its first on. By column, one is read
+  // after the other and each from its first row to its last, so that a chunk is unpacked once. Throws
+  // likewise.
   void read(std::size_t column, std::uint64_t first, std::span<double> to);
 
  private:
   struct Column {
     Hdf5Id dataset, in_memory;  // what one value becomes
   };
+  void read_as_they_are(std::size_t column, std::uint64_t first, std::size_t count, void* to);
   void open(const Hdf5Source& source);
   void read_group(const Hdf5Wanted& wanted);
   void read_members(const Hdf5Wanted& wanted);
   std::vector<std::string> datasets_of_group();
+  bool has_exact_time();
   void add_dataset(const std::string& name);
   void check(hid_t dataset, const std::string& name);
   void take_rows(hid_t dataset, const std::string& name);
@@ -78,9 +89,12 @@ class Hdf5Columns {
   std::vector<Column> columns_;
   std::vector<std::string> groups_;  // within the group
   std::size_t block_rows_ = 0, chunk_bytes_ = 0;
-  std::size_t kept_ = 0;             // bytes of unpacked chunks, a dataset
-  std::uint64_t stored_ = 0;         // bytes of all values as the file has them, unpacked
-  std::optional<std::size_t> open_;  // by column: which is
+  std::size_t kept_ = 0;                   // bytes of unpacked chunks, a dataset
+  std::uint64_t stored_ = 0;               // bytes of all values as the file has them, unpacked
+  std::optional<std::size_t> open_;        // by column: which is
+  std::string time_;                       // the column's name
+  std::optional<std::size_t> whole_time_;  // which that is, where it holds integers
+  std::vector<std::int64_t> whole_;        // of it, on their way
 };
 
 }  // namespace ifog

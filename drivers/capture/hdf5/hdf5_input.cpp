@@ -87,6 +87,8 @@ void allow_seconds(std::size_t chunk = 0) {
 
 void send_columns(const Hdf5Source& source, const Hdf5Wanted& wanted, const SendBytes& send) {
   Hdf5Columns columns(source, wanted);
+  allow_seconds(columns.chunk_bytes());
+  columns.count_times_from_first();
   const Hdf5Header& header = columns.header();
   send_header(send, header);
   const std::uint64_t rows = std::min<std::uint64_t>(columns.block_rows(), header.rows);
@@ -126,7 +128,8 @@ void send_columns(const Hdf5Source& source, const Hdf5Wanted& wanted, const Send
 
 }  // namespace
 
-Hdf5Input::Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names)
+Hdf5Input::Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names,
+                     const std::string& time)
     : path_(file.path()) {
   Hdf5Source source{path_, {}};
   struct stat info {};
@@ -139,7 +142,7 @@ Hdf5Input::Hdf5Input(InputFile& file, const std::string& group, const std::vecto
     source.image = copy_;
   }
   try {
-    start(source, {group, names, bytes});
+    start(source, {group, names, time, bytes});
   } catch (...) {
     end();
     throw;

@@ -23,9 +23,10 @@ namespace ifog {
 class Hdf5Input {
  public:
   // group: path of the group, or of a table of records; "": the file's root. names: the datasets that are
-  // wanted, as paths from there; empty: all of the group. Standard input, pipes and packed files are kept in
-  // memory. Throws std::runtime_error with one line.
-  Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names);
+  // wanted, as paths from there; empty: all of the group. time: which of them it is. Standard input, pipes
+  // and packed files are kept in memory. Throws std::runtime_error with one line.
+  Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names,
+            const std::string& time);
   ~Hdf5Input();
   Hdf5Input(const Hdf5Input&) = delete;
   Hdf5Input& operator=(const Hdf5Input&) = delete;

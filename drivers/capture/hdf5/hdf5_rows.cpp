@@ -11,6 +11,7 @@
 
 #include "drivers/capture/chosen_columns.h"
 #include "drivers/capture/column_names.h"
+#include "drivers/capture/hdf5/hdf5_attributes.h"
 #include "drivers/capture/hdf5/hdf5_input.h"
 #include "drivers/capture/measurable.h"
 #include "drivers/capture/row_checks.h"
@@ -21,7 +22,7 @@
 namespace ifog {
 namespace {
 
-constexpr const char* kTime = "time_s";
+constexpr const char* kTime = kHdf5Time;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) { fail_at(path, 0, what); }
 
@@ -53,6 +54,7 @@ std::vector<std::string> wanted_of(const CsvLayout& layout, const std::string& p
 
 // What the attributes say where the layout is silent.
 CsvLayout completed(CsvLayout layout, const Hdf5Header& header, const std::string& path) {
+  if (!layout.time && header.exact_time) layout.time = CsvTime{kHdf5ExactTime, 1e-9, true};
   if (layout.time)
     if (const std::string unit = layout.time->other_unit(); !unit.empty())
       refuse(path, unit_by_name(layout.time->header, unit, option_for(*layout.time, unit)));
@@ -101,7 +103,10 @@ class Hdf5Rows {
   RowNotes read();
 
  private:
-  void take_time(const std::vector<double>& time);
+  void take_time(std::vector<double>& time);
+  [[nodiscard]] double unit_s() const { return layout_.time.value_or(CsvTime{}).unit_s; }
+  // As it stands in the file.
+  [[nodiscard]] std::string said(double time) const;
   void take_out_impossible(std::size_t column, std::vector<double>& values);
 
   InputFile& file_;
@@ -110,21 +115,25 @@ class Hdf5Rows {
   const CsvLayout layout_;
   const std::size_t time_;
   const Measurable time_range_;
+  const std::optional<std::int64_t> time_from_;  // in whole numbers
+  const TimeStamps stamps_;
   std::vector<FileColumn> columns_;
   std::vector<ImpossibleValues> impossible_;  // of each
   RowSink& sink_;
   RowNotes notes_;
   std::optional<RowChecks> checks_;
-  double last_ = -std::numeric_limits<double>::infinity();  // time in the file's unit
+  double last_ = -std::numeric_limits<double>::infinity();  // time as it came
 };
 
 Hdf5Rows::Hdf5Rows(InputFile& file, const std::string& group, const CsvLayout& asked, RowSink& sink)
     : file_(file),
       path_(file.path()),
-      input_(file, group, wanted_of(asked, path_)),
+      input_(file, group, wanted_of(asked, path_), time_of(asked)),
       layout_(completed(asked, input_.header(), path_)),
       time_(place_of_time(input_.header(), layout_, path_)),
       time_range_(measurable_in_file(layout_.time.value_or(CsvTime{}))),
+      time_from_(input_.header().time_from),
+      stamps_(time_from_ ? TimeStamps(*time_from_, unit_s()) : TimeStamps()),
       sink_(sink) {
   const Hdf5Header& header = input_.header();
   for (const std::string& comment : header.comments) notes_.comments += one_line(comment) + '\n';
@@ -149,9 +158,11 @@ RowNotes Hdf5Rows::read() {
     before = rows_of_all;
     input_.lay_by([&](std::uint64_t rows) { file_.told(rows, 2 * rows_of_all); });
   }
+  const ExactSteps steps = time_from_ ? ExactSteps(0, unit_s()) : ExactSteps();
   std::vector<std::vector<double>> block;
   while (input_.next(block)) {
     RowBlock rows;
+    rows.origin = stamps_.origin();
     rows.time_s = std::move(block[time_]);
     take_time(rows.time_s);
     for (std::size_t i = 0, c = 0; i < block.size(); ++i) {
@@ -159,25 +170,38 @@ RowNotes Hdf5Rows::read() {
       take_out_impossible(c++, block[i]);
       rows.columns.push_back(std::move(block[i]));
     }
-    last_ = rows.time_s.back();
-    checks_->take(rows);
+    checks_->take(rows, steps);
     file_.told(before + checks_->rows(), before + rows_of_all);
   }
-  checks_->finish(impossible_, !input_.header().units[time_].empty());
+  checks_->finish(impossible_, !input_.header().units[time_].empty(), steps);
   return std::move(notes_);
 }
 
-void Hdf5Rows::take_time(const std::vector<double>& time) {
+std::string Hdf5Rows::said(double time) const {
+  std::int64_t whole = 0;
+  if (time_from_ && std::abs(time) < 9e18 && !__builtin_add_overflow(*time_from_, std::llround(time), &whole))
+    return std::to_string(whole);
+  return shortest(time_from_ ? static_cast<double>(*time_from_) + time : time);
+}
+
+// What comes are differences where the time is in integers.
+void Hdf5Rows::take_time(std::vector<double>& time) {
   const std::string& name = input_.header().names[time_];
+  const auto from = static_cast<double>(time_from_.value_or(0));
+  const double last = time.back();
   for (std::size_t row = 0; row < time.size(); ++row) {
     const double before = row == 0 ? last_ : time[row - 1];
-    if (time_range_.holds(time[row]) && time[row] > before) continue;
-    const std::string said = shortest(time[row]) + in_row(checks_->rows() + row);
-    if (!std::isnan(time[row]) && !time_range_.holds(time[row]))
-      refuse(path_, what_no_sensor_measures(name, said, time_range_));
-    refuse(path_, printable(name) + " is " + said + ", expected " +
-                      (std::isnan(time[row]) ? "a time" : "more than in the row before"));
+    const bool possible = time_range_.holds(from + time[row]);
+    if (possible && time[row] > before) continue;
+    const std::string where = said(time[row]) + in_row(checks_->rows() + row);
+    if (!std::isnan(time[row]) && !possible) refuse(path_, what_no_sensor_measures(name, where, time_range_));
+    refuse(path_, printable(name) + " is " + where + ", " +
+                      (std::isnan(time[row]) ? "expected a time"
+                                             : expected_to_go_on((before - time[row]) * unit_s())));
   }
+  last_ = last;
+  if (time_from_)
+    for (double& each : time) each += stamps_.since(from);
 }
 
 void Hdf5Rows::take_out_impossible(std::size_t column, std::vector<double>& values) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::size_t kChunk = 65'536;  // rows
 constexpr unsigned kGzip = 6;
-constexpr std::size_t kStep = 4U << 20U;  // bytes by which the file in memory grows
+constexpr std::int64_t kMostSeconds = 9'000'000'000;  // that 64 bits hold in ns
+constexpr std::size_t kStep = 4U << 20U;              // bytes by which the file in memory grows
 
 // As a person writes the unit that a column's name ends in.
 std::string unit_of(const std::string& name) {
@@ -98,49 +100,73 @@ Hdf5Writer::Hdf5Writer(const std::string& path, const std::string& comments,
   });
 }
 
-void Hdf5Writer::begin_datasets(std::size_t chunk) {
+Hdf5Id Hdf5Writer::begin_dataset(const std::string& name, hid_t type, hid_t properties) {
   const hsize_t none = 0, no_end = H5S_UNLIMITED;
-  const Hdf5Id properties = packed(chunk), space(H5Screate_simple(1, &none, &no_end));
-  for (const std::string& name : names_) {
-    if (name.find('/') != std::string::npos || name.empty() || name == ".")
-      throw std::runtime_error(what_of(name) + ": no name for a dataset, expected one without '/'");
-    Hdf5Id dataset(
-        H5Dcreate2(file_, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
-    hdf5_demand(dataset.good(), what_of(name));
-    if (const std::string unit = unit_of(name); !unit.empty()) set_hdf5_text(dataset, kHdf5Units, unit);
-    datasets_.push_back(std::move(dataset));
-  }
+  const Hdf5Id space(H5Screate_simple(1, &none, &no_end));
+  if (name.find('/') != std::string::npos || name.empty() || name == ".")
+    throw std::runtime_error(what_of(name) + ": no name for a dataset, expected one without '/'");
+  Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
+  hdf5_demand(dataset.good(), what_of(name));
+  if (const std::string unit = unit_of(name); !unit.empty()) set_hdf5_text(dataset, kHdf5Units, unit);
+  return dataset;
 }
 
-void Hdf5Writer::rows(std::span<const std::span<const double>> columns) {
+void Hdf5Writer::begin_datasets(std::size_t chunk) {
+  const Hdf5Id properties = packed(chunk);
+  for (const std::string& name : names_) datasets_.push_back(begin_dataset(name, H5T_IEEE_F64LE, properties));
+  if (!times_are_large_) return;
+  exact_ = begin_dataset(kHdf5ExactTime, H5T_STD_I64LE, properties);
+  set_hdf5_text(exact_, kHdf5Of, names_.front());
+}
+
+void Hdf5Writer::rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin) {
   for (std::size_t c = 0; c < held_.size(); ++c)
     held_[c].insert(held_[c].end(), columns[c].begin(), columns[c].end());
+  if (origin != TimeOrigin{}) take_large_times(columns.front(), origin);
   if (held_.front().size() >= kChunk)
     with_name(path_, [&] { flush(held_.front().size() / kChunk * kChunk); });
+}
+
+// They are the last that are held.
+void Hdf5Writer::take_large_times(std::span<const double> since_s, const TimeOrigin& origin) {
+  times_are_large_ =
+      std::abs(origin.s) < kMostSeconds && !std::count(names_.begin(), names_.end(), kHdf5ExactTime);
+  std::vector<double>& time = held_.front();
+  std::transform(since_s.begin(), since_s.end(), time.end() - static_cast<std::ptrdiff_t>(since_s.size()),
+                 [&](double since) { return origin.told(since); });
+  if (times_are_large_)
+    for (const double since : since_s) held_ns_.push_back(origin.in_ns(since));
+}
+
+template <typename Value>
+void Hdf5Writer::append(const Hdf5Id& dataset, const std::string& name, hid_t type, std::size_t rows,
+                        std::vector<Value>& held) {
+  const hsize_t first = written_, count = rows, all = first + count;
+  const Hdf5Id memory(H5Screate_simple(1, &count, nullptr));
+  const bool longer = H5Dset_extent(dataset, &all) >= 0;
+  const Hdf5Id space(H5Dget_space(dataset));
+  hdf5_demand(longer && space.good() &&
+                  H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &count, nullptr) >= 0 &&
+                  H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, held.data()) >= 0,
+              what_of(name));
+  held.erase(held.begin(), held.begin() + static_cast<std::ptrdiff_t>(rows));
 }
 
 // The first rows of those that are held.
 void Hdf5Writer::flush(std::size_t rows) {
   if (datasets_.empty()) begin_datasets(std::clamp<std::size_t>(rows, 1, kChunk));
-  const hsize_t first = written_, count = rows, all = first + count;
-  const Hdf5Id memory(H5Screate_simple(1, &count, nullptr));
-  for (std::size_t c = 0; rows > 0 && c < names_.size(); ++c) {
-    const bool longer = H5Dset_extent(datasets_[c], &all) >= 0;
-    const Hdf5Id space(H5Dget_space(datasets_[c]));
-    hdf5_demand(
-        longer && space.good() &&
-            H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, nullptr, &count, nullptr) >= 0 &&
-            H5Dwrite(datasets_[c], H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, held_[c].data()) >= 0,
-        what_of(names_[c]));
-    held_[c].erase(held_[c].begin(), held_[c].begin() + static_cast<std::ptrdiff_t>(rows));
-  }
-  written_ = all;
+  if (rows == 0) return;
+  for (std::size_t c = 0; c < names_.size(); ++c)
+    append(datasets_[c], names_[c], H5T_NATIVE_DOUBLE, rows, held_[c]);
+  if (exact_.good()) append(exact_, kHdf5ExactTime, H5T_NATIVE_INT64, rows, held_ns_);
+  written_ += rows;
 }
 
 void Hdf5Writer::finish() {
   const std::string_view image = with_name(path_, [&] {
     flush(held_.front().size());
     datasets_.clear();
+    exact_ = {};
     return image_of(file_);
   });
   out_.write(image);

@@ -36,6 +36,33 @@ bool parse(std::string_view cell, double& value) {
   return error == std::errc() && end == cell.data() + cell.size() && !std::isinf(value);
 }
 
+// Seconds in plain digits, to the ns, which a double of the epoch's size does not tell; false: no such text.
+bool nanoseconds_in(std::string_view cell, std::int64_t& ns) {
+  constexpr std::int64_t kMost = 900'000'000'000'000'000;  // a further digit has room
+  const bool negative = cell.starts_with('-');
+  if (negative || cell.starts_with('+')) cell.remove_prefix(1);
+  std::int64_t size = 0;
+  int decimals = -1;  // behind the point, once there is one
+  for (const char c : cell) {
+    if (c == '.' && decimals < 0) {
+      decimals = 0;
+    } else if (c < '0' || c > '9' || size > kMost) {
+      return false;
+    } else if (decimals < 9) {
+      size = 10 * size + (c - '0');
+      if (decimals >= 0) ++decimals;
+    } else if (decimals++ == 9 && c >= '5') {
+      ++size;
+    }
+  }
+  for (decimals = std::max(decimals, 0); decimals < 9; ++decimals) {
+    if (size > kMost) return false;
+    size *= 10;
+  }
+  ns = negative ? -size : size;
+  return true;
+}
+
 }  // namespace
 
 Rows::Rows(std::vector<std::string> wanted)
@@ -88,7 +115,7 @@ bool Rows::read_row(std::string_view line) noexcept {
     if (column == columns_ || !parse(cell, value)) return false;
     if (column == 0) {
       if (!(std::abs(value) < kMostSeconds)) return false;
-      time_ns = std::llround(value * 1e9);
+      if (!nanoseconds_in(cell, time_ns)) time_ns = std::llround(value * 1e9);
       if (timed_ && time_ns <= time_ns_) return false;
     } else if (slot_[column] >= 0) {
       values_[static_cast<std::size_t>(slot_[column])] = value;

@@ -208,6 +208,7 @@ std::vector<std::size_t> add_blocks_of(const Record& record, BlockGrid& grid, st
   const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
   grid.records.push_back({grid.size(), grid.size() + blocks});
+  grid.origin.push_back(record.origin);
   std::vector<std::size_t> first = step_starts(record, grid.fine_s, blocks * grid.fine);
   const double full = grid.block_s / grid.sample_s;
   for (std::size_t b = 0; b < blocks; ++b) {

@@ -26,21 +26,25 @@ struct BlockRange {
 };
 
 struct BlockGrid {
-  double block_s = 0.0;             // length of a block
-  double fine_s = 0.0;              // of a step of the fine grid
-  std::size_t fine = 1;             // steps a block
-  std::vector<BlockRange> records;  // one behind the other
-  std::vector<std::uint8_t> valid;  // by block: enough samples in it
-  std::vector<double> time_s;       // middle of the block, in its record's time
-  Eigen::VectorXd error;            // by block: mean of rate - reference, 0 where not valid
-  double sample_s = 0.0;            // median period of the samples
-  bool dwells = false;              // points of a rate table, no time series: their noise is white
-  double white_variance = 0.0;      // of one sample, from differences of neighbours
+  double block_s = 0.0;              // length of a block
+  double fine_s = 0.0;               // of a step of the fine grid
+  std::size_t fine = 1;              // steps a block
+  std::vector<BlockRange> records;   // one behind the other
+  std::vector<RecordOrigin> origin;  // of each, that its times are counted from; empty: all 0
+  std::vector<std::uint8_t> valid;   // by block: enough samples in it
+  std::vector<double> time_s;        // middle of the block, in its record's time
+  Eigen::VectorXd error;             // by block: mean of rate - reference, 0 where not valid
+  double sample_s = 0.0;             // median period of the samples
+  bool dwells = false;               // points of a rate table, no time series: their noise is white
+  double white_variance = 0.0;       // of one sample, from differences of neighbours
 
   [[nodiscard]] std::size_t size() const { return valid.size(); }
   [[nodiscard]] std::size_t used() const;     // valid blocks
   [[nodiscard]] std::size_t longest() const;  // blocks of the longest record
   [[nodiscard]] Eigen::Index constants() const { return static_cast<Eigen::Index>(records.size()); }
+  [[nodiscard]] RecordOrigin origin_of(std::size_t record) const {
+    return record < origin.size() ? origin[record] : RecordOrigin{};
+  }
   // Steps of the fine grid that a record's blocks are made of.
   [[nodiscard]] BlockRange fine_steps(const BlockRange& record) const {
     return {record.first * fine, record.end * fine};

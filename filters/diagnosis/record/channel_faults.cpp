@@ -10,6 +10,7 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -219,16 +220,14 @@ std::optional<Samples> repaired_channel(const Record& record, const RecordChanne
   if (away.empty() && stuck.empty()) return std::nullopt;
   if (away.empty()) values.assign(of.values.begin(), of.values.end());
   if (!away.empty()) repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
+  const auto told = [&](std::size_t i) { return told_time(record.origin.told(of.time_s[i])); };
   for (const auto& [run, leaps] : stuck) {
-    const double from_s = of.time_s[run.from];
-    const double to_s = of.time_s[run.to];
-    repaired.remarks.push_back(
-        channel.name + where +
-        text(" stands at %.6g from %.6g s to %.6g s and %s: taken for stuck, interpolated", values[run.from],
-             from_s - record.time_s.front(), to_s - record.time_s.front(),
-             leaps ? "then jumps" : "never else for a twentieth as long"));
+    repaired.remarks.push_back(channel.name + where +
+                               text(" stands at %.6g from %s s to %s s and %s: taken for stuck, interpolated",
+                                    values[run.from], told(run.from).c_str(), told(run.to).c_str(),
+                                    leaps ? "then jumps" : "never else for a twentieth as long"));
     const auto index = static_cast<std::size_t>(&record - repaired.records.data());
-    repaired.stuck.push_back({index, channel.name, from_s, to_s});
+    repaired.stuck.push_back({index, channel.name, of.time_s[run.from], of.time_s[run.to]});
     interpolate(of, {run.from + 1, run.to}, values);
   }
   if (of.rows.empty()) return values;

@@ -12,6 +12,7 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
   errors.reserve(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
     EvenError error;
+    error.origin = records[r].origin;
     error.start_s = records[r].time_s.front();
     const bool plain = records[r].reference_radps.empty();
     Samples held_out = plain && without.ramps.empty() ? Samples() : error_of(records[r]);

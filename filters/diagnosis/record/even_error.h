@@ -12,6 +12,7 @@ namespace ifog {
 
 // Of one record; NaN where no sample is. What is the same is there once.
 struct EvenError {
+  RecordOrigin origin{};  // that start_s is counted from
   double start_s = 0.0;
   SharedSamples before;         // rate - reference
   SharedSamples rest;           // less ramps, and later lines: what effects are sought in

@@ -7,6 +7,7 @@
 
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/effects/compensate_series.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -70,9 +71,7 @@ PartedRecords part_at_long_holes(const std::vector<Record>& records) {
     }
     for (const SampleRange& samples : parts) {
       Record part = part_of(record, samples);
-      std::array<char, 64> from{};
-      std::snprintf(from.data(), from.size(), " (from %.6g s)", part.time_s.front());
-      part.name += from.data();
+      part.name += " (from " + told_time(part.origin.told(part.time_s.front())) + " s)";
       out.records.push_back(std::move(part));
     }
     out.remarks.push_back(in_words(record, parts.size(), left_out, longest_s));

@@ -36,7 +36,7 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
       continue;
     }
     try {
-      require_rest(rest, period_s, record.time_s.front());
+      require_rest(rest, period_s, record.origin.told(record.time_s.front()));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(std::string(error.what()) + ", or a reference rate beside it");
     }
@@ -45,7 +45,8 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
       for (std::size_t i = part.begin; i < part.end; ++i) rate[i] = record.rate_radps[i];
     out.records.back().rate_radps = rate;
     out.records.back().at_rest = rest.at_rest;
-    out.remarks.push_back(record.name + ": " + in_words(rest, period_s, record.time_s.front()) +
+    out.remarks.push_back(record.name + ": " +
+                          in_words(rest, period_s, record.origin.told(record.time_s.front())) +
                           "; only the rest is diagnosed");
   }
   return out;

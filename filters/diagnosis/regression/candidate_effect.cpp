@@ -67,7 +67,10 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   if (candidate.second_time_constant_s > 0.0) {
     effect.parameters.push_back({"second_lag_s", candidate.second_time_constant_s, 0.0, "s"});
   }
-  if (candidate.form == Form::kStep) effect.parameters.push_back({"time_s", candidate.time_s, 0.0, "s"});
+  if (candidate.form == Form::kStep) {
+    const double time_s = data.grid.origin_of(candidate.record).told(candidate.time_s);
+    effect.parameters.push_back({"time_s", time_s, 0.0, "s"});
+  }
   if (candidate.first_reading != FirstReading::kError && candidate.form == Form::kLinear)
     effect.form = name_of(Form::kEarthRate);
   effect.shown_only = candidate.first_reading == FirstReading::kEarthRateShown;

@@ -60,10 +60,10 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
   Samples room;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
-    const double start_s = errors[r].start_s;
     const std::vector<NoiseChange> found =
-        noise_changes(rate, stretches({}, rate, {}), sample_s,
-                      [&](std::size_t i) { return start_s + static_cast<double>(i) * sample_s; });
+        noise_changes(rate, stretches({}, rate, {}), sample_s, [&](std::size_t i) {
+          return errors[r].origin.told(errors[r].start_s + static_cast<double>(i) * sample_s);
+        });
     for (const NoiseChange& change : found) diagnosis.noise_changes.push_back({records[r].name, change});
     if (const std::string words = in_words(found); !words.empty())
       diagnosis.remarks.push_back((records.size() > 1 ? records[r].name + ": " : "") + words);

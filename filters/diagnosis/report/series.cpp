@@ -37,6 +37,7 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
   series.contribution_radps.resize(parts.size());
   series.channel.resize(parts.size());
+  series.origin = grid.origin_of(0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Effect& effect = effects[i].effect;
     series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));

@@ -15,6 +15,7 @@
 #include "filters/diagnosis/residual/two_states.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -204,10 +205,10 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
   if (bursts == 0 || bursts * 10 >= measured) return false;
   found.kind = "bursts";
   found.hint = text(
-      "%zu bursts, the first at %.4g s, the strongest at %.5g s: knocks, radio keying or supply dips. "
+      "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. "
       "Log "
       "an accelerometer and the supply at the sensor's own rate.",
-      times.size(), times.front(), time_of(strongest));
+      times.size(), told_time(times.front()).c_str(), told_time(time_of(strongest)).c_str());
   if (times.size() > 50) times.resize(50);
   found.times_s = std::move(times);
   return true;
@@ -299,8 +300,8 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
   const EvenError& longest = longest_of(errors);
   std::vector<SpectralLine> peaks;
   if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance, known);
-  return describe_unexplained(longest.before, longest.after, longest.start_s, grid.sample_s, noise, grid,
-                              peaks);
+  return describe_unexplained(longest.before, longest.after, longest.origin.told(longest.start_s),
+                              grid.sample_s, noise, grid, peaks);
 }
 
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {

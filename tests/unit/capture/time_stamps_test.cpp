@@ -16,6 +16,8 @@
 namespace {
 
 using ifog::ExactSteps;
+using ifog::SaidTime;
+using ifog::TimeOrigin;
 using ifog::TimeStamps;
 
 double since(const std::string& first, double unit_s, const std::string& text) {
@@ -25,28 +27,34 @@ double since(const std::string& first, double unit_s, const std::string& text) {
   return value;
 }
 
-std::string told(std::int64_t origin_s, double since_s) {
+std::string told(const TimeOrigin& origin, double since_s) {
   std::string text;
-  ifog::append_time(text, origin_s, since_s);
+  ifog::append_time(text, origin, since_s);
   return text;
 }
 
 TEST(TimeStamps, LoseNoDigitOfAnEpoch) {
-  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700000000.123456789"), 0.123456789);
-  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700086399.999999999"), 86399.999999999);
-  EXPECT_EQ(since("1700000000123456789", 1e-9, "1700000000123456790"), 123456790.0);
-  EXPECT_EQ(since("1700000000123.5", 1e-3, "1700000000124.25"), 124.25);
-  EXPECT_EQ(since("345678.25", 1.0, "345678.26"), 0.26);
-  EXPECT_EQ(since("-1700000000.5", 1.0, "-1700000000.49"), 0.51);
-  EXPECT_EQ(since("-1700000000.5", 1.0, "-1699999999.5"), 1.5);
-  EXPECT_EQ(TimeStamps("-1700000000.5", 1.0).origin_s(), -1700000001);
-  EXPECT_EQ(TimeStamps("1700000000123456789", 1e-9).origin_s(), 1700000000);
-  EXPECT_EQ(TimeStamps("28333333", 60.0).origin_s(), 28333333LL * 60);
+  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700000000.123456789"), 0.0);
+  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700086399.999999999"), 86399.87654321);
+  EXPECT_EQ(since("1700000000.123456789", 1.0, "1700000000.2"), 0.076543211);
+  EXPECT_EQ(since("1700000000.5", 1.0, "1700000000.1234567890125"), -0.3765432109875);
+  EXPECT_EQ(since("1700000000123456789", 1e-9, "1700000000123456790"), 1.0);
+  EXPECT_EQ(since("1700000000123.5", 1e-3, "1700000000124.25"), 0.75);
+  EXPECT_EQ(since("345678.25", 1.0, "345678.26"), 0.01);
+  EXPECT_EQ(since("-1700000000.5", 1.0, "-1700000000.49"), 0.01);
+  EXPECT_EQ(since("-1700000000.5", 1.0, "-1699999999.5"), 1.0);
+  EXPECT_EQ(TimeStamps("-1700000000.5", 1.0).origin(), (TimeOrigin{-1700000001, 500'000'000}));
+  EXPECT_EQ(TimeStamps("1700000000123456789", 1e-9).origin(), (TimeOrigin{1700000000, 123'456'789}));
+  EXPECT_EQ(TimeStamps(1700000000123456789, 1e-9).origin(), (TimeOrigin{1700000000, 123'456'789}));
+  // No more than whole ns are counted from.
+  EXPECT_EQ(TimeStamps("1700000000123.4567891", 1e-3).origin(), (TimeOrigin{1700000000, 123'456'789}));
+  EXPECT_EQ(since("1700000000123.4567891", 1e-3, "1700000000123.4567891"), 1e-7);
+  EXPECT_EQ(TimeStamps("28333333", 60.0).origin(), (TimeOrigin{28333333LL * 60, 0}));
 }
 
 TEST(TimeStamps, StandAsTheyAreWhereADoubleHoldsThem) {
   for (const std::string first : {"0", "12.5", "-3.75", "1023.999", "nan", "", "1e9", "time"})
-    EXPECT_EQ(TimeStamps(first, 1.0).origin_s(), 0) << first;
+    EXPECT_EQ(TimeStamps(first, 1.0).origin(), TimeOrigin{}) << first;
   for (const std::string text : {"0.01", "+0.01", "17.", ".5", "-0.3", "123456.789012345"})
     EXPECT_EQ(since("0", 1.0, text), std::stod(text)) << text;
 }
@@ -59,25 +67,50 @@ TEST(TimeStamps, LeaveWhatIsNotPlainToOthers) {
 }
 
 TEST(TimeStamps, AreHeldToWhatHasRoom) {
-  EXPECT_EQ(TimeStamps("4500000000000000000", 3600.0).origin_s(), 0);
-  EXPECT_EQ(TimeStamps("9223372036854775807", 1e-9).origin_s(), 0);
+  EXPECT_EQ(TimeStamps("4500000000000000000", 3600.0).origin(), TimeOrigin{});
+  EXPECT_EQ(TimeStamps("9223372036854775807", 1e-9).origin(), TimeOrigin{});
   EXPECT_EQ(since("-4599999999999999999", 1e-9, "4599999999999999999"), 9199999999999999999.0);
-  EXPECT_EQ(ifog::time_origin_s(INT64_MIN), -9223372037);
-  EXPECT_EQ(ifog::time_origin_s(INT64_MAX), 9223372036);
-  EXPECT_EQ(ifog::time_origin_s(-1'700'000'000'500'000'000), -1700000001);
-  EXPECT_EQ(ifog::time_origin_s(1'000'000'000), 0);
+  EXPECT_EQ(TimeOrigin::of(INT64_MIN), (TimeOrigin{-9223372037, 145'224'192}));
+  EXPECT_EQ(TimeOrigin::of(INT64_MAX), (TimeOrigin{9223372036, 854'775'807}));
+  EXPECT_EQ(TimeOrigin::of(-1'700'000'000'500'000'000), (TimeOrigin{-1700000001, 500'000'000}));
+  EXPECT_EQ(TimeOrigin::of(1'000'000'000), TimeOrigin{});
 }
 
 TEST(TimeStamps, AreToldInTheDigitsTheyCameWith) {
-  EXPECT_EQ(told(1700000000, 0.123456789), "1700000000.123456789");
-  EXPECT_EQ(told(1700000000, 86399.999999999), "1700086399.999999999");
-  EXPECT_EQ(told(1700000000, 1.0), "1700000001");
-  EXPECT_EQ(told(-1700000001, 0.5), "-1700000000.5");
-  EXPECT_EQ(told(-1700000001, 0.51), "-1700000000.49");
-  EXPECT_EQ(told(-2000, 1999.25), "-0.75");
-  EXPECT_EQ(told(-2000, 2000.25), "0.25");
-  EXPECT_EQ(told(-2000, 2000.0), "0");
-  EXPECT_EQ(told(5000, -0.25), "4999.75");
+  EXPECT_EQ(told({1700000000, 0}, 0.123456789), "1700000000.123456789");
+  EXPECT_EQ(told({1700000000, 0}, 86399.999999999), "1700086399.999999999");
+  EXPECT_EQ(told({1700000000, 0}, 1.0), "1700000001");
+  EXPECT_EQ(told({-1700000001, 0}, 0.5), "-1700000000.5");
+  EXPECT_EQ(told({-1700000001, 0}, 0.51), "-1700000000.49");
+  EXPECT_EQ(told({-2000, 0}, 1999.25), "-0.75");
+  EXPECT_EQ(told({-2000, 0}, 2000.25), "0.25");
+  EXPECT_EQ(told({-2000, 0}, 2000.0), "0");
+  EXPECT_EQ(told({5000, 0}, -0.25), "4999.75");
+  const TimeOrigin origin{1700000000, 123'456'789};
+  EXPECT_EQ(told(origin, 0.0), "1700000000.123456789");
+  EXPECT_EQ(told(origin, 0.876543211), "1700000001");
+  EXPECT_EQ(told(origin, 0.9), "1700000001.023456789");
+  EXPECT_EQ(told(origin, 0.0000000000025), "1700000000.1234567890025");
+  EXPECT_EQ(told(origin, -1.0), "1699999999.123456789");
+  EXPECT_EQ(told(origin, -0.123456789), "1700000000");
+  EXPECT_EQ(told({-1700000001, 500'000'000}, 0.0), "-1700000000.5");
+  EXPECT_EQ(told({-1700000001, 500'000'000}, 0.5), "-1700000000");
+  EXPECT_EQ(told({-2, 250'000'000}, 1.0), "-0.75");
+  EXPECT_EQ(origin.told(0.076543211), 1700000000.2);
+  EXPECT_EQ(origin.in_ns(0.01), 1'700'000'000'133'456'789);
+  EXPECT_EQ(origin.later_than({1699999999, 123'456'790}), 0.999999999);
+}
+
+TEST(SaidTime, IsBeforeAndBehindWhatItSays) {
+  const TimeOrigin origin{1700000000, 123'456'789};
+  const SaidTime said = *SaidTime::parse("1700000000.133456789");
+  EXPECT_TRUE(said.is_after(origin, 0.009999999));
+  EXPECT_FALSE(said.is_after(origin, 0.01));
+  EXPECT_FALSE(SaidTime::parse("1.7e9")->is_after(origin, 0.0));
+  EXPECT_TRUE(SaidTime::parse("-0.5")->is_after({}, -0.500000001));
+  EXPECT_FALSE(SaidTime::parse("-0.5")->is_after({}, -0.5));
+  EXPECT_TRUE(SaidTime::parse("1e300")->is_after(origin, 1e9));
+  for (const std::string text : {"", "x", "1s", "inf", "nan"}) EXPECT_FALSE(SaidTime::parse(text)) << text;
 }
 
 TEST(ExactSteps, AreThoseOfTheDigits) {
@@ -105,11 +138,11 @@ std::string stamp(std::int64_t ns, std::int64_t of_second) {
 }
 
 struct Gathered final : ifog::RowSink {
-  std::int64_t origin_s = 0;
+  TimeOrigin origin;
   std::vector<double> time_s, rate;
   void begin(const std::vector<std::string>&) override {}
   void take(ifog::RowBlock& rows) override {
-    origin_s = rows.origin_s;
+    origin = rows.origin;
     time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
     rate.insert(rate.end(), rows.columns[0].begin(), rows.columns[0].end());
   }
@@ -154,9 +187,12 @@ TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
         ASSERT_EQ(got.rate.size(), from_0.rate.size());
         for (std::size_t i = 1; i < got.rate.size(); ++i) {
           ASSERT_EQ(got.rate[i], from_0.rate[i]) << start_ns << " " << unit.name << " row " << i;
-          const std::int64_t ns =
-              start_ns + static_cast<std::int64_t>(i) * 10'000'000 - got.origin_s * 1'000'000'000;
-          ASSERT_EQ(got.time_s[i], static_cast<double>(ns) / 1e9) << unit.name << " row " << i;
+          const std::int64_t ns = start_ns + static_cast<std::int64_t>(i) * 10'000'000;
+          ASSERT_EQ(got.time_s[i],
+                    static_cast<double>(ns - got.origin.s * 1'000'000'000 - got.origin.ns) / 1e9)
+              << unit.name << " row " << i;
+          if (start_ns == 5'000'000) continue;
+          ASSERT_EQ(got.time_s[i], from_0.time_s[i]) << unit.name << " row " << i;
         }
       }
 }

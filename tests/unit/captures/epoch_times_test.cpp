@@ -26,11 +26,11 @@ LongTable table_of(const std::string& text) {
   return CaptureInput().read_long(file);
 }
 
-std::string written(const LongTable& table) {
+std::string written(const LongTable& table, const std::string& ending = ".csv") {
   const auto path =
-      std::filesystem::temp_directory_path() / ("epoch_times_" + std::to_string(getpid()) + ".csv");
+      std::filesystem::temp_directory_path() / ("epoch_times_" + std::to_string(getpid()) + ending);
   write_columns(table, "a.csv", path.string());
-  const std::string text = read_text_file(path.string());
+  const std::string text = read_bytes_file(path.string());
   std::filesystem::remove(path);
   return text;
 }
@@ -41,25 +41,40 @@ TEST(EpochTimes, AreWrittenWithTheDigitsTheyCameWith) {
   EXPECT_EQ(written(table_of(negative)), negative);
 }
 
+TEST(EpochTimes, GoThroughHdf5WithAllOfThem) {
+  InputFile packed("a.h5", written(table_of(kCapture), ".h5"));
+  CaptureInput input;
+  EXPECT_EQ(written(input.read_long(packed)), kCapture);
+  // By chosen columns, too.
+  InputFile chosen("a.h5", written(table_of(kCapture), ".h5"));
+  input.columns = {"rate_radps=rate_radps"};
+  EXPECT_EQ(written(input.read_long(chosen)), kCapture);
+}
+
 TEST(EpochTimes, ArePartedByWhatTheySay) {
   LongCapture capture(table_of(kCapture), "a.csv");
   TimePart part;
-  part.from_s = 1700000000.2;
-  part.to_s = 1700000001.5;
+  const auto set = [](TimePart::Bound& bound, const std::string& text) {
+    bound = {*SaidTime::parse(text), text};
+  };
+  set(part.from, "1700000000.2");
+  set(part.to, "1700000001.5");
   const CaptureView inside = capture.part(part, "a.csv");
   ASSERT_EQ(inside.size(), 2U);
   EXPECT_EQ(inside.told_time_s(0), 1700000000.2);
   EXPECT_EQ(inside.told_time_s(1), 1700000001.0);
-  capture.count_from_zero();
-  EXPECT_EQ(capture.view().origin_s, 0);
-  EXPECT_EQ(capture.view().time_s[2], 1700000000.2);
+  // By digits that a double of that size does not have.
+  set(part.from, "1700000000.133456788");
+  EXPECT_EQ(capture.part(part, "a.csv").size(), 3U);
+  set(part.from, "1700000000.133456789");
   EXPECT_EQ(capture.part(part, "a.csv").size(), 2U);
-  part.to_s = 1700000000.2;
+  set(part.to, "1700000000.2");
   try {
     (void)capture.part(part, "a.csv");
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("1700000000 … 1700086400 s"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("1700000000.123457 … 1700086400 s"), std::string::npos)
+        << error.what();
   }
 }
 

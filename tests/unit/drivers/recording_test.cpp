@@ -316,8 +316,8 @@ TEST_F(Recording, AClockThatShowsTheEpochMakesTheRatesOfOneThatBeginsAtZero) {
   ifog::RowBlock one, other;
   from_0.next_rows(one);
   from_1970.next_rows(other);
-  EXPECT_EQ(one.origin_s, 0);
-  EXPECT_EQ(other.origin_s, 1'700'000'000);
+  EXPECT_EQ(one.origin, ifog::TimeOrigin{});
+  EXPECT_EQ(other.origin, (ifog::TimeOrigin{1'700'000'000, 0}));
   EXPECT_EQ(one.time_s, other.time_s);
   ASSERT_EQ(one.columns[0].size(), 200U);
   for (std::size_t i = 1; i < 200; ++i) ASSERT_EQ(one.columns[0][i], other.columns[0][i]) << i;

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -50,9 +51,10 @@ std::string packed_values(const std::vector<double>& values) {
 std::string message(char kind, const std::string& body) { return kind + packed(body.size()) + body; }
 
 std::string header(std::uint64_t rows, const std::vector<std::string>& units = {"s", ""},
-                   std::uint64_t by_column = 0) {
+                   std::uint64_t by_column = 0, const std::vector<std::uint64_t>& time = {0, 0, 0}) {
   return message(1, packed_texts({"time_s", "rate_radps"}) + packed_texts(units) + packed_texts({"a gyro"}) +
-                        packed_texts({}) + packed(rows) + packed(by_column));
+                        packed_texts({}) + packed(rows) + packed(by_column) + packed(time[0]) +
+                        packed(time[1]) + packed(time[2]));
 }
 
 std::string values(const std::vector<double>& of) { return message(2, packed_values(of)); }
@@ -60,6 +62,7 @@ std::string values(const std::vector<double>& of) { return message(2, packed_val
 // All that comes, by column, or the message.
 struct Read {
   std::vector<std::vector<double>> columns;
+  std::optional<std::int64_t> time_from;
   std::string refusal, no_stream;
 };
 
@@ -74,6 +77,7 @@ Read read(std::string bytes) {
       return true;
     });
     out.columns.resize(stream.header().names.size());
+    out.time_from = stream.header().time_from;
     std::vector<double> values;
     for (std::size_t i = 0; stream.header().by_column && stream.next(i, values);)
       out.columns[i].insert(out.columns[i].end(), values.begin(), values.end());
@@ -106,6 +110,16 @@ TEST(Hdf5Stream, TakesColumnsOneAfterTheOther) {
         values({0, 1, 2}) + values({}), std::string()})
     EXPECT_NE(read(by_column + bytes).no_stream, "") << bytes.size();
   EXPECT_NE(read(header(3, {"s", ""}, 2)).no_stream, "");
+}
+
+TEST(Hdf5Stream, SaysWhatWholeTimesAreCountedFrom) {
+  EXPECT_EQ(read(header(2) + values({0, 1}) + values({5, 6})).time_from, std::nullopt);
+  const auto first = static_cast<std::uint64_t>(-1'700'000'000'123'456'789);
+  const Read got = read(header(2, {"s", ""}, 0, {1, first, 0}) + values({0, 1}) + values({5, 6}));
+  EXPECT_EQ(got.refusal + got.no_stream, "");
+  EXPECT_EQ(got.time_from, -1'700'000'000'123'456'789);
+  EXPECT_NE(read(header(2, {"s", ""}, 0, {2, 0, 0})).no_stream, "");
+  EXPECT_NE(read(header(2, {"s", ""}, 0, {0, 0, 2})).no_stream, "");
 }
 
 TEST(Hdf5Stream, ARefusalIsSaidWheneverItComesAndOnOneLine) {
@@ -192,7 +206,7 @@ TEST_F(Hdf5File, ALeftReaderIsGone) {
   write(path("c.h5"), time, "");
   for (int i = 0; i < 5; ++i) {
     InputFile input(path("c.h5"));
-    Hdf5Input reader(input, "", {});
+    Hdf5Input reader(input, "", {}, "time_s");
     std::vector<std::vector<double>> block;
     EXPECT_TRUE(reader.next(block));
   }
@@ -227,7 +241,7 @@ TEST_F(Hdf5File, ReadsChunksOfAnySizeToTheBit) {
   for (const std::size_t chunk : {kRows, std::size_t{1'200'000}, std::size_t{1'048'577}}) {
     write_chunks(path("c.h5"), columns, chunk);
     InputFile input(path("c.h5"));
-    Hdf5Input reader(input, "", {});
+    Hdf5Input reader(input, "", {}, "time_s");
     EXPECT_TRUE(reader.header().by_column);
     const std::vector<std::size_t> of = {2, 2, 1, 0};  // again, count, rate, time, as they are sorted
     ASSERT_EQ(reader.header().names.size(), of.size());

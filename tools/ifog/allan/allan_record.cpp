@@ -15,6 +15,7 @@
 #include "filters/allan/row_times.h"
 #include "filters/rest/glitches.h"
 #include "filters/rest/rest.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/allan/filter_start.h"
 #include "tools/ifog/captures/usable_axes.h"
 
@@ -128,8 +129,8 @@ bool is_dead(const SeriesView& values) {
 }
 
 // Of a row, for who is told of it.
-double told_time(const LongTable& table, std::size_t row) {
-  return static_cast<double>(table.origin_s) + SeriesView(table.time_s).at(row);
+double told_time_s(const LongTable& table, std::size_t row) {
+  return table.origin.told(SeriesView(table.time_s).at(row));
 }
 
 // All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
@@ -153,7 +154,7 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   if (options.keep_motion || options.minus_reference || axes.empty()) return all;
   Rest rest = find_rest(axes, references, clock.period_s);
   try {
-    require_rest(rest, clock.period_s, told_time(table, rows.begin));
+    require_rest(rest, clock.period_s, told_time_s(table, rows.begin));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(name + ": " + error.what() +
                              (references.empty() ? "" : ", or --minus-reference") + ", or --moving keep");
@@ -161,9 +162,9 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   return rest;
 }
 
-// time_s: since origin_s.
+// time_s: since the origin.
 AllanRecord analyse(const std::string& name, const std::string& signal, const std::string& axis,
-                    double origin_s, const SeriesView& time_s, const SeriesView& rate,
+                    const TimeOrigin& origin, const SeriesView& time_s, const SeriesView& rate,
                     const SampleClock& clock, const Gaps& gaps, const Rest& rest,
                     const AllanOptions& options) {
   AllanRecord record;
@@ -176,7 +177,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   const double period = 1.0 / record.sample_rate_hz;
   const std::string column = signal + (axis.empty() ? "" : "_" + axis);
 
-  const auto told_time_s = [&](std::size_t row) { return origin_s + time_s.at(row); };
+  const auto told_time_s = [&](std::size_t row) { return origin.told(time_s.at(row)); };
   std::size_t nans = 0, first_nan = 0;
   for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -186,7 +187,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   if (clock.gaps > 0) {
     const std::string what = std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
                              " in the time column (" + std::to_string(clock.missing) +
-                             " samples missing), the first after " + number(told_time_s(clock.first_gap)) +
+                             " samples missing), the first after " + told_time(told_time_s(clock.first_gap)) +
                              " s";
     if (options.refuse_gaps)
       throw std::runtime_error(gaps.place(clock.first_gap) + ": " + what + ", expected none");
@@ -294,7 +295,7 @@ bool allan_wants(const std::string& column) {
 
 std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,
                                        const AllanOptions& options) {
-  const TimePart::Rows rows = options.part.rows(table.time_s, table.origin_s, name);
+  const TimePart::Rows rows = options.part.rows(table.time_s, table.origin, name);
   const SeriesView time_s = SeriesView(table.time_s).part(rows.begin, rows.end);
   if (time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
@@ -332,13 +333,13 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
     Rest analysed = rest;
     analysed.at_rest = common(rest.at_rest, running);
-    records.push_back(analyse(name, signal, axis, static_cast<double>(table.origin_s), time_s,
-                              rate.part(rows.begin, rows.end), clock, gaps, analysed, options));
+    records.push_back(analyse(name, signal, axis, table.origin, time_s, rate.part(rows.begin, rows.end),
+                              clock, gaps, analysed, options));
     if (later)
       records.back().notes.push_back(
-          name + ": " + column.name + ": until " + number(told_time(table, started)) +
+          name + ": " + column.name + ": until " + told_time(told_time_s(table, started)) +
           " s the filter had not started and this is the compensated rate: left out");
-    if (const std::string motion = in_words(rest, clock.period_s, told_time(table, rows.begin));
+    if (const std::string motion = in_words(rest, clock.period_s, told_time_s(table, rows.begin));
         !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }

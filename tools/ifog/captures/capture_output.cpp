@@ -99,7 +99,7 @@ void write_columns(const LongTable& table, const std::string& from, const std::s
   ColumnWriter file(to, table.comments, rows.names());
   Progress progress("writing " + std::filesystem::path(to).filename().string(), table.size());
   for (std::size_t done = 0; rows.next(); progress.at(done)) {
-    file.rows(rows.rows(), rows.origin_s());
+    file.rows(rows.rows(), rows.origin());
     done += rows.rows().front().size();
   }
   file.finish();

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,7 +20,7 @@ struct CaptureView {
   };
 
   std::vector<std::string> comments;
-  std::int64_t origin_s = 0;  // that time_s is counted from
+  TimeOrigin origin;  // that time_s is counted from
   std::span<const double> time_s;
   std::vector<std::string> axes, dead_axes;
   std::vector<std::span<const double>> rate_radps;
@@ -34,9 +33,7 @@ struct CaptureView {
   CaptureView(const Capture& capture);  // which has to outlive this
 
   // Of a row, for who is told of it.
-  [[nodiscard]] double told_time_s(std::size_t row) const {
-    return static_cast<double>(origin_s) + time_s[row];
-  }
+  [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s[row]); }
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 

@@ -3,7 +3,6 @@
 // the two apart for writing.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <variant>
@@ -24,13 +23,13 @@ class ColumnWriter {
     else
       file_.emplace<CsvWriter>(path, comments, names);
   }
-  // By column, in the order of the names, all of one length. origin_s: that the first, a time, is counted
+  // By column, in the order of the names, all of one length. origin: that the first, a time, is counted
   // from.
-  void rows(std::span<const std::span<const double>> columns, std::int64_t origin_s = 0) {
+  void rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin = {}) {
     if (auto* const csv = std::get_if<CsvWriter>(&file_))
-      csv->rows(columns, origin_s);
+      csv->rows(columns, origin);
     else if (auto* const hdf5 = std::get_if<Hdf5Writer>(&file_))
-      rows_of_doubles(*hdf5, columns, origin_s);
+      hdf5->rows(columns, origin);
   }
   // Without it a regular file stays as it was.
   void finish() {
@@ -41,15 +40,6 @@ class ColumnWriter {
   }
 
  private:
-  static void rows_of_doubles(Hdf5Writer& file, std::span<const std::span<const double>> columns,
-                              std::int64_t origin_s) {
-    std::vector<std::span<const double>> all(columns.begin(), columns.end());
-    std::vector<double> time(all.front().begin(), all.front().end());
-    for (double& each : time) each += static_cast<double>(origin_s);
-    all.front() = time;
-    file.rows(all);
-  }
-
   std::variant<std::monostate, CsvWriter, Hdf5Writer> file_;
 };
 

@@ -23,7 +23,7 @@ std::vector<std::string> lines_of(std::string_view text) {
 
 CaptureView::CaptureView(const Capture& capture)
     : comments(capture.comments),
-      origin_s(capture.origin_s),
+      origin(capture.origin),
       time_s(capture.time_s),
       axes(capture.axes),
       dead_axes(capture.dead_axes),
@@ -39,7 +39,7 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   view_.comments = lines_of(table_.comments);
   view_.faults = table_.faults;
   view_.since_power_up_s = table_.since_power_up_s;
-  view_.origin_s = table_.origin_s;
+  view_.origin = table_.origin;
   view_.time_s = table_.time_s.all();
   view_.axes = shape.axes;
   view_.dead_axes = table_.dead_axes;
@@ -60,19 +60,11 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   }
 }
 
-void LongCapture::count_from_zero() {
-  if (view_.origin_s == 0) return;
-  from_zero_.assign(view_.time_s.begin(), view_.time_s.end());
-  for (double& time : from_zero_) time += static_cast<double>(view_.origin_s);
-  view_.time_s = from_zero_;
-  view_.origin_s = 0;
-}
-
 void LongCapture::cut(const TimePart& part, const std::string& name) { view_ = this->part(part, name); }
 
 CaptureView LongCapture::part(const TimePart& part, const std::string& name) const {
   CaptureView out = view_;
-  const TimePart::Rows rows = part.rows(view_.time_s, view_.origin_s, name);
+  const TimePart::Rows rows = part.rows(view_.time_s, view_.origin, name);
   const auto keep = [&](std::span<const double>& values) {
     if (!values.empty()) values = values.subspan(rows.begin, rows.end - rows.begin);
   };

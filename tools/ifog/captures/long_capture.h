@@ -22,8 +22,6 @@ class LongCapture {
 
   [[nodiscard]] const CaptureView& view() const { return view_; }
   void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }
-  // For what looks at several captures by one clock: the times lose what a double has no room for.
-  void count_from_zero();
   // The rows inside.
   [[nodiscard]] CaptureView part(const TimePart& part, const std::string& name) const;
   // Rows outside are gone. name: for messages. Throws as TimePart::rows().
@@ -34,7 +32,6 @@ class LongCapture {
  private:
   LongTable table_;
   std::vector<Samples> corrected_;
-  Samples from_zero_;
   CaptureView view_;  // of those
 };
 

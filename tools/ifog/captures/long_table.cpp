@@ -55,7 +55,7 @@ void LongTableSink::begin(const std::vector<std::string>& names) {
 }
 
 void LongTableSink::take(RowBlock& rows) {
-  table_.origin_s = rows.origin_s;
+  table_.origin = rows.origin;
   table_.time_s.add(rows.time_s);
   for (std::size_t c = 0; c < from_.size(); ++c) {
     LongColumn& column = table_.columns[c];
@@ -98,7 +98,7 @@ void LongRows::as_capture(Capture& piece) const {
   piece.rate_radps.resize(shape_.axes.size());
   piece.reference_rate_radps.resize(shape_.axes.size());
   piece.channels.resize(shape_.channels);
-  piece.origin_s = table_.origin_s;
+  piece.origin = table_.origin;
   put(rows_[0], piece.time_s);
   for (std::size_t i = 0; i < from_.size(); ++i) {
     const CaptureShape::Place& place = shape_.places[from_[i]];

@@ -20,7 +20,7 @@ struct LongColumn {
 };
 
 struct LongTable : RowNotes {
-  std::int64_t origin_s = 0;  // that time_s is counted from
+  TimeOrigin origin;  // that time_s is counted from
   LongSeries time_s;
   std::vector<std::string> header;     // all that the file has but time_s, but for dead_axes
   std::vector<LongColumn> columns;     // of those that are wanted, in the same order
@@ -61,7 +61,7 @@ class LongRows {
   // The next rows, by name; false at the end. Valid until the next call.
   bool next();
   [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
-  [[nodiscard]] std::int64_t origin_s() const { return table_.origin_s; }
+  [[nodiscard]] const TimeOrigin& origin() const { return table_.origin; }
   // The same as a capture of so many rows, whose columns keep their places.
   void as_capture(Capture& piece) const;
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -19,18 +18,22 @@ class App;
 namespace ifog::tools {
 
 struct TimePart {
-  double from_s = -std::numeric_limits<double>::infinity();
-  double to_s = std::numeric_limits<double>::infinity();  // from this time on left out
+  struct Bound : SaidTime {
+    std::string text;  // as it was given; "": it was not
+  };
+  Bound from{{-std::numeric_limits<double>::infinity(), 0.0}, ""};
+  Bound to{{std::numeric_limits<double>::infinity(), 0.0}, ""};  // from this time on left out
 
-  // Adds the two options to a command.
-  void add_to(CLI::App& command);
+  // Adds the two options to a command, which this must outlive.
+  void add_to(CLI::App& command, const std::string& of_from = "Leave out what is before this time, s",
+              const std::string& of_to = "Leave out what is from this time on, s");
 
   struct Rows {
     std::size_t begin, end;
   };
-  // Those inside. origin_s: that the times are counted from; name: for messages. Throws std::runtime_error
+  // Those inside. origin: that the times are counted from; name: for messages. Throws std::runtime_error
   // with one line when there is none.
-  [[nodiscard]] Rows rows(const SeriesView& time_s, std::int64_t origin_s, const std::string& name) const;
+  [[nodiscard]] Rows rows(const SeriesView& time_s, const TimeOrigin& origin, const std::string& name) const;
   // The same refusal, of times that nobody kept.
   [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
 
@@ -38,7 +41,7 @@ struct TimePart {
   // one line when no row is inside.
   std::size_t cut(Capture& capture, const std::string& name) const;
   // columns: as long as the times, or empty.
-  std::size_t cut(std::vector<double>& time_s, std::int64_t origin_s,
+  std::size_t cut(std::vector<double>& time_s, const TimeOrigin& origin,
                   std::span<std::vector<double>* const> columns, const std::string& name) const;
 };
 

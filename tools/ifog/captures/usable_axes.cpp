@@ -9,6 +9,7 @@
 
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -77,10 +78,8 @@ std::vector<std::string> unusable(const CaptureView& capture, const std::string&
 std::string missing_in_words(const std::string& column, std::size_t missing, std::size_t rows,
                              double first_s) {
   if (missing == 0) return "";
-  char first[32];
-  std::snprintf(first, sizeof first, "%.10g", first_s);
   return column + " is missing in " + std::to_string(missing) + " of " + std::to_string(rows) +
-         " rows, first at " + first + " s";
+         " rows, first at " + told_time(first_s) + " s";
 }
 
 void tell_left_out(const std::string& name, const std::string& column, std::size_t rows) {

@@ -11,7 +11,7 @@ namespace {
 RowNotes hand_on(Capture capture, RowSink& sink) {
   std::vector<std::string> names;
   RowBlock rows;
-  rows.origin_s = capture.origin_s;
+  rows.origin = capture.origin;
   rows.time_s = std::move(capture.time_s);
   const auto add = [&](const std::string& what, const std::string& axis, std::vector<double>& values) {
     if (values.empty()) return;
@@ -47,6 +47,7 @@ LongTable long_table(Table whole) {
   LongTableSink sink(table);
   std::vector<std::string> names;
   RowBlock rows;
+  rows.origin = whole.origin;
   rows.time_s = std::move(whole.time_s);
   for (CaptureColumn& column : whole.columns) {
     names.push_back(column.name);

@@ -40,7 +40,7 @@ AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const
 report::Thinned drawn(const CaptureView& capture, const report::TimeAxis& axis,
                       std::span<const double> rate_radps) {
   Samples time(capture.time_s), rate(rate_radps);
-  for (double& t : time) t = axis(static_cast<double>(capture.origin_s) + t);
+  for (double& t : time) t = axis(capture.origin.told(t));
   for (double& r : rate) r *= 1.0 / kDegreePerHour;
   return report::thinned(time, rate);
 }

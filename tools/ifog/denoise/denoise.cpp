@@ -16,6 +16,7 @@
 #include "filters/estimator/smoother.h"
 #include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight_input.h"
@@ -87,9 +88,12 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
 }
 
 // A row an axis, one more where a model corrects it, with one time axis below all of them.
-void draw(const std::string& path, const DenoisedColumns& columns, const OfflineResult& result) {
-  const report::TimeAxis axis_of_time(columns.time_s.front(), columns.time_s.back());
-  const std::vector<double> time = axis_of_time(columns.time_s);
+void draw(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
+          const OfflineResult& result) {
+  std::vector<double> time = columns.time_s;
+  for (double& t : time) t = origin.told(t);
+  const report::TimeAxis axis_of_time(time.front(), time.back());
+  time = axis_of_time(std::move(time));
   std::vector<report::PictureRow> rows;
   const auto row = [&](const std::string& title, const char* noisy, const std::vector<double>& values,
                        const DenoisedAxis& axis, bool last) {
@@ -170,10 +174,10 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   tell_unusable(options.capture, rows, result);
   if (result.not_as_published_from_s && options.config.empty())
     warn(
-        "%s: from %.3f s on, until the filter has settled, this need not be what was published: the "
+        "%s: from %s s on, until the filter has settled, this need not be what was published: the "
         "recording "
         "lacks something there\n",
-        options.capture.c_str(), *result.not_as_published_from_s);
+        options.capture.c_str(), told_time(rows.origin().told(*result.not_as_published_from_s)).c_str());
   say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
       gaps_in_words(result.counts).c_str());
   if (result.runs > 1 || result.exchanges > 0)
@@ -265,7 +269,7 @@ void run(DenoiseOptions options) {
   } else {
     LongTable table = options.input.read_long(capture);
     keep_usable_axes(table, options.capture);
-    rows.count_from(table.origin_s);
+    rows.count_from(table.origin);
     OfflineSettings of = settings();
     tell_other_rate(options, of.sensor.nominal_rate_hz, table);
     const std::string model = of.model ? of.model->identity() : "";
@@ -278,7 +282,7 @@ void run(DenoiseOptions options) {
   rows.finish(options.capture);
   tell(options, rows, result);
   if (!options.json.empty()) write_json(options.json, summary(options, rows, result));
-  if (!options.picture.empty()) draw(options.picture, rows.columns(), result);
+  if (!options.picture.empty()) draw(options.picture, rows.columns(), rows.origin(), result);
 }
 
 }  // namespace
@@ -332,9 +336,8 @@ void add_denoise(CLI::App& app) {
                    "warm_up is not corrected")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
-  command->add_option("--from", options->part.from_s,
-                      "Write nothing before this time, s; filter from the beginning");
-  command->add_option("--to", options->part.to_s, "Write nothing from this time on, s");
+  options->part.add_to(*command, "Write nothing before this time, s; filter from the beginning",
+                       "Write nothing from this time on, s");
   command->add_option("--json", options->json, "Summary as JSON")->type_name("FILE");
   command->add_option("--plot", options->picture, "Picture, .svg or .png")
       ->check(report::wrong_picture_name, "")

@@ -57,7 +57,7 @@ void DenoisedRows::end_row() {
 
 void DenoisedRows::flush() {
   if (held_.front().empty()) return;
-  file_->rows(std::vector<std::span<const double>>(held_.begin(), held_.end()), origin_s_);
+  file_->rows(std::vector<std::span<const double>>(held_.begin(), held_.end()), origin_);
   for (std::vector<double>& column : held_) column.clear();
 }
 
@@ -70,15 +70,16 @@ void DenoisedRows::count(const ChainOutput& out) {
 }
 
 bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
-  const double told_s = origin_s() + time_s;
+  const double told_s = origin_.told(time_s);
   if (rows_++ == 0) first_s_ = told_s;
   last_s_ = told_s;
   if (keep_) {
     columns_.time_s.push_back(time_s);
     columns_.dt_s.push_back(increment.dt_s);
   }
-  over_ = over_ || (told_s >= part_.from_s && told_s >= part_.to_s);
-  const bool inside = told_s >= part_.from_s && !over_;
+  const bool begun = !part_.from.is_after(origin_, time_s);
+  over_ = over_ || (begun && !part_.to.is_after(origin_, time_s));
+  const bool inside = begun && !over_;
   if (inside) {
     ++written_;
     count(out);
@@ -118,7 +119,7 @@ void DenoisedRows::finish(const std::string& name) {
     for (DenoisedAxis& axis : columns_.axes)
       all.insert(all.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance, &axis.smoothed,
                              &axis.smoothed_variance});
-    part_.cut(columns_.time_s, origin_s_, all, name);
+    part_.cut(columns_.time_s, origin_, all, name);
   }
   for (std::size_t i = 0; smooth_ && i < columns_.time_s.size(); ++i) {
     append(columns_.time_s[i]);
@@ -130,7 +131,6 @@ void DenoisedRows::finish(const std::string& name) {
   }
   flush();
   file_->finish();
-  for (double& time : columns_.time_s) time += origin_s();
 }
 
 }  // namespace ifog::tools

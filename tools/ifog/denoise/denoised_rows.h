@@ -57,13 +57,13 @@ class DenoisedRows {
   // Once, before the first sample.
   void begin(const std::vector<std::string>& axes);
   // That all times are counted from; before the first sample.
-  void count_from(std::int64_t origin_s) { origin_s_ = origin_s; }
-  [[nodiscard]] double origin_s() const { return static_cast<double>(origin_s_); }
+  void count_from(const TimeOrigin& origin) { origin_ = origin; }
+  [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   // Whether it is in the part.
   bool add(double time_s, const Increment& increment, const ChainOutput& out);
   // What was kept, of all rows: smoothing fills its last two columns. After the last sample.
   [[nodiscard]] DenoisedColumns& columns() { return columns_; }
-  // Of the rows in the part from here on, by times as they are told. name: of the capture. Throws
+  // Of the rows in the part from here on. name: of the capture. Throws
   // std::runtime_error with one line when there are none, or none with a value, or as OutputFile does.
   void finish(const std::string& name);
 
@@ -91,7 +91,7 @@ class DenoisedRows {
   std::vector<AxisMoments> moments_;
   Counts counts_;
   std::size_t rows_ = 0, written_ = 0;
-  std::int64_t origin_s_ = 0;
+  TimeOrigin origin_;
   double first_s_ = 0.0, last_s_ = 0.0;
   bool over_ = false;  // beyond the part
 };

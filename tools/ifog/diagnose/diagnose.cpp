@@ -45,7 +45,6 @@ void run(const Arguments& arguments) {
     hashes.emplace_back();
     const bool wanted = !arguments.write_model.empty() || !arguments.report.empty();
     read.push_back(arguments.input.read_long_capture(path, wanted ? &hashes.back() : nullptr));
-    read.back().count_from_zero();
     if (arguments.since_power_up_s) read.back().set_since_power_up(*arguments.since_power_up_s);
   }
   std::vector<CaptureView> as_sent;

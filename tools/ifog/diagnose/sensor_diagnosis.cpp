@@ -22,6 +22,7 @@
 #include "filters/model_file/sha256.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
@@ -38,6 +39,7 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
   Record record;
   record.name = name;
   record.time_s = capture.time_s;
+  record.origin = {static_cast<double>(capture.origin.s), static_cast<double>(capture.origin.ns) / 1e9};
   record.rate_radps = capture.rate_radps[axis];
   if (!capture.reference_rate_radps[axis].empty())
     record.reference_radps = capture.reference_rate_radps[axis];
@@ -66,20 +68,25 @@ struct Common {
 // one row differs, as it does between records that both begin at 0.
 Common common_rows(const CaptureView& a, const CaptureView& b) {
   if (a.size() == 0 || b.size() == 0 || a.rate_radps.size() != b.rate_radps.size()) return {};
-  const double from_s = std::max(a.time_s.front(), b.time_s.front());
-  const auto first = [&](const CaptureView& of) {
+  const double later_s = b.origin.later_than(a.origin);  // what b's times are counted from
+  const auto first = [](const CaptureView& of, double from_s) {
     return static_cast<std::size_t>(std::lower_bound(of.time_s.begin(), of.time_s.end(), from_s) -
                                     of.time_s.begin());
   };
+  // Counted from two places, the same time is no more than about the same double.
+  const double room_s = later_s == 0.0 ? 0.0 : 0.5e-9;
   Common found;
-  for (std::size_t i = first(a), j = first(b); i < a.size() && j < b.size();) {
-    if (a.time_s[i] != b.time_s[j]) {
-      ++(a.time_s[i] < b.time_s[j] ? i : j);
+  for (std::size_t i = first(a, b.time_s.front() + later_s - room_s),
+                   j = first(b, a.time_s.front() - later_s - room_s);
+       i < a.size() && j < b.size();) {
+    const double apart_s = a.time_s[i] - (b.time_s[j] + later_s);
+    if (std::abs(apart_s) > room_s) {
+      ++(apart_s < 0.0 ? i : j);
       continue;
     }
     if (!same_row(a, i, b, j)) return {};
-    if (found.rows++ == 0) found.from_s = a.time_s[i];
-    found.to_s = a.time_s[i];
+    if (found.rows++ == 0) found.from_s = a.told_time_s(i);
+    found.to_s = a.told_time_s(i);
     ++i;
     ++j;
   }
@@ -95,10 +102,9 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
       const Common common = common_rows(captures[c], captures[later]);
       const bool whole = common.rows == captures[c].size() && common.rows == captures[later].size();
       if (!whole && common.rows <= kByChance) continue;
-      std::array<char, 80> where{};
-      if (!whole)
-        std::snprintf(where.data(), where.size(), " from %.10g to %.10g s", common.from_s, common.to_s);
-      throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] + where.data() +
+      const std::string where =
+          whole ? "" : " from " + told_time(common.from_s) + " to " + told_time(common.to_s) + " s";
+      throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] + where +
                                ", expected each record once");
     }
 }

@@ -30,7 +30,6 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
   for (const std::string& path : gyro.captures) {
     opened.hashes.emplace_back();
     opened.read.push_back(settings.input.read_long_capture(path, &opened.hashes.back()));
-    opened.read.back().count_from_zero();
     opened.read.back().cut(settings.part, path);
     opened.captures.push_back(opened.read.back().view());
   }
@@ -149,8 +148,8 @@ std::string FleetSettings::text() const {
   add(text, "separator", input.separator);
   add(text, "group", input.group);
   add(text, "axis", wanted.axes);
-  add(text, "from", part.from_s);
-  add(text, "to", part.to_s);
+  add(text, "from", part.from.text);
+  add(text, "to", part.to.text);
   add(text, "significance", wanted.significance);
   add(text, "earth", wanted.earth ? "yes" : "no");
   if (wanted.latitude_rad) add(text, "latitude", *wanted.latitude_rad);

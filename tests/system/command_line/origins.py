@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The same series with its times begun at 0 and at any other moment, in any unit and format: what every command says of it is
+the same, to the last bit of what is no time, and times are those of the file to the last digit. Then times that do not go on as
+those of one recording do: each is refused with its line or said.
+
+usage: origins.py PATH_OF_IFOG SOURCE_DIR       The HDF5 part is left out, and said, without h5py.
+"""
+import json
+import math
+import random
+import re
+import sys
+from decimal import Decimal
+
+try:
+    import h5py
+    import numpy
+except ImportError:
+    h5py = None
+
+from run import ifog, main_of, ran, refused
+
+S = 10**9  # ns
+STARTS = {"1970": 1_700_000_000_123_456_789, "GPS": 345_678_250_000_000, "before": -1_700_000_000_500_000_000}
+UNITS = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}
+RATE_HZ, ROWS = 100, 3000
+KINDS = ("even", "uneven", "holes")
+COLUMNS = ["--column", "rate_radps=rate_radps", "--column", "temperature_degC=temperature_degC"]
+TOLD = {"from_s", "to_s", "times_s", "time_s"}  # keys whose values are times of the capture
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
+
+
+def stamp(ns, of_second=1):
+    """A time in plain digits, all that a ns has in the unit."""
+    a_unit = S // of_second
+    whole, rest = divmod(abs(ns), a_unit)
+    digits = len(str(a_unit)) - 1
+    return ("-" if ns < 0 else "") + str(whole) + (f".{rest:0{digits}d}" if digits else "")
+
+
+def series(kind):
+    """ns since its start, rates, temperatures as cells: with a step, a glitch and cells that are missing, so that times are told."""
+    draw = random.Random(7)
+    ns, rate, temperature, walk = [], [], [], 0.0
+    for i in range(ROWS):
+        late = draw.randrange(-200_000, 200_001) if kind == "uneven" and i else 0
+        hole = 3 * S + 70_000_000 if kind == "holes" and i > ROWS // 2 else 0
+        ns.append(i * S // RATE_HZ + late + hole)
+        walk += draw.gauss(0, 2e-8)
+        degrees = round(25 + 3 * math.sin(2 * math.pi * i / (ROWS / 2.3)) + 0.01 * draw.gauss(0, 1), 4)
+        value = draw.gauss(0, 1e-5) * (3 if i > 0.8 * ROWS else 1) + walk + 4e-6 * (degrees - 25) + (3e-5 if i > ROWS / 3 else 0)
+        rate.append("" if kind == "holes" and 700 <= i < 720 else repr(value + (1e-2 if i == 2000 else 0)))
+        temperature.append(repr(degrees))
+    return ns, rate, temperature
+
+
+def same_text(before, after, start_s):
+    """Word for word, but that a number may be a time, which is start_s later, as far as people are told it."""
+    numbers = NUMBER.findall(before), NUMBER.findall(after)
+    if NUMBER.sub("#", before) != NUMBER.sub("#", after) or len(numbers[0]) != len(numbers[1]):
+        return False
+    return all(a == b or abs(float(b) - float(a) - start_s) < 1e-4 for a, b in zip(*numbers))
+
+
+def differences(before, after, start_s, key=""):
+    """Places where two documents differ by more than the times that they tell."""
+    if isinstance(before, dict) and isinstance(after, dict) and set(before) == set(after):
+        return [d for k in before for d in differences(before[k], after[k], start_s, key if k == "value" and key in TOLD else k)]
+    if isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+        return [d for a, b in zip(before, after) for d in differences(a, b, start_s, key)]
+    if isinstance(before, str) and isinstance(after, str):
+        return [] if same_text(before, after, start_s) else [(key, before, after)]
+    if before == after and (key not in TOLD or start_s == 0):
+        return []
+    told = key in TOLD and isinstance(before, float) and abs(after - before - start_s) < 1e-6
+    return [] if told else [(key, before, after)]
+
+
+class Checks:
+    def __init__(self, folder):
+        self.folder = folder
+        self.series = {kind: series(kind) for kind in KINDS}
+        self.answers = {}  # of the series that begins at 0
+
+    def csv(self, name, times, kind="even", unit="s"):
+        path = self.folder / name
+        header = "time_s" if unit == "s" else "t"
+        _, rate, temperature = self.series[kind]
+        path.write_text(f"{header},rate_radps,temperature_degC\n" + "".join(
+            f"{stamp(t, UNITS[unit])},{r},{d}\n" for t, r, d in zip(times, rate, temperature)))
+        return path, [] if unit == "s" else ["--time", f"t:{unit}", *COLUMNS]
+
+    def hdf5(self, name, times, kind, dtype):
+        """As others write it: the times as integers."""
+        path = self.folder / name
+        _, rate, temperature = self.series[kind]
+        with h5py.File(path, "w") as file:
+            file["t"] = numpy.array(times, dtype=dtype)
+            file["rate_radps"] = numpy.array([float(r) if r else math.nan for r in rate])
+            file["temperature_degC"] = numpy.array([float(d) for d in temperature])
+        return path, ["--time", "t:ns", *COLUMNS]
+
+    def answer(self, command, path, options):
+        """What the command says, with the file's name taken out: its JSON, its words."""
+        out = self.folder / "answer.json"
+        more = {"denoise": ["--output", self.folder / "denoised.csv"], "diagnose": ["--write-model", self.folder / "model.toml"]}.get(command, [])
+        words = ifog(command, path, *options, *more, "--json", out)
+        def unnamed(text):
+            return re.sub(r"FILE:(\d+| sample \d+)", "FILE", text.replace(path.name, "FILE").replace(str(self.folder), ""))
+        document = json.loads(unnamed(out.read_text()))
+        words = "\n".join(line for line in words.splitlines() if "ifog denoise" not in line)
+        if command == "denoise":
+            words += "".join(line.partition(",")[2] + "\n" for line in (self.folder / "denoised.csv").read_text().splitlines())
+        if command == "diagnose":
+            model = (self.folder / "model.toml").read_text()
+            words += "\n".join(line for line in model.splitlines() if not line.startswith(("date", "sha256", "capture")))
+        return document, unnamed(words)
+
+    def require_same(self, command, kind, start, path, options):
+        if (command, kind) not in self.answers:
+            self.answers[command, kind] = self.answer(command, *self.csv("zero.csv", self.series[kind][0], kind))
+        before, after = self.answers[command, kind], self.answer(command, path, options)
+        found = differences(before[0], after[0], start / S) + ([] if same_text(before[1], after[1], start / S) else [("words", before[1], after[1])])
+        assert not found, (command, kind, path.name, len(found), found[:3])
+
+    def require_times(self, path, times):
+        """To the digit, as the column says them."""
+        lines = [line for line in path.read_text().splitlines() if not line.startswith("#")][1:]
+        found = [Decimal(line.partition(",")[0]) for line in lines]
+        assert found == [Decimal(t).scaleb(-9) for t in times], (path.name, found[:3], times[:3])
+
+    def check_every_start_and_unit_gives_the_same(self):
+        for kind in KINDS:
+            ns = self.series[kind][0]
+            for start in STARTS.values():
+                times = [start + t for t in ns]
+                for unit in UNITS:
+                    path, options = self.csv("moved.csv", times, kind, unit)
+                    out = self.folder / "converted.csv"
+                    ifog("convert", path, out, *options)
+                    self.require_times(out, times)
+                    self.require_same("allan", kind, start, path, options)
+                    if unit in ("s", "ns"):
+                        self.require_same("denoise", kind, start, path, options)
+                        self.require_times(self.folder / "denoised.csv", times)
+
+    def check_commands_that_search_find_the_same(self):
+        for command, kind, start, unit in (("diagnose", "even", "1970", "s"), ("diagnose", "holes", "GPS", "us"), ("tune", "holes", "1970", "ms"),
+                                           ("diagnose", "uneven", "before", "ns"), ("tune", "even", "before", "ns"), ("compare", "uneven", "1970", "us")):
+            path, options = self.csv("moved.csv", [STARTS[start] + t for t in self.series[kind][0]], kind, unit)
+            self.require_same(command, kind, STARTS[start], path, options)
+
+    def check_a_fleet_of_them_is_of_one_kind(self):
+        """Three gyros whose captures differ in nothing but when they began."""
+        ns = self.series["even"][0]
+        starts = {"A": 0, "B": STARTS["1970"], "C": STARTS["before"]}
+        lot = 'type = "demo"\n'
+        for serial, start in starts.items():
+            self.csv(f"gyro_{serial}.csv", [start + t for t in ns])
+            lot += f'[[gyro]]\nserial = "{serial}"\ncaptures = ["gyro_{serial}.csv"]\n'
+        (self.folder / "lot.toml").write_text(lot)
+        ifog("fleet", self.folder / "lot.toml", "--engine", "local", "--results", self.folder / "lot")
+
+        def found(serial):
+            text = (self.folder / "lot/gyros" / serial / "diagnosis.json").read_text()
+            return json.loads(text.replace(f"gyro_{serial}.csv", "FILE"))
+        for serial in ("B", "C"):
+            wrong = differences(found("A"), found(serial), starts[serial] / S)
+            assert not wrong, (serial, wrong[:3])
+
+    def check_parts_are_cut_where_the_digits_say(self):
+        start = STARTS["1970"]
+        times = [start + t for t in self.series["uneven"][0]]
+        path, _ = self.csv("cut.csv", times, "uneven")
+        out = self.folder / "part.csv"
+        for first, last in ((1000, 2000), (1, 2999), (1701, 1702)):
+            ifog("denoise", path, "--output", out, "--from", stamp(times[first]), "--to", stamp(times[last]))
+            self.require_times(out, times[first:last])
+            # A ns later the first row is out, and the last one in.
+            ifog("denoise", path, "--output", out, "--from", stamp(times[first] + 1), "--to", stamp(times[last] + 1))
+            self.require_times(out, times[first + 1:last + 1])
+        result = ran("allan", path, "--from", stamp(start + 100 * S))
+        assert result.returncode == 1 and stamp(times[0])[:15] in result.stderr, result.stderr
+
+    def check_records_that_overlap_are_seen_whatever_they_are_counted_from(self):
+        times = [STARTS["1970"] + t for t in self.series["uneven"][0]]
+        whole, _ = self.csv("whole.csv", times, "uneven")
+        part = self.folder / "part_of_it.csv"
+        lines = whole.read_text().splitlines(keepends=True)
+        part.write_text("".join(lines[:1] + lines[1000:]))
+        refused(1, "diagnose", whole, part, says=["part_of_it.csv: holds the same samples as", "from 1700000010.11", "expected each record once"])
+
+    def check_frames_carry_the_times(self):
+        """Format B of the KVH 1750 has its time in µs of 32 bits."""
+        times = [STARTS["1970"] + t for t in self.series["uneven"][0]]
+        path, _ = self.csv("sent.csv", times, "uneven")
+        driver = ["--driver", "kvh1750", "--option", "format=b"]
+        us = [t // 1000 % 2**32 for t in times]
+        expected = [Decimal(us[0] + (u - us[0]) % 2**32).scaleb(-6) for u in us]
+        for command in (["convert", path, self.folder / "sent.kvh", *driver],
+                        ["replay", path, *driver, "--speed", "0", "--to", f"file:{self.folder / 'sent.kvh'}"]):
+            ifog(*command)
+            back = self.folder / "back.csv"
+            ifog("convert", self.folder / "sent.kvh", back, *driver)
+            found = [Decimal(line.partition(",")[0]) for line in back.read_text().splitlines()[1:]]
+            assert found == expected, (command[0], found[:3], expected[:3])
+
+    def check_hdf5_has_all_the_digits(self):
+        if h5py is None:
+            print("left out: HDF5 (apt install python3-h5py)")
+            return
+        for number, (kind, start) in enumerate(zip(KINDS, STARTS.values())):
+            times = [start + t for t in self.series[kind][0]]
+            path, options = self.hdf5("moved.h5", times, kind, "<i8" if start < 0 or number % 2 else ">u8")
+            out = self.folder / "converted.csv"
+            ifog("convert", path, out, *options)
+            self.require_times(out, times)
+            self.require_same("allan", kind, start, path, options)
+            self.require_same("denoise", kind, start, path, options)
+            # Ours has them as doubles, for whoever wants no more, and whole.
+            ours = self.folder / "ours.h5"
+            ifog("convert", path, ours, *options)
+            with h5py.File(ours) as file:
+                assert file["time_ns"].dtype == "<i8" and list(file["time_ns"][:]) == times
+                assert [float(t) for t in file["time_s"][:]] == [float(Decimal(t).scaleb(-9)) for t in times]
+            self.require_same("allan", kind, start, ours, [])
+            self.require_same("denoise", kind, start, ours, COLUMNS)
+            again = self.folder / "again.h5"
+            ifog("convert", ours, again)
+            assert again.read_bytes() == ours.read_bytes()
+        records = numpy.zeros(ROWS, dtype=[("t", "<i8"), ("rate_radps", "<f8")])
+        records["t"], records["rate_radps"] = times, 1e-6
+        for chunks in (True, (ROWS,)):
+            with h5py.File(self.folder / "table.h5", "w") as file:
+                file.create_dataset("t", data=records, chunks=chunks, compression="gzip")
+            ifog("convert", self.folder / "table.h5", out, "--group", "/t", "--time", "t:ns", "--column", "rate_radps=rate_radps")
+            self.require_times(out, times)
+
+    def check_times_that_go_back_are_refused_with_their_line(self):
+        ns, half, start = self.series["even"][0], ROWS // 2, STARTS["1970"]
+        cases = {
+            "an overlap": ([start + t - (5 * S if i >= half else 0) for i, t in enumerate(ns)], []),
+            "two recordings from 0": ([t if i < half else ns[i - half] for i, t in enumerate(ns)], []),
+            "a stamp twice": ([start + (t if i != half else ns[half - 1]) for i, t in enumerate(ns)], []),
+            "a leap second": ([start + t - (S if i >= half else 0) for i, t in enumerate(ns)], []),
+            "a GPS week": ([(604_800 * S - ns[half] + t) % (604_800 * S) for t in ns], ["a GPS week began anew", "604800 s"]),
+            "a day": ([(86_400 * S - ns[half] + t) % (86_400 * S) for t in ns], ["a day began anew", "86400 s"]),
+            "32 bits of us": ([(2**32 * 1000 - ns[half] + t) % (2**32 * 1000) for t in ns], ["a count of µs in 32 bits began anew"]),
+        }
+        for what, (times, says) in cases.items():
+            path, _ = self.csv("back.csv", times)
+            line = next(i for i in range(1, ROWS) if times[i] <= times[i - 1]) + 2
+            for command in (["allan"], ["tune"], ["diagnose"], ["convert", self.folder / "never.csv"], ["denoise", "--output", self.folder / "never.csv"]):
+                refused(1, command[0], path, *command[1:], says=[f"back.csv:{line}: time_s is {stamp(times[line - 2])}, expected more than in the row before", *says])
+            if h5py is not None:
+                path, options = self.hdf5("back.h5", times, "even", "<i8")
+                refused(1, "allan", path, *options, says=[f"t is {times[line - 2]} in row {line - 1}, expected more", *says])
+            assert not (self.folder / "never.csv").exists(), what
+
+    def check_holes_are_counted(self):
+        """A leap second forward and recordings put behind one another, against steps that are whole periods."""
+        ns, half = self.series["even"][0], ROWS // 2
+        for later_s, start in ((1, STARTS["1970"]), (7200, STARTS["GPS"]), (1, 0)):
+            path, _ = self.csv("hole.csv", [start + t + (later_s * S if i >= half else 0) for i, t in enumerate(ns)])
+            missing, place = later_s * RATE_HZ, f"hole.csv:{half + 1}: 1 gap in the time column ({later_s * RATE_HZ} samples missing), the first after "
+            axis = self.answer("allan", path, [])[0]["axes"][0]
+            assert axis["missing"] == missing and axis["gaps"] == 1, axis
+            assert f"{missing} more lost in 1 gap" in ifog("denoise", path, "--output", self.folder / "out.csv")
+            said = ran("allan", path).stdout
+            told = float(said.partition(f"({missing} samples missing), the first after ")[2].split()[0])
+            assert abs(told - start / S - ns[half - 1] / S) < 1e-5, (place, told)
+            if later_s == 1 and start != 0:
+                moved = axis
+        # The Allan deviation of the two halves does not know when they were.
+        assert moved["adev_radps"] == axis["adev_radps"]
+
+    def check_a_clock_that_is_set_is_said(self):
+        """From seconds since power came to those since 1970."""
+        ns, half = self.series["even"][0], ROWS // 2
+        path, _ = self.csv("set.csv", [t + (STARTS["1970"] if i >= half else 0) for i, t in enumerate(ns)])
+        for command in (["allan"], ["convert", self.folder / "out.csv"], ["denoise", "--output", self.folder / "out.csv"]):
+            said = ran(command[0], path, *command[1:]).stderr
+            assert f"set.csv:{half + 2}: its time goes on 1700000000 s later, as where a clock is set" in said, (command, said)
+
+
+if __name__ == "__main__":
+    sys.exit(main_of(Checks))
