@@ -123,10 +123,6 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
     return "";
   if (s.time_s.empty()) return "";
   const TimeAxis time(s.origin.told(s.time_s.front()), s.origin.told(s.time_s.back()));
-  const auto told = [&](Series since) {
-    for (double& value : since) value = s.origin.told(value);
-    return since;
-  };
   const Series t = time(told_times(s));
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
