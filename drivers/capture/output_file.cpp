@@ -83,6 +83,15 @@ std::optional<FileIdentity> file_identity(const std::string& path) {
   return FileIdentity{info.st_dev, info.st_ino, to.file.filename().string()};
 }
 
+void expect_writable(const std::string& path) {
+  std::error_code error;
+  const Destination to = destination_of(path, error);
+  struct stat info {};
+  const bool there = !error && to.descriptor < 0 && ::stat(to.file.c_str(), &info) == 0;
+  if (to.descriptor >= 0 || (there && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) return;
+  const OutputFile probe(path);
+}
+
 OutputFile::OutputFile(std::string path, int descriptor) : path_(std::move(path)), fd_(descriptor) {}
 
 // By way of the other, so that a failure in here runs the destructor.

@@ -56,6 +56,10 @@ struct FileIdentity {
 // "-", /dev/stdout, /dev/fd/1 and whatever else leads to descriptor 1.
 [[nodiscard]] bool is_standard_output(const std::string& path);
 
+// Throws as OutputFile would, and leaves nothing behind: so that what cannot be written is known before the
+// work. Of a device and a pipe nothing is asked.
+void expect_writable(const std::string& path);
+
 // All of it at once: nothing is touched if it fails.
 void write_file(const std::string& path, std::string_view bytes);
 

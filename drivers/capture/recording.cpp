@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "drivers/capture/candump.h"
+#include "drivers/capture/name_ending.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -15,11 +16,6 @@ constexpr std::size_t kPiece = std::size_t{1} << 20U;  // bytes
 
 namespace {
 
-std::string_view unpacked_name(std::string_view path) {
-  if (path.ends_with(".gz")) path.remove_suffix(3);
-  return path;
-}
-
 bool begins_as_hdf5(std::string_view head) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1A\n";
   for (const std::size_t at : {0U, 512U, 1024U, 2048U})
@@ -27,41 +23,60 @@ bool begins_as_hdf5(std::string_view head) {
   return false;
 }
 
+// What no other kind of recording begins with.
+FileKind begun_as(std::string_view head) {
+  if (head.starts_with("\xF1IFR")) return FileKind::flight;
+  if (begins_as_hdf5(head)) return FileKind::capture;
+  // lcm-logger's own names end in a number. Each event begins with this word.
+  if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
+  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  // Comments may stand before a capture's header and between a log's lines.
+  while (head.starts_with('#') || head.starts_with('\n') || head.starts_with("\r\n"))
+    head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1);
+  if (head.starts_with("time_s") || head.starts_with("\"time_s\"")) return FileKind::capture;
+  CandumpEntry entry;
+  return parse_candump_line(head.substr(0, head.find('\n')), entry) == CandumpLine::frame ? FileKind::candump
+                                                                                          : FileKind::unknown;
+}
+
+// Text has no control characters but the ends of its lines and tabs.
+bool is_text(std::string_view head) {
+  return std::all_of(head.begin(), head.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte >= 0x20 && byte != 0x7F) || (byte >= '\t' && byte <= '\r');
+  });
+}
+
+// Endings that any text and any bytes may have.
+bool says_nothing(std::string_view path) {
+  const std::string_view name = unpacked_name(path);
+  return has_ending(name, ".txt") || has_ending(name, ".dat");
+}
+
 }  // namespace
 
 bool is_hdf5(const std::string& path) {
   const std::string_view name = unpacked_name(path);
-  return name.ends_with(".h5") || name.ends_with(".hdf5");
+  return has_ending(name, ".h5") || has_ending(name, ".hdf5");
 }
 
 bool is_hdf5(const InputFile& file) { return is_hdf5(file.path()) || begins_as_hdf5(file.head()); }
 
 FileKind file_kind(const std::string& path) {
   const std::string_view name = unpacked_name(path);
-  if (name.ends_with(".csv") || is_hdf5(path)) return FileKind::capture;
-  if (name.ends_with(".log") || name.ends_with(".candump")) return FileKind::candump;
-  if (name.ends_with(".lcm")) return FileKind::lcm_log;
-  if (name.ends_with(".ifr")) return FileKind::flight;
+  if (has_ending(name, ".csv") || is_hdf5(path)) return FileKind::capture;
+  if (has_ending(name, ".log") || has_ending(name, ".candump")) return FileKind::candump;
+  if (has_ending(name, ".lcm")) return FileKind::lcm_log;
+  if (has_ending(name, ".ifr")) return FileKind::flight;
   for (const std::string_view ending : {".bin", ".kvh", ".raw", ".dat", ".txt"})
-    if (name.ends_with(ending)) return FileKind::bytes;
+    if (has_ending(name, ending)) return FileKind::bytes;
   return FileKind::unknown;
 }
 
 FileKind file_kind(const InputFile& file) {
-  const FileKind by_name = file_kind(file.path());
-  if (by_name != FileKind::unknown) return by_name;
-  std::string_view head = file.head();
-  if (head.starts_with("\xF1IFR")) return FileKind::flight;
-  if (begins_as_hdf5(head)) return FileKind::capture;
-  // lcm-logger's own names end in a number. Each event begins with this word.
-  if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
-  // Comments may stand before a capture's header and between a log's lines.
-  while (head.starts_with('#') || head.starts_with('\n') || head.starts_with("\r\n"))
-    head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1);
-  if (head.starts_with("time_s")) return FileKind::capture;
-  CandumpEntry entry;
-  return parse_candump_line(head.substr(0, head.find('\n')), entry) == CandumpLine::frame ? FileKind::candump
-                                                                                          : FileKind::unknown;
+  if (const FileKind begun = begun_as(file.head()); begun != FileKind::unknown) return begun;
+  const FileKind by_name = says_nothing(file.path()) ? FileKind::unknown : file_kind(file.path());
+  return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
 }
 
 namespace {

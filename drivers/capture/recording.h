@@ -24,10 +24,12 @@ enum class FileKind {
   unknown
 };
 
-// By the ending (before .gz); `unknown` where it does not tell. For a file that is to be written.
+// By the ending (before .gz, in small letters or capitals); `unknown` where it does not tell. For a file that
+// is to be written.
 FileKind file_kind(const std::string& path);
-// The same, and where the name does not tell by the first bytes: an LCM event, a line of candump, a header
-// that begins with time_s, HDF5's signature.
+// By the first bytes where they tell: a flight recording's, an LCM event, a line of candump, a header that
+// begins with time_s, HDF5's signature. Else by the ending, of which .txt and .dat say nothing. Else what is
+// no text is `bytes`; a text that is none of these is `unknown`.
 FileKind file_kind(const InputFile& file);
 
 // Which of the two a capture is, by its ending and, of a file that is there, by its first bytes: HDF5 begins

@@ -8,9 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/capture/name_ending.h"
+
 namespace ifog {
 TextOutput::TextOutput(const std::string& path) : file_(path) {
-  if (!path.ends_with(".gz")) return;
+  if (!is_packed_name(path)) return;
   auto stream = std::make_unique<z_stream_s>();
   // 16 + 15: a gzip wrapper with the largest window.
   if (deflateInit2(stream.get(), Z_DEFAULT_COMPRESSION, Z_DEFLATED, 16 + 15, 8, Z_DEFAULT_STRATEGY) != Z_OK)

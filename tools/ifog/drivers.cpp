@@ -83,7 +83,7 @@ void write(const std::string& path, const std::vector<FoundPlugin>& all,
 }
 
 void run(const std::string& name, const std::string& json) {
-  will_write("--json", json);
+  will_write("--json", json, kJsonEndings);
   const std::vector<std::string> folders = plugin_folders();
   std::vector<FoundPlugin> all;
   if (!name.empty()) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/allan/allan_picture.h"
@@ -32,6 +33,8 @@ void run(const Arguments& a) {
   will_write("--output", a.picture);
   will_read("log", a.log);
   InputFile log(a.log);
+  if (const FileKind kind = file_kind(log); kind != FileKind::lcm_log && kind != FileKind::flight)
+    throw std::runtime_error(a.log + ": is no log of lcm-logger");
   const Table table = read_published(log, a.channel);
   const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
   std::size_t first = 0;

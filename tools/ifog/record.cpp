@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "drivers/flight/archive.h"
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/lcm_listener.h"
@@ -39,10 +40,9 @@ class LcmRecorder {
  public:
   explicit LcmRecorder(const Options& options)
       : options_(options),
-        archive_(make_flight_folder(options.folder), limits(options), header(options)),
-        listener_(options.url, [this](const lcm_recv_buf_t& message, const std::string& channel) {
-          take(message, channel);
-        }) {
+        listener_(options.url, [this](const lcm_recv_buf_t& message,
+                                      const std::string& channel) { take(message, channel); }),
+        archive_(make_flight_folder(options.folder), limits(options), header(options)) {
     listener_.listen_to_sensor(options.sensor);
     for (const std::string& channel : options.channels) listener_.listen_to(channel);
   }
@@ -70,8 +70,8 @@ class LcmRecorder {
   void tell_trouble();
 
   const Options& options_;
-  FlightArchive archive_;
   LcmListener listener_;
+  FlightArchive archive_;
   std::map<std::string, LcmLoss> ways_;
   std::vector<std::uint8_t> payload_;
   std::uint64_t messages_ = 0, lost_here_ = 0, lost_here_bytes_ = 0, lost_total_ = 0;
@@ -144,7 +144,10 @@ void LcmRecorder::run() {
     warn(
         "%s: %lld times a message's seq was beyond what its sensor can have counted: taken for a new count\n",
         options_.folder.c_str(), static_cast<long long>(anew));
-  if (messages_ == 0) throw Failed("nothing heard");
+  if (messages_ == 0) {
+    warn("ifog record: nothing heard on %s\n", printable(options_.url).c_str());
+    throw Failed("nothing heard");
+  }
   if (archive_.error() != 0) throw std::runtime_error(options_.folder + ": " + archive_.complaint());
 }
 

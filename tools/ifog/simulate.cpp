@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "drivers/capture/name_ending.h"
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/capture/text_file.h"
@@ -30,7 +31,8 @@ struct Simulate {
     will_write("--truth", truth);
     encoding.will_read("SCENARIO", scenario);
     expect_capture_name("--output", output, &encoding);
-    expect_ending("--truth", truth, truth.ends_with(".json") || file_kind(truth) == FileKind::capture,
+    expect_ending("--truth", truth,
+                  has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
                   std::string(".json, ") + kColumnEndings);
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
     simulate::Simulation made;

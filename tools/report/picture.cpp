@@ -9,7 +9,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "drivers/capture/name_ending.h"
 #include "drivers/capture/output_file.h"
+#include "drivers/ifog/quoted.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"
 
@@ -89,12 +91,12 @@ std::string picture_svg(const std::string& title, const std::vector<PictureRow>&
 }
 
 std::string wrong_picture_name(const std::string& path) {
-  if (path.ends_with(".svg") || path.ends_with(".png") || is_standard_output(path)) return "";
-  return "'" + path + "': expected a name ending in .svg or .png";
+  if (has_ending(path, ".svg") || has_ending(path, ".png") || is_standard_output(path)) return "";
+  return "is " + in_quotes(path) + ", expected a name ending in .svg or .png";
 }
 
 void write_picture(const std::string& path, const std::string& svg) {
-  write_file(path, path.ends_with(".png") ? png(path, svg) : svg);
+  write_file(path, has_ending(path, ".png") ? png(path, svg) : svg);
 }
 
 }  // namespace ifog::report

@@ -7,6 +7,7 @@ usage: words.py PATH_OF_IFOG SOURCE_DIR
 """
 import gzip
 import html
+import json
 import os
 import random
 import re
@@ -37,7 +38,7 @@ class Checks:
         folder = self.folder / "endings"
         folder.mkdir()
         scenario, kvh = SOURCE / "tools/simulate/scenarios/rest.toml", ["--driver", "kvh1750"]
-        for ending in (".mat", ".npz", ".CSV", ".ifr", ".lcm"):
+        for ending in (".mat", ".npz", ".ifr", ".lcm"):
             to = folder / ("out" + ending)
             commands = [["denoise", self.one, "--output", to], ["convert", self.one, to], ["simulate", scenario, "--output", to]]
             # A device's bytes may have any name that is no other format's.
@@ -49,9 +50,47 @@ class Checks:
             refused(2, "denoise", self.one, "--output", folder / ("out" + ending), says=["expected a name ending in .csv, .csv.gz or .h5\n"])
         refused(2, "simulate", scenario, "--output", folder / "out.csv", "--truth", folder / "truth.mat", says=["--truth", ".json, .csv"])
         assert not list(folder.iterdir()), list(folder.iterdir())
-        for name in ("out.csv", "out.csv.gz", "out.h5", "out"):
+        begins = {"csv": b"time_s,", "gz": b"\x1f\x8b", "h5": b"\x89HDF"}
+        for name in ("out.csv", "out.csv.gz", "out.h5", "out", "UP.CSV", "Up.Csv.Gz", "UP.H5"):
             ifog("denoise", self.one, "--output", folder / name)
-            assert (folder / name).stat().st_size > 0
+            assert (folder / name).read_bytes().startswith(begins[name.lower().rsplit(".", 1)[-1] if "." in name else "csv"]), name
+            ifog("allan", folder / name)
+        ifog("allan", self.one, "--plot", folder / "UP.PNG")
+        assert (folder / "UP.PNG").read_bytes().startswith(b"\x89PNG")
+
+    def check_a_format_that_is_not_chosen_by_the_name_refuses_anothers(self):
+        """A page in report.pdf, JSON in figures.csv, candump's lines in a CSV."""
+        folder = self.folder / "kinds"
+        folder.mkdir()
+        for option, good, others, command in (
+                ("--report", ".html", (".pdf", ".md", ".json", ".PDF"), ["diagnose", "--quiet", self.one]),
+                ("--json", ".json", (".csv", ".html", ".txt", ".h5", ".toml", ".Csv"), ["allan", self.one]),
+                ("--json", ".json", (".csv", ".toml"), ["tune", self.one, "--state", "random-walk"]),
+                ("--json", ".json", (".csv", ".png"), ["drivers"]),
+                ("--write-model", ".toml", (".json", ".csv", ".ini.txt"), ["tune", self.one, "--state", "random-walk"])):
+            for ending in others:
+                refused(2, *command, option, folder / ("out" + ending), says=[f"{option}: is '{folder / ('out' + ending)}', expected a name ending in {good}"])
+            assert not list(folder.iterdir()), list(folder.iterdir())
+            for ending in (good, good.upper(), "", ".2026-11-23", "." + "aB3xYz"):  # mktemp's names say nothing
+                ifog(*command, option, folder / ("out" + ending))
+                (folder / ("out" + ending)).unlink()
+        kvh = ["--driver", "kvh1750"]
+        refused(2, "replay", self.one, "--speed", 0, "--to", f"file:{folder / 'sent.csv'}", *kvh, says=["--to", "expected a name ending in .bin"])
+        ifog("replay", self.one, "--speed", 0, "--to", f"file:{folder / 'sent.out'}", *kvh)
+        assert [each.name for each in folder.iterdir()] == ["sent.out"]
+
+    def check_a_capture_is_known_by_what_it_holds(self):
+        """A CSV that is called .txt or nothing, and one in capitals."""
+        text, expected = self.one.read_bytes(), json.loads(ifog("allan", self.one, "--json", "-", "--tau", "1"))["axes"]
+        for name in ("one.txt", "one", "one.dat", "one.asc", "ONE.CSV", "One.Csv"):
+            (self.folder / name).write_bytes(text)
+            assert json.loads(ifog("allan", self.folder / name, "--json", "-", "--tau", "1"))["axes"] == expected, name
+        theirs = self.write("theirs.txt", "t;w", ";")
+        refused(1, "allan", theirs, says=["theirs.txt:1: ", "--time", "--column"])
+        ifog("convert", self.folder / "one.txt", self.folder / "one.kvh", "--driver", "kvh1750")
+        (self.folder / "bytes.txt").write_bytes((self.folder / "one.kvh").read_bytes())
+        refused(1, "allan", self.folder / "bytes.txt", says=["no capture in columns", "--driver NAME"])
+        ifog("allan", self.folder / "bytes.txt", "--driver", "kvh1750", "--option", "rate_hz=100", "--axis", "x")
 
     def copied(self, line, folder):
         """A line that was printed, typed into a shell in that folder."""
@@ -135,6 +174,54 @@ class Checks:
                 refused(1, "denoise", self.one, "--model", model, "--output", self.folder / "never.csv", says=[str(model), *parts])
         refused(1, "denoise", self.one, "--model", self.folder / "channel.toml", "--output", self.folder / "never.csv",
                 says=[f"{self.folder / 'channel.toml'}:3: ", "temperature_degC"])
+
+    def check_a_name_with_control_characters_is_shown_and_can_be_copied(self):
+        """Nothing of it reaches the terminal as it is; the command that is printed still means the file."""
+        folder = self.folder / "seen"
+        folder.mkdir()
+        capture, model = folder / "a\x1b[31m b\n.csv", folder / "m\x07 it's.toml"
+        capture.write_text(self.write("coloured.csv", "Time \x1b[31m[ms];Gyro\x07 Z", ";").read_text())
+        done = ran("tune", capture, "--separator", ";", "--column", "rate_radps=Gyro\x07 Z:rad/s", "--time", "Time \x1b[31m[ms]:s",
+                   "--state", "random-walk", "--write-model", model)
+        assert done.returncode == 0, done
+        self.copied(done.stdout.strip().splitlines()[-1].strip(), folder)
+        assert (folder / "denoised.csv").stat().st_size > 0
+        hinted = ran("allan", self.write("theirs \x1b.csv", "t_ms;Gyro\x07Z_degps", ";"))
+        for said in (done.stdout + done.stderr, hinted.stdout + hinted.stderr, *(ran(*map(str, command)).stderr for command in (
+                ["allan", capture], ["denoise", capture, "--output", folder / "x\x1b.mat"], ["monitor", "--lcm-url", "udpm://\x1b[31m"],
+                ["allan", self.one, "--plot", "\x1b.pdf"], ["status", "--config", "\x1b\n"], ["replay", self.one, "--to", "\x1b:\n"]))):
+            assert said and not [c for c in said if c != "\n" and not c.isprintable()], repr(said)
+
+    def check_a_value_that_says_nothing_is_none(self):
+        """What a script's variable that was never set leaves behind: the run without it is not what was meant."""
+        out = self.folder / "nothing.csv"
+        for option in ("--model", "--json", "--config", "--noise", "--driver", "--dbc", "--time", "--separator", "--group", "--channel", "--sensor"):
+            refused(2, "denoise", self.one, "--output", out, option, "", says=[f"ifog denoise: {option}: is '', expected "])
+        for option in ("--axis", "--json", "--tau"):
+            refused(2, "allan", self.one, option, "", says=[f"ifog allan: {option}: is '', expected "])
+        refused(2, "allan", "", says=["capture: is '', expected FILE"])
+        refused(2, "allan", self.one, "--json", says=["--json: has no value, expected FILE\n"])
+        refused(2, "allan", self.one, "--confidence", ".9", "--confidence", ".5", says=["--confidence: has 2 values, expected one\n"])
+        refused(2, "replay", self.one, "--to", "-", "--parity", "1", says=["--parity: is '1', expected one of none, even, odd\n"])
+        refused(2, "replay", self.one, "--to", "nowhere", says=["replay: --to: is 'nowhere', expected can:INTERFACE"])
+        refused(2, "denoise", self.one, "--output", out, "--weights", "heavy", says=["--weights: is 'heavy', expected "])
+        for command in ("monitor", "record --output " + str(self.folder / "heard")):
+            refused(2, *command.split(" "), "--seconds", "0.1", "--lcm-url", "nonsense", says=[f"ifog {command.split(' ')[0]}: --lcm-url: is 'nonsense', expected "])
+        refused(1, "picture", self.one, "--output", self.folder / "p.svg", says=["one.csv: is no log of lcm-logger"])
+        assert not out.exists() and not (self.folder / "heard").exists()
+
+    def check_what_cannot_be_written_is_known_before_the_work(self):
+        """No first output beside a second one that fails."""
+        place = self.folder / "place"
+        place.mkdir()
+        (place / "folder.json").mkdir()
+        scenario, made = SOURCE / "tools/simulate/scenarios/rest.toml", place / "made.csv"
+        for second in (place / "folder.json", place / "not there" / "x.json"):
+            refused(1, "denoise", self.one, "--output", made, "--json", second, says=[str(second)])
+            refused(1, "simulate", scenario, "--output", made, "--truth", second, says=[str(second)])
+            refused(1, "tune", self.one, "--state", "random-walk", "--write-model", place / "made.toml", "--json", second, says=[str(second)])
+            refused(1, "allan", self.one, "--plot", place / "made.svg", "--json", second, says=[str(second)])
+        assert [each.name for each in place.iterdir()] == ["folder.json"]
 
     def check_help_is_laid_out(self):
         """No line that a terminal would break within a word, no hole of two empty lines."""

@@ -361,25 +361,6 @@ TEST_F(Recording, AChannelsValueThatCannotBeIsMissingAndCounted) {
   EXPECT_TRUE(std::isnan(made.channels.at(1).values[1]) && std::isnan(made.channels.at(1).values[2]));
 }
 
-TEST_F(Recording, FileKindsByNameAndContent) {
-  using ifog::file_kind;
-  using ifog::FileKind;
-  EXPECT_EQ(file_kind("a.csv.gz"), FileKind::capture);
-  EXPECT_EQ(file_kind("a.log"), FileKind::candump);
-  EXPECT_EQ(file_kind("a.kvh"), FileKind::bytes);
-  EXPECT_EQ(file_kind("nothing"), FileKind::unknown);
-  const auto kind_of = [](const char* name, const char* text) {
-    return file_kind(ifog::InputFile(name, text));
-  };
-  EXPECT_EQ(kind_of("lcmlog-2026-01-01.00", "\xED\xA1\xDA\x01rest"), FileKind::lcm_log);
-  // What comes through a pipe has no telling name.
-  EXPECT_EQ(kind_of("-", "# made today\r\n\n# by hand\ntime_s,rate_radps\n0,1\n"), FileKind::capture);
-  EXPECT_EQ(kind_of("/dev/fd/63", "(1436509052.249713) can0 123#1122AABB\n"), FileKind::candump);
-  EXPECT_EQ(kind_of("-", "#"), FileKind::unknown);
-  EXPECT_EQ(kind_of("-", ""), FileKind::unknown);
-  EXPECT_EQ(kind_of("-", "\xFE\x81\xFF\x55"), FileKind::unknown);
-}
-
 // A real gyro's record through the frames of a device, where the shared captures are at hand.
 TEST_F(Recording, AMeasuredCaptureSurvives) {
   const std::string file = std::string(IFOG_SHARED_DATA) + "/blueseis_bs1_ramp.csv.gz";

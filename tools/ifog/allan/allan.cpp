@@ -25,7 +25,7 @@ struct Arguments {
 };
 
 void run(Arguments& a) {
-  will_write("--json", a.json);
+  will_write("--json", a.json, kJsonEndings);
   will_write("--plot", a.picture);
   for (const std::string& capture : a.captures) a.input.will_read("capture", capture);
   a.options.kind = a.estimator == "modified"   ? Deviation::kModified

@@ -1,17 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/lcm_listener.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
 #include <utility>
 
+#include "daemon/config/lcm_url.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog::tools {
 
+namespace {
+
+// LCM would print the text as it is.
+const std::string& usable(const std::string& url) {
+  const std::string expected =
+      printable(url, kLongestMessage) == url ? lcm_url_complaint(url) : "no control characters";
+  if (!expected.empty())
+    throw CLI::ValidationError("--lcm-url", "is " + in_quotes(url) + ", expected " + expected);
+  return url;
+}
+
+}  // namespace
+
 LcmListener::LcmListener(const std::string& url, Handler handler)
-    : handler_(std::move(handler)), lcm_(lcm_create(url.c_str())) {
+    : handler_(std::move(handler)), lcm_(lcm_create(usable(url).c_str())) {
   if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + printable(url) + ": LCM cannot use it");
 }
 

@@ -140,7 +140,7 @@ void print_axis(const Comparison& result, int axis, bool reference) {
 }
 
 void run(const Options& options) {
-  will_write("--json", options.json_file);
+  will_write("--json", options.json_file, kJsonEndings);
   will_write("--plot", options.plot_file);
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);

@@ -75,6 +75,11 @@ void say_expected(CLI::Validator& check, const std::string& expected) {
   });
 }
 
+void hold_to_something(CLI::Option& option, const std::string& word) {
+  option.check(
+      [word](const std::string& value) { return value.empty() ? complaint(value, word) : std::string(); });
+}
+
 void hold_to_number(CLI::Option& option, ValueKind kind, const std::string& expected) {
   option.check([kind, expected](const std::string& value) {
     return is_number(value, kind) ? std::string() : complaint(value, expected);

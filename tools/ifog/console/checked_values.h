@@ -32,4 +32,7 @@ void say_expected(CLI::Validator& check, const std::string& expected);
 // The option takes what is_number() says, and nothing else.
 void hold_to_number(CLI::Option& option, ValueKind kind, const std::string& expected);
 
+// The option takes no empty text. word: for what it takes.
+void hold_to_something(CLI::Option& option, const std::string& word);
+
 }  // namespace ifog::tools

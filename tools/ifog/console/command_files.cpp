@@ -4,11 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "drivers/capture/name_ending.h"
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/say.h"
@@ -46,10 +48,36 @@ void will_read(const std::string& option, const std::string& path) {
     if (entry.path().extension() == ".ifr") add(option, entry.path().string(), false);
 }
 
+void will_write(const std::string& option, const std::string& path,
+                std::span<const std::string_view> endings) {
+  expect_no_other_kind(option, path, endings);
+  will_write(option, path);
+}
+
 void will_write(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   if (is_standard_output(path)) data_to_standard_output(option);
   add(option, path, true);
+  expect_writable(path);
+}
+
+void expect_no_other_kind(const std::string& option, const std::string& path,
+                          std::span<const std::string_view> endings) {
+  constexpr std::string_view kKnown[] = {
+      ".csv", ".h5",   ".hdf5", ".mat", ".npy",  ".npz",   ".log",    ".candump", ".lcm",  ".ifr",
+      ".bin", ".kvh",  ".raw",  ".dat", ".json", ".jsonl", ".ndjson", ".toml",    ".yaml", ".yml",
+      ".xml", ".html", ".htm",  ".md",  ".txt",  ".pdf",   ".doc",    ".docx",    ".odt",  ".rtf",
+      ".tex", ".xls",  ".xlsx", ".ods", ".svg",  ".png",   ".jpg",    ".jpeg",    ".gif",  ".webp",
+      ".ps",  ".eps",  ".zip",  ".bz2", ".xz",   ".zst",   ".tar",    ".tgz"};
+  if (path.empty() || is_standard_output(path) || !file_identity(path)) return;
+  const auto says = [name = unpacked_name(path)](std::string_view ending) {
+    return has_ending(name, ending);
+  };
+  if (std::any_of(endings.begin(), endings.end(), says) ||
+      std::none_of(std::begin(kKnown), std::end(kKnown), says))
+    return;
+  throw CLI::ValidationError(
+      option, "is " + in_quotes(path) + ", expected a name ending in " + std::string(endings.front()));
 }
 
 void expect_ending(const std::string& option, const std::string& path, bool known,

@@ -3,7 +3,10 @@
 // none of the others, by whatever name, so that no output destroys another or what it was made of.
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace ifog::tools {
 
@@ -14,12 +17,28 @@ namespace ifog::tools {
 void will_read(const std::string& option, const std::string& path);
 
 // "-" is standard output: from then on people read standard error. Throws likewise when a second output wants
-// it, too. Before the first say().
+// it, too, and std::runtime_error where it cannot be written at all: a folder, no such folder, no permission.
+// Before the first say().
 void will_write(const std::string& option, const std::string& path);
+// The same of an output that has one format, with expect_no_other_kind().
+void will_write(const std::string& option, const std::string& path,
+                std::span<const std::string_view> endings);
 
-// The ending of a file's name says what is written into it: with one that is not `known` nothing is. Throws
-// CLI::ValidationError with the endings that were `expected`. A name without an ending, a device, a pipe and
-// standard output say nothing.
+inline constexpr auto kJsonEndings = std::to_array<std::string_view>({".json", ".jsonl", ".ndjson"});
+inline constexpr auto kModelEndings = std::to_array<std::string_view>({".toml"});
+inline constexpr auto kPageEndings = std::to_array<std::string_view>({".html", ".htm"});
+inline constexpr auto kFrameEndings = std::to_array<std::string_view>({".log", ".candump", ".txt"});
+inline constexpr auto kByteEndings =
+    std::to_array<std::string_view>({".bin", ".kvh", ".raw", ".dat", ".txt"});
+
+// What is written is of one kind, whatever its file is called: a name that is known to say another (a page in
+// report.pdf) is refused with the first of the kind's own endings. Throws CLI::ValidationError.
+void expect_no_other_kind(const std::string& option, const std::string& path,
+                          std::span<const std::string_view> endings);
+
+// The ending of a file's name chooses what is written into it: with one that is not `known` nothing is.
+// Throws CLI::ValidationError with the endings that were `expected`. A name without an ending, a device, a
+// pipe and standard output say nothing.
 void expect_ending(const std::string& option, const std::string& path, bool known,
                    const std::string& expected);
 

@@ -47,6 +47,12 @@ std::string wrong_number(const FilterSetting& setting, const std::string& text) 
   return good ? "" : "is " + in_quotes(text) + ", expected " + expected(setting);
 }
 
+std::string given(const std::string& value) { return "is " + in_quotes(value) + ", "; }
+template <typename T>
+std::string given(const T&) {
+  return "";
+}
+
 template <typename T>
 CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choice) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -62,7 +68,7 @@ CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choi
         setting.option,
         [&setting, &choice](const Read<T>& value) {
           if (!choose(setting, value, choice))
-            throw CLI::ValidationError(setting.option, "expected " + expected(setting));
+            throw CLI::ValidationError(setting.option, given(value) + "expected " + expected(setting));
         },
         help(setting));
     return option->check([&setting](const std::string& text) {

@@ -91,7 +91,10 @@ void in_plain_words(CLI::Option& option) {
   const std::string expected = choice.empty() ? number_in_words(kind, ranges) : in_words(choice);
   for (CLI::Validator* const check : said_here) say_expected(*check, expected);
   if (kind != ValueKind::text) hold_to_number(option, kind, expected);
-  option.type_name(choice.empty() ? word(type, option.get_name(option.get_positional())) : choice);
+  const std::string shown = choice.empty() ? word(type, option.get_name(option.get_positional())) : choice;
+  // A variable of a script that was never set: --model "$MODEL" must not run without the model.
+  if (kind == ValueKind::text && choice.empty()) hold_to_something(option, shown);
+  option.type_name(shown);
   option.description(option.get_description() + (ranges.empty() ? "" : "; ") + ranges);
 }
 

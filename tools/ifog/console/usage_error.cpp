@@ -41,11 +41,23 @@ std::string unknown_option(const CLI::App& command, int argc, const char* const*
   return "";
 }
 
+// "--option: At Most 1 required but received 2", "--option: 1 required FILE missing".
+std::string plainly_counted(const std::string& said) {
+  constexpr std::string_view kMost = ": At Most 1 required but received ", kLeast = ": 1 required ",
+                             kMissing = " missing";
+  if (const std::size_t at = said.find(kMost); at != std::string::npos)
+    return said.substr(0, at) + ": has " + said.substr(at + kMost.size()) + " values, expected one";
+  if (const std::size_t at = said.find(kLeast); at != std::string::npos && said.ends_with(kMissing))
+    return said.substr(0, at) + ": has no value, expected " +
+           said.substr(at + kLeast.size(), said.size() - at - kLeast.size() - kMissing.size());
+  return said;
+}
+
 // The parser's "Could not convert: --option = value" expects nothing.
 std::string plainly(const CLI::App& command, const std::string& said) {
   constexpr std::string_view kSays = "Could not convert: ", kIs = " = ";
   const std::size_t at = said.find(kIs);
-  if (!said.starts_with(kSays) || at == std::string::npos) return said;
+  if (!said.starts_with(kSays) || at == std::string::npos) return plainly_counted(said);
   const std::string name = said.substr(kSays.size(), at - kSays.size());
   const CLI::Option* const option = command.get_option_no_throw(name);
   return name + ": is " + in_quotes(said.substr(at + kIs.size())) + ", expected " +

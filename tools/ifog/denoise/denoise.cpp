@@ -229,7 +229,7 @@ void run(DenoiseOptions options) {
     throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
                                                ", expected --config with it, whose sensors have names");
   will_write("--output", options.output);
-  will_write("--json", options.json);
+  will_write("--json", options.json, kJsonEndings);
   will_write("--plot", options.picture);
   options.input.will_read("CAPTURE", options.capture);
   will_read("--model", options.model);

@@ -34,9 +34,9 @@ struct Arguments {
 };
 
 void run(const Arguments& arguments) {
-  will_write("--json", arguments.json);
-  will_write("--write-model", arguments.write_model);
-  will_write("--report", arguments.report);
+  will_write("--json", arguments.json, kJsonEndings);
+  will_write("--write-model", arguments.write_model, kModelEndings);
+  will_write("--report", arguments.report, kPageEndings);
   for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
   will_read("--model", arguments.model);
   std::vector<LongCapture> read;

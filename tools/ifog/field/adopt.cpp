@@ -93,7 +93,7 @@ void tell_innovations(const Watched& watched) {
 }
 
 void adopt(const Arguments& arguments) {
-  will_write("--json", arguments.json);
+  will_write("--json", arguments.json, kJsonEndings);
   will_read("--config", arguments.field.config);
   share_with_the_group();
   catch_interrupts();

@@ -218,7 +218,7 @@ pid_t daemon_of(const Field& field) {
 }
 
 void run(const Arguments& arguments) {
-  will_write("--json", arguments.json);
+  will_write("--json", arguments.json, kJsonEndings);
   will_read("--config", arguments.field.config);
   const Field field(arguments.field);
   const pid_t daemon = daemon_of(field);

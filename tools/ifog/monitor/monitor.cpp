@@ -300,7 +300,7 @@ void add_monitor(CLI::App& app) {
     // Without a time limit, --once waits for a daemon that may never come: give up as a script would want.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
-    will_write("--json", options->json);
+    will_write("--json", options->json, kJsonEndings);
     if (!Monitor(*options).run()) {
       warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
       throw Failed("nothing heard");

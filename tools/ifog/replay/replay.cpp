@@ -161,10 +161,16 @@ void run(ReplaySettings settings) {
   const ReplayDestination to = ReplayDestination::parse(settings.to);
   if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
   if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
-  will_write("--json", settings.json);
+  will_write("--json", settings.json, kJsonEndings);
   settings.source.input.will_read("capture", settings.source.path);
   settings.source.prefer_can = to.is_can();
   const ReplayTimeline timeline = read_timeline(settings.source);
+  if (to.kind == ReplayDestination::Kind::file) {
+    if (timeline.is_can())
+      expect_no_other_kind("--to", to.name, kFrameEndings);
+    else
+      expect_no_other_kind("--to", to.name, kByteEndings);
+  }
 
   catch_interrupts();
   const std::unique_ptr<ReplayTarget> target =
@@ -194,7 +200,8 @@ std::string names_a_target(const std::string& text) {
     ReplayDestination::parse(text);
     return {};
   } catch (const std::runtime_error& error) {
-    return error.what();
+    const std::string said = error.what();
+    return said.starts_with("--to ") ? said.substr(5) : said;
   }
 }
 
@@ -227,7 +234,7 @@ void add_replay(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--block", source.block_bytes, "raw bytes: bytes sent together, a frame of the device");
-  command->add_option("--rate", source.rate_hz, "raw bytes: blocks a second");
+  command->add_option("--rate", source.rate_hz, "raw bytes: blocks a second")->check(CLI::PositiveNumber);
   source.input.add_to(*command);
   command->add_option("--axis", source.axis, "CSV of one axis: the driver's axis it goes to");
   command->add_option("--baud", settings->line.baud, "serial: speed, else the driver's");
@@ -236,13 +243,16 @@ void add_replay(CLI::App& app) {
   command->add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character")
       ->check(CLI::Range(5, 8))
       ->capture_default_str();
-  command->add_option("--parity", settings->line.parity, "serial: none unless given")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, SerialSettings::Parity>{{"none", SerialSettings::Parity::none},
-                                                                    {"even", SerialSettings::Parity::even},
-                                                                    {"odd", SerialSettings::Parity::odd}})
-                      .description(""))
-      ->type_name("none|even|odd");
+  command
+      ->add_option_function<std::string>(
+          "--parity",
+          [settings](const std::string& word) {
+            settings->line.parity = word == "even"  ? SerialSettings::Parity::even
+                                    : word == "odd" ? SerialSettings::Parity::odd
+                                                    : SerialSettings::Parity::none;
+          },
+          "serial: none unless given")
+      ->check(CLI::IsMember({"none", "even", "odd"}));
   command->add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();

@@ -32,7 +32,11 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
   if (source.format == "candump") return FileKind::candump;
   if (source.format == "bytes") return FileKind::bytes;
   if (source.format == "csv") return FileKind::capture;
-  return source.input.has_layout() ? FileKind::capture : file_kind(file);
+  if (source.input.has_layout()) return FileKind::capture;
+  const FileKind found = file_kind(file);
+  // A line's text (DSP-3000) looks like any other.
+  const bool told = source.input.has_driver() || source.block_bytes != 0;
+  return found == FileKind::unknown && told ? FileKind::bytes : found;
 }
 
 ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {

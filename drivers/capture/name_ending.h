@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the name of a file says by its end, in small letters or capitals: GYRO.CSV is as much a CSV as
+// gyro.csv.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+namespace ifog {
+
+// ending: in small letters, with its point.
+constexpr bool has_ending(std::string_view name, std::string_view ending) {
+  if (name.size() < ending.size()) return false;
+  name.remove_prefix(name.size() - ending.size());
+  return std::equal(name.begin(), name.end(), ending.begin(), [](char c, char e) {
+    return (c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c) == e;
+  });
+}
+
+constexpr bool is_packed_name(std::string_view name) { return has_ending(name, ".gz"); }
+
+constexpr std::string_view unpacked_name(std::string_view name) {
+  if (is_packed_name(name)) name.remove_suffix(3);
+  return name;
+}
+
+}  // namespace ifog
