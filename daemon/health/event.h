@@ -16,6 +16,7 @@ enum class EventKind : std::uint8_t {
   model_in_use,    // sequence: the first sample with the new parts
   divergence,      // the estimator started again
   clock_step,      // the wall clock was set; a: how far it is now from where it was at start-up, s
+  label_moved,     // the device stood still, or whole rounds of its counter are lost: times of day follow
   publish_failed,
 };
 

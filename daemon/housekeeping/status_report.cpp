@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/housekeeping/status_report.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -16,7 +17,12 @@ namespace {
 
 constexpr double kWrongRate = 0.01;  // no quartz is off by more
 constexpr int kInVain = 5;           // seconds of input without a frame that are worth a word
-constexpr double kSilence_s = 2.0;   // open, and nothing for this long: no data
+
+// Open, and nothing new for this long: no data.
+double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
+constexpr const char* kFrozen =
+    "the device sends the same frame again and again: its counter or clock stands still, nothing of it is "
+    "taken";
 
 struct Named {
   const char* name;
@@ -103,14 +109,22 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
     case TransportState::open:
       break;
   }
-  const std::int64_t now_ns = monotonic_ns();
-  // As the reader has it now, whether the filter answers or not.
-  const ReaderCounters& reader = pipeline.reader().counters();
-  const std::uint64_t decoded = reader.samples.value() + reader.repeated.value();
-  if (std::exchange(decoded_, decoded) != decoded) sample_ns_ = now_ns;
   if (sample_ns_ == 0) return status_t::STATE_STARTING;
-  if (static_cast<double>(now_ns - sample_ns_) * 1e-9 > kSilence_s) return status_t::STATE_NO_DATA;
+  if (static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_))
+    return status_t::STATE_NO_DATA;
   return status_t::STATE_RUNNING;
+}
+
+// As the reader has it now, whether the filter answers or not. What came again is none.
+void StatusReport::look_for_samples(const ReaderCounters& reader) {
+  const std::uint64_t taken = reader.samples.value(), decoded = taken + reader.repeated.value();
+  const bool came = std::exchange(decoded_, decoded) != decoded;
+  const bool news = std::exchange(taken_, taken) != taken;
+  if (news) sample_ns_ = monotonic_ns();
+  frozen_before_ = frozen_;
+  const bool long_ago = sample_ns_ != 0 &&
+                        static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_);
+  frozen_ = long_ago && !news && (came || frozen_);
 }
 
 // A file is over, all of it is in the books, and no frame was in it.
@@ -206,6 +220,8 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   if (now_.fault.empty() && nothing_in_file(pipeline))
     now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
                  came() + " (is it this driver's, with these options?)";
+  look_for_samples(pipeline.reader().counters());
+  if (now_.fault.empty() && frozen_) now_.fault = kFrozen;
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
@@ -247,6 +263,8 @@ std::string StatusReport::nothing_of_it() const {
   if (in_vain_ != kInVain) return "";
   return came() + " came and no frame of the sensor was in them";
 }
+
+std::string StatusReport::newly_frozen() const { return frozen_ && !frozen_before_ ? kFrozen : ""; }
 
 std::string StatusReport::wrong_rate() const {
   if (std::abs(interval_error_) < kWrongRate || std::abs(interval_error_before_) >= kWrongRate) return "";

@@ -30,6 +30,9 @@ class StatusReport {
   // else. So are a wrong driver, wrong options, another baud rate seen, which counters alone do not say.
   [[nodiscard]] std::string nothing_of_it() const;
 
+  // Once, when a device is found to repeat itself; "" else.
+  [[nodiscard]] std::string newly_frozen() const;
+
   // Once, when a device that counts and has no clock sends at another rate than it should: by how much its
   // intervals, and the angle of one that sends a rate, are wrong, in words; "" else.
   [[nodiscard]] std::string wrong_rate() const;
@@ -48,17 +51,20 @@ class StatusReport {
   void take_line(const TransportCounters& line);
   void take_counters(const ReaderCounters& reader, const FilterCounters& filter);
   void take_health(const FilterSnapshot& snapshot);
+  void look_for_samples(const ReaderCounters& reader);
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
   [[nodiscard]] std::string came() const;  // in words
 
   ifog::status_t before_, now_;
   SensorWatch watch_;
-  std::uint64_t decoded_ = 0;  // samples, at the last update()
+  std::uint64_t decoded_ = 0, taken_ = 0;  // samples, at the last update()
   double nominal_rate_hz_;
   double interval_error_ = 0.0, interval_error_before_ = 0.0;
+  bool frozen_before_ = false;
   int in_vain_ = 0;             // updates in a row after which something had come, and never a good frame
   std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
+  bool frozen_ = false;         // samples come, and they are all those that came before
 };
 
 }  // namespace ifog

@@ -36,6 +36,7 @@ Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, cons
 void Reader::take(const ifog_sample& sample) noexcept {
   ++now_.decoded;
   read_sample(sample, facts_.frame_channels, reading_);
+  reading_.arrival_recorded = transport_->times_are_recorded();
   reading_.came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
@@ -72,6 +73,10 @@ void Reader::report(const Increment& increment, const IncrementerCounts& before)
   if (now.clock_steps != before.clock_steps) {
     event.kind = EventKind::clock_step;
     event.a = static_cast<double>(increment.wall_shift_ns) * 1e-9;
+    events_.report(event);
+  }
+  if (now.pauses != before.pauses) {
+    event.kind = EventKind::label_moved;
     events_.report(event);
   }
   if (const std::uint64_t overflows = queue_.overflows(); overflows != overflows_seen_) {

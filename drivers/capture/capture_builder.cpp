@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "drivers/capture/time_stamps.h"
-#include "drivers/ifog/same_values.h"
+#include "drivers/host/timeline_frame.h"
 #include "drivers/ifog/turn.h"
 
 namespace ifog {
@@ -22,8 +22,8 @@ bool never_known(const std::vector<double>& values) {
 double period_of(const ifog_description& description) {
   return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
 }
-DeviceCount counter_of(const ifog_description& description) {
-  return {std::max<std::uint32_t>(description.sequence_modulus, 1), period_of(description)};
+DeviceTimeline timeline_of(const ifog_description& description) {
+  return {description.sequence_modulus, description.nominal_rate_hz};
 }
 
 // Of the frames: axes, then channels.
@@ -53,7 +53,7 @@ std::int64_t ns_since(const TimeOrigin& origin, std::int64_t time_ns) {
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
-    : description_(description), counter_(counter_of(description)), clock_steps_(period_of(description)) {
+    : description_(description), timeline_(timeline_of(description)) {
   for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
   capture_.rate_radps.resize(description.axes);
   capture_.reference_rate_radps.resize(description.axes);
@@ -69,8 +69,7 @@ void CaptureBuilder::go_on_as(const ifog_description& description) {
         "goes on with other axes or channels, as the driver's options changed; expected recordings of one");
   if (same_samples(description, description_)) return;
   description_ = description;
-  counter_ = counter_of(description);
-  clock_steps_ = ClockSteps(period_of(description));
+  timeline_ = timeline_of(description);
   clock_ = Clock::undecided;
   broken_ = true;
 }
@@ -94,27 +93,12 @@ void CaptureBuilder::choose_clock(const ifog_sample& sample) {
   }
 }
 
-// How many samples the device has taken since the last one; 0: this one came twice, or after one that
-// follows.
-std::uint64_t CaptureBuilder::steps_to(const ifog_sample& sample) {
-  if (description_.sequence_modulus == 0 || (sample.flags & last_.flags & IFOG_SAMPLE_SEQUENCE) == 0)
-    return 1;
-  const DeviceCount::Frame frame = frame_of(sample);
-  const DeviceCount::Step step = counter_.look(frame);
-  if (step.out_of_turn) return 0;
-  // A device whose counter stands still yet measures is followed.
-  const bool same = same_values({sample.value, description_.axes}, {last_.value, description_.axes});
-  if (step.samples == 0 && same) return 0;
-  counter_.take(frame, step);
-  return std::max<std::uint64_t>(step.samples, 1);
-}
-
-DeviceCount::Frame CaptureBuilder::frame_of(const ifog_sample& sample) const {
-  DeviceCount::Frame frame;
-  frame.sequence = sample.sequence;
-  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) frame.device_time_ns = sample.device_time_ns;
-  frame.arrival_ns = sample.arrival_ns;
-  return frame;
+DeviceTimeline::Step CaptureBuilder::step_to(const ifog_sample& sample) {
+  const DeviceTimeline::Frame frame = timeline_frame(sample, description_.axes);
+  if (timeline_.tells(frame)) return timeline_.next(frame);
+  DeviceTimeline::Step step;
+  step.time_ns = timeline_.first(frame);
+  return step;
 }
 
 double CaptureBuilder::seconds(const ifog_sample& sample) const {
@@ -122,27 +106,12 @@ double CaptureBuilder::seconds(const ifog_sample& sample) const {
       1e9;  // divided by, so that the result is the double nearest to the decimal time
   switch (clock_) {
     case Clock::device:
-      return static_cast<double>(ns_since(device_from_, sample.device_time_ns)) / kNsPerSecond + offset_s_;
+      return static_cast<double>(ns_since(device_from_, device_ns_)) / kNsPerSecond + offset_s_;
     case Clock::arrival:
       return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
     default:
       return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
   }
-}
-
-// Where the device's clock has stood still while it measured: by the sum of its steps.
-std::optional<double> CaptureBuilder::by_coarse_clock(const ifog_sample& sample, std::uint64_t steps) {
-  if (clock_ != Clock::device || (sample.flags & last_.flags & IFOG_SAMPLE_DEVICE_TIME) == 0) return {};
-  const std::int64_t passed_ns = sample.device_time_ns - last_.device_time_ns;
-  const bool same = same_values({sample.value, description_.axes}, {last_.value, description_.axes});
-  if (passed_ns < 0 || !(description_.nominal_rate_hz > 0.0) ||
-      (passed_ns == 0 && same && !clock_steps_.stood()))
-    return {};
-  const bool counts = description_.sequence_modulus > 0;
-  const double step_s = clock_steps_.take(passed_ns, counts ? steps : 0).dt_s;
-  if (!clock_steps_.stood()) return {};
-  offset_s_ += last_s_ + step_s - seconds(sample);
-  return last_s_ + step_s;
 }
 
 // The sample's clock is set so that it comes as much later than the one before as it arrived later.
@@ -219,18 +188,29 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   const bool first = taken_ + capture_.size() == 0;
   if (clock_ == Clock::undecided) choose_clock(sample);
   bool anew = broken_ && !first;
-  const std::uint64_t steps = first || anew ? 0 : steps_to(sample);
-  if (first || anew) {
-    counter_.first(frame_of(sample));
-  } else if (steps == 0) {
+  DeviceTimeline::Step step;
+  if (first || anew)
+    step.time_ns = timeline_.first(timeline_frame(sample, description_.axes));
+  else
+    step = step_to(sample);
+  if (step.out_of_turn) {
     ++repeated_;
     return;
   }
+  const std::uint64_t steps = first || anew ? 0 : step.samples;
+  const bool timed_anew =
+      step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
   count_ += steps;
   if (steps > 1) missing_ += steps - 1;
+  if (timed_anew) ++restarted_;
+  device_ns_ = step.time_ns;
+  anew = anew || (timed_anew && clock_ == Clock::device);
   if (anew) begin_anew(sample);
   broken_ = false;
-  double now = first || anew ? seconds(sample) : by_coarse_clock(sample, steps).value_or(seconds(sample));
+  // Where the device's clock has stood still while it measured: by the sum of its steps.
+  if (!first && !anew && clock_ == Clock::device && timeline_.clock_stood())
+    offset_s_ += last_s_ + step.dt_s - seconds(sample);
+  double now = seconds(sample);
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
     if (now == last_s_) {

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,14 +11,13 @@
 #include "drivers/capture/capture.h"
 #include "drivers/capture/measurable.h"
 #include "drivers/capture/row_sink.h"
-#include "drivers/ifog/clock_steps.h"
-#include "drivers/ifog/device_count.h"
+#include "drivers/ifog/device_timeline.h"
 #include "drivers/ifog/driver.h"
 
 namespace ifog {
 
 // Time, the first of these that the samples have:
-//   - the device's clock, as it is;
+//   - the device's clock, over its wraps;
 //   - the sequence counter, unwrapped, over the nominal rate, from 0;
 //   - the arrival times, from 0;
 //   - the number of the sample over the nominal rate.
@@ -42,8 +40,9 @@ class CaptureBuilder {
   // The driver's options are others from the next sample on, which does not join what came. Throws
   // std::runtime_error with one line where the columns would not be the same.
   void go_on_as(const ifog_description& description);
-  // From here on a device whose clock jumps back has begun anew; else that cannot be told from a wrong
-  // driver, and is refused. A sample whose counter says that it came twice, or late, is left out either way.
+  // From here on a device whose clock jumps back has begun anew, also where that clock does not go round:
+  // else that cannot be told from a wrong driver, and is refused. A sample that came twice, or late, is left
+  // out either way.
   void allow_restarts() { restarts_ = true; }
 
   // The columns in the order of next_rows(): rates by axis, then channels.
@@ -56,7 +55,10 @@ class CaptureBuilder {
   Capture finish();
 
   [[nodiscard]] std::size_t impossible() const { return impossible_; }  // values left out so
-  [[nodiscard]] std::size_t missing() const { return missing_; }  // samples the counter says were not there
+  // Samples that were not there by the device's counter, or by its clock where it has none.
+  [[nodiscard]] std::size_t missing() const { return missing_; }
+  // Times the counter or the clock jumped back, without a discontinuity: the device was switched off and on.
+  [[nodiscard]] std::size_t restarts() const { return restarted_; }
   // Samples left out because they came twice, or after one that follows.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
   // Samples with a rate taken for missing: at full scale; or beyond what the driver interface allows.
@@ -66,10 +68,8 @@ class CaptureBuilder {
  private:
   enum class Clock { undecided, device, counter, arrival, number };
   void choose_clock(const ifog_sample& sample);
-  std::uint64_t steps_to(const ifog_sample& sample);
-  [[nodiscard]] DeviceCount::Frame frame_of(const ifog_sample& sample) const;
+  DeviceTimeline::Step step_to(const ifog_sample& sample);
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
-  std::optional<double> by_coarse_clock(const ifog_sample& sample, std::uint64_t steps);
   void begin_anew(const ifog_sample& sample);
   double believable(std::size_t channel, double value);
   void refuse(double now) const;
@@ -80,12 +80,13 @@ class CaptureBuilder {
   Capture capture_;
   Clock clock_ = Clock::undecided;
   ifog_sample last_{};
-  DeviceCount counter_;  // as the daemon counts
-  ClockSteps clock_steps_;
-  std::uint64_t count_ = 0;  // the unwrapped counter, or the number of the sample
+  DeviceTimeline timeline_;
+  std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
+  std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
   TimeOrigin device_from_;  // of the device's clock, that its times are counted from
-  std::size_t missing_ = 0, repeated_ = 0, impossible_ = 0, at_full_scale_ = 0, implausible_ = 0;
+  std::size_t missing_ = 0, repeated_ = 0, restarted_ = 0, impossible_ = 0, at_full_scale_ = 0,
+              implausible_ = 0;
   std::vector<Measurable> channel_range_;
   std::size_t taken_ = 0;  // rows, by next_rows()
   double last_s_ = 0.0;    // time of the last row

@@ -107,6 +107,7 @@ DriverInstance::DriverInstance(std::shared_ptr<const Plugin> plugin, const Drive
     table().destroy(instance_);
     throw std::runtime_error(std::string("driver ") + table().name + ": describes " + what);
   }
+  portion_.asked = description_.sequence_modulus == 0 && description_.has_device_time == 0;
 }
 
 DriverInstance::~DriverInstance() {
@@ -115,12 +116,14 @@ DriverInstance::~DriverInstance() {
 
 DriverInstance::DriverInstance(DriverInstance&& other) noexcept
     : plugin_(std::move(other.plugin_)),
+      portion_(other.portion_),
       instance_(std::exchange(other.instance_, nullptr)),
       description_(other.description_),
       warnings_(std::move(other.warnings_)) {}
 
 DriverInstance& DriverInstance::operator=(DriverInstance&& other) noexcept {
   std::swap(plugin_, other.plugin_);
+  std::swap(portion_, other.portion_);
   std::swap(instance_, other.instance_);
   std::swap(description_, other.description_);
   std::swap(warnings_, other.warnings_);

@@ -2,6 +2,8 @@
 // One configured driver of one sensor: the C table of a plugin with its instance, owned.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -48,14 +50,15 @@ class DriverInstance {
   // thrown through a plugin's C functions. Only for a driver that takes_bytes() / takes_can().
   template <typename Sink>
   void decode_bytes(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, Sink&& sink) {
-    Emission<std::remove_reference_t<Sink>> emission{sink, {}};
+    Emission<std::remove_reference_t<Sink>> emission{sink, {}, portion_.at_once(bytes.size())};
     table().decode_bytes(instance_, bytes.data(), bytes.size(), arrival_ns, &decltype(emission)::take,
                          &emission);
+    portion_.came(bytes.size(), emission.samples);
     emission.throw_on();
   }
   template <typename Sink>
   void decode_can(const ifog_can_frame& frame, Sink&& sink) {
-    Emission<std::remove_reference_t<Sink>> emission{sink, {}};
+    Emission<std::remove_reference_t<Sink>> emission{sink, {}, 0};
     table().decode_can(instance_, &frame, &decltype(emission)::take, &emission);
     emission.throw_on();
   }
@@ -72,12 +75,21 @@ class DriverInstance {
   struct Emission {
     Sink& sink;
     std::exception_ptr thrown;
+    std::uint32_t at_once = 0;
+    std::uint64_t samples = 0;
 
     static void take(void* user, const ifog_sample* sample) noexcept {
       auto& self = *static_cast<Emission*>(user);
+      ++self.samples;
       if (self.thrown) return;
       try {
-        self.sink(*sample);
+        if (self.at_once == 0) {
+          self.sink(*sample);
+        } else {
+          ifog_sample told = *sample;
+          told.at_once = self.at_once;
+          self.sink(told);
+        }
       } catch (...) {
         self.thrown = std::current_exception();
       }
@@ -88,7 +100,26 @@ class DriverInstance {
     }
   };
 
+  // About how many samples a portion of bytes brings, by what a sample of this device has taken so far. Asked
+  // by who has neither counter nor clock to tell a late delivery by.
+  struct Portion {
+    bool asked = false;
+    std::uint64_t bytes = 0, samples = 0;
+
+    [[nodiscard]] std::uint32_t at_once(std::size_t now) const noexcept {
+      if (!asked || samples == 0) return 0;
+      const double about =
+          static_cast<double>(now) * static_cast<double>(samples) / static_cast<double>(bytes);
+      return static_cast<std::uint32_t>(std::clamp(std::round(about), 1.0, 1e9));
+    }
+    void came(std::size_t more, std::uint64_t of) noexcept {
+      bytes += more;
+      samples += of;
+    }
+  };
+
   std::shared_ptr<const Plugin> plugin_;
+  Portion portion_;
   void* instance_ = nullptr;
   ifog_description description_{};
   std::vector<std::string> warnings_;

@@ -61,6 +61,12 @@ class ClockSteps {
     return ticks < kFine && beats;
   }
   [[nodiscard]] bool stood() const noexcept { return stood_; }
+  // Samples with one stamp, generously; while no tick is known, as many as the coarsest clock may have.
+  [[nodiscard]] std::uint64_t most_in_a_tick() const noexcept {
+    constexpr std::uint64_t kUnknown = 1000;
+    const double samples = 2.0 * static_cast<double>(tick_ns_) * 1e-9 / nominal_s_ + 2.0;
+    return tick_ns_ > 0 && samples < 1e9 ? static_cast<std::uint64_t>(samples) : kUnknown;
+  }
 
  private:
   static constexpr double kFine = 4.0;   // ticks a period

@@ -15,6 +15,7 @@
 #include <cstdint>
 
 #include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/recent_frames.h"
 
 namespace ifog {
 
@@ -22,9 +23,12 @@ class DeviceCount {
  public:
   struct Frame {
     std::uint32_t sequence = 0;
-    std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; -1: it has none
-    std::int64_t arrival_ns = 0;       // on a clock that nobody sets; 0: not known
-    bool reopened = false;             // the device was closed and opened in between
+    bool clocked = false;         // it has a clock
+    std::int64_t time_ns = 0;     // of that, over its wraps
+    std::int64_t arrival_ns = 0;  // on a clock that nobody sets; 0: not known
+    double quiet_s = -1.0;        // since any frame came, also one that was left out; negative: not known
+    bool reopened = false;        // the device was closed and opened in between
+    std::uint64_t digest = 0;     // of its values
   };
   struct Step {
     std::uint64_t samples = 1;  // since the frame before; 0: the same count again, too soon for a round
@@ -67,7 +71,8 @@ class DeviceCount {
       return;
     }
     const std::uint64_t samples = std::max<std::uint64_t>(step.samples, 1);
-    had_ = samples < 64 ? had_ << samples | 1U : 1U;
+    place_ += samples;
+    recent_.add(place_, 0, frame.digest);
     if (step.gap || step.clock_moved) {
       took_s_ = counted_s_ = 0.0;
     } else if (elapsed >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0) {
@@ -79,9 +84,12 @@ class DeviceCount {
     last_ = frame;
     follow_lateness(elapsed, step);
   }
+  // What the clock of the frame just taken is held for.
+  void keep_time(std::int64_t time_ns) noexcept { last_.time_ns = time_ns; }
 
  private:
-  static constexpr std::uint64_t kMostBack = 64;  // bits of `had_`
+  static constexpr std::uint64_t kMostBack = RecentFrames::kKept;
+  static constexpr std::uint64_t kBackUntimed = 8;  // so far frames change places, where no time says more
   static constexpr double kLate_s = 1.0;
   static constexpr double kLongSilence_s = 2.0;
   static constexpr double kStands_s = 1.5;    // it has come to stand when for so long it has not become less
@@ -108,7 +116,9 @@ class DeviceCount {
   }
 
   void begin(const Frame& frame) noexcept {
-    had_ = 1;
+    place_ = kFirstPlace;
+    recent_.forget();
+    recent_.add(place_, 0, frame.digest);
     late_s_ = took_s_ = counted_s_ = jitter_s_ = 0.0;
     last_ = frame;
   }
@@ -125,34 +135,44 @@ class DeviceCount {
   // was no time. By little of a round, too: several frames of one read come with no time between them, and
   // one step on of a counter of two bits is three back.
   [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
+    using Had = RecentFrames::Had;
     const std::uint64_t back = modulus_ - difference;
-    if (frame.elapsed_s < 0.0 || frame.reopened || difference == 0) return false;
-    if (back >= std::min(kMostBack, modulus_ / 4)) return false;
-    // A clock that goes forward says otherwise, unless by so much that a driver has taken its step back for a
-    // round of it.
-    if (frame.device_time_ns >= 0 && last_.device_time_ns >= 0) {
-      const double passed_s = static_cast<double>(frame.device_time_ns - last_.device_time_ns) * 1e-9;
-      if (passed_s >= 0.0 && !ifog::restarted(passed_s, frame.elapsed_s + late_s_)) return false;
-    }
+    if (frame.reopened || difference == 0 || back >= kMostBack) return false;
+    if (frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
+      return false;  // nothing is late behind it
+    const bool timed = frame.elapsed_s >= 0.0;
+    const double elapsed_s = frame.elapsed_s + late_s_;
     const double forward_s = static_cast<double>(difference) * nominal_s_;
-    const bool had = (had_ >> back & 1U) != 0;
-    return had ? forward_s > frame.elapsed_s + late_s_ + kPrompt_s
-               : frame.elapsed_s + late_s_ < 0.5 * forward_s;
+    const double passed_s = clocked(frame) ? this->passed_s(frame) : 0.0;
+    if (passed_s > 0.5 * forward_s && (!timed || !ifog::restarted(passed_s, elapsed_s))) return false;
+    const Had had = recent_.at_place(place_ - back, frame.digest);
+    // What the sensor measured then and not just now.
+    if (had == Had::same && frame.digest != last_.digest) return !timed || elapsed_s < 0.5 * forward_s;
+    if (had == Had::other || back >= std::min(kMostBack, modulus_ / 4)) return false;
+    if (clocked(frame) && passed_s > 0.0 && timed && !ifog::restarted(passed_s, elapsed_s)) return false;
+    if (!timed) return had == Had::same || back <= kBackUntimed;
+    return had == Had::same ? forward_s > elapsed_s + kPrompt_s : elapsed_s < 0.5 * forward_s;
+  }
+
+  [[nodiscard]] bool clocked(const Frame& frame) const noexcept { return frame.clocked && last_.clocked; }
+  [[nodiscard]] double passed_s(const Frame& frame) const noexcept {
+    return static_cast<double>(frame.time_ns - last_.time_ns) * 1e-9;
   }
 
   // False where there is no clock, or it does not agree with the counter.
   [[nodiscard]] bool by_clock(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
-    if (frame.device_time_ns < 0 || last_.device_time_ns < 0) return false;
-    const double passed_s = static_cast<double>(frame.device_time_ns - last_.device_time_ns) * 1e-9;
+    if (!clocked(frame)) return false;
+    const double passed_s = this->passed_s(frame);
     const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
     const auto counted = static_cast<double>(difference);
     const double samples = passed_s / nominal_s_;
     const double rounds = std::max(0.0, std::round((samples - counted) / static_cast<double>(modulus_)));
     const double claimed = counted + rounds * static_cast<double>(modulus_);
     const bool agrees = std::abs(claimed - samples) <= kClockSamples + kClockDoubt * std::abs(samples);
-    const bool possible = elapsed_s < 0.0 || !ifog::restarted(passed_s, elapsed_s);
+    const bool possible = passed_s > 0.0 && (elapsed_s < 0.0 || !ifog::restarted(passed_s, elapsed_s));
     if (passed_s == 0.0) return false;  // the same frame again, or a clock of coarse ticks
-    if (passed_s < 0.0 || (!possible && difference != 1)) {
+    const bool goes_on = difference == 1 && frame.quiet_s < kPrompt_s + 2.0 * nominal_s_;
+    if (!possible && !goes_on) {
       step.restarted = true;
       step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
       step.dt_s = static_cast<double>(step.samples) * nominal_s_;
@@ -211,8 +231,9 @@ class DeviceCount {
     const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
     if (known && elapsed_s > 0.0 &&
         (frame.reopened || after_backlog ||
-         (late_s_ == 0.0 && (difference != 1 || frame.elapsed_s > kLongSilence_s)))) {
-      const double rounds = rounds_in(step.late_s, elapsed_s);
+         (late_s_ == 0.0 && (difference != 1 || frame.quiet_s > kLongSilence_s)))) {
+      // While a frame came again and again no round was lost: the device stood still.
+      const double rounds = rounds_in(std::min(step.late_s, frame.quiet_s), elapsed_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
       if (rounds > 0.0) step.late_s = 0.0;
     }
@@ -245,7 +266,9 @@ class DeviceCount {
   std::uint64_t modulus_;
   double nominal_s_;
   Frame last_;
-  std::uint64_t had_ = 1;  // bit i: the sample i before the last one came
+  static constexpr std::uint64_t kFirstPlace = std::uint64_t{1} << 32U;  // those before it have places, too
+  std::uint64_t place_ = kFirstPlace;                                    // of the last one
+  RecentFrames recent_;
   Arrivals arrivals_;
   double window_late_s_ = 0.0, window_s_ = 0.0,
          episode_s_ = 0.0;  // since lateness last became less; since it began

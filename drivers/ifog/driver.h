@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-#define IFOG_DRIVER_ABI 4u
+#define IFOG_DRIVER_ABI 5u
 #define IFOG_MAX_AXES 3
 #define IFOG_MAX_ENVIRONMENT 16
 #define IFOG_NAME_LENGTH 48
@@ -54,15 +54,17 @@ enum ifog_sample_flags {
 
 /* One reading of the sensor. */
 typedef struct ifog_sample {
-  int64_t arrival_ns;     /* copied from the chunk the last byte came in, ns; 0: not known */
-  int64_t device_time_ns; /* the device's own clock, unwrapped by the plugin, any origin */
+  int64_t arrival_ns; /* copied from the chunk the last byte came in, ns; 0: not known */
+  int64_t
+      device_time_ns; /* the device's own clock as sent, any origin; the host carries it on over its wraps */
+  int64_t device_wrap_ns; /* it begins again after this; 0: never */
   uint32_t sequence;      /* the device's counter as sent, 0 … sequence_modulus − 1 */
   uint32_t status;        /* the device's status word as sent */
   uint32_t flags;         /* ifog_sample_flags */
   uint32_t valid_axes;    /* bit i: value[i] may be used (the device says so and it is finite) */
   double value[IFOG_MAX_AXES];
   uint32_t environment_fresh; /* bit i: environment[i] came with this sample */
-  uint32_t reserved;
+  uint32_t at_once; /* the host's: about how many samples came in one portion with it; 0: not known */
   double environment[IFOG_MAX_ENVIRONMENT]; /* last known values, NaN until the first */
 } ifog_sample;
 

@@ -3,16 +3,10 @@
 // number.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace ifog {
 
 inline bool same_value(double a, double b) noexcept { return a == b || (std::isnan(a) && std::isnan(b)); }
-
-inline bool same_values(std::span<const double> a, std::span<const double> b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_value);
-}
 
 }  // namespace ifog

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "drivers/ifog/same_values.h"
-
 namespace ifog {
 namespace {
 
@@ -43,8 +41,7 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
       clock_(period_s_, clock_memory(facts.nominal_rate_hz)),
-      count_(std::max<std::uint32_t>(facts.sequence_modulus, 1), period_s_),
-      clock_steps_(period_s_) {
+      timeline_(facts.sequence_modulus, facts.nominal_rate_hz) {
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
@@ -62,64 +59,30 @@ double Incrementer::interval_error() const noexcept {
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
 }
 
-DeviceCount::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
-  DeviceCount::Frame frame;
+DeviceTimeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
+  DeviceTimeline::Frame frame;
+  frame.counts = reading.has_sequence;
   frame.sequence = reading.sequence;
-  frame.device_time_ns = reading.device_time_ns;
+  frame.clocked = reading.device_time_ns >= 0;
+  frame.stamp = {reading.device_time_ns, reading.device_wrap_ns};
   frame.arrival_ns = reading.arrival_ns;
   frame.reopened = reopened_;
+  frame.values = {reading.value.data(), static_cast<std::size_t>(facts_.axes)};
   return frame;
 }
 
-Incrementer::Step Incrementer::step_by_counter(const Reading& reading,
-                                               const DeviceCount::Frame& frame) const noexcept {
-  const DeviceCount::Step counted = count_.look(frame);
-  Step step{counted.samples,     counted.dt_s,        counted.gap,   counted.restarted,
-            counted.out_of_turn, counted.clock_moved, counted.late_s};
-  if (step.samples == 0 && !step.repeated) {
-    // The same counter again, too soon for a full round. CAN may deliver a frame twice; a device whose
-    // counter stands still yet measures is followed.
-    const auto axes = static_cast<std::size_t>(facts_.axes);
-    step.repeated = same_values({reading.value.data(), axes}, {last_.value.data(), axes});
-    step.samples = 1;
-  }
-  return step;
-}
-
-Incrementer::Step Incrementer::step_by_clock(const Reading& reading, double elapsed_s) noexcept {
+Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) const noexcept {
+  // Nothing counts, so only a silence that scheduling does not explain is a gap, and only when what ends it
+  // was not held up: it came alone, or what comes behind it does so at its pace.
   Step step;
-  const std::int64_t passed_ns = reading.device_time_ns - last_.device_time_ns;
-  const auto axes = static_cast<std::size_t>(facts_.axes);
-  if (passed_ns == 0 && !clock_steps_.stood() &&
-      same_values({reading.value.data(), axes}, {last_.value.data(), axes})) {
-    step.repeated = true;
-    return step;
-  }
-  if (passed_ns < 0 || (elapsed_s >= 0.0 && restarted(static_cast<double>(passed_ns) * 1e-9, elapsed_s))) {
-    clock_steps_.restart();
-    step.restarted = true;
-    step.gap = true;
-    step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / period_s_) : 1;
-    step.dt_s = static_cast<double>(step.samples) * period_s_;
-    return step;
-  }
-  const ClockSteps::Step passed = clock_steps_.take(passed_ns, 0);
-  step.samples = passed.samples;
-  step.dt_s = passed.dt_s;
-  step.gap = step.samples > 1;
-  return step;
-}
-
-Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double elapsed_s) const noexcept {
-  // Nothing counts, so only a silence that scheduling does not explain is a gap, and only when what comes
-  // behind it was not held up with the sample that ended it.
-  Step step;
+  const double elapsed_s = arrivals_.elapsed_s(reading.arrival_ns);
   const double period_s = clock_.period_s();
   const double late_s = clock_.lateness_s(1, reading.arrival_ns);
   const bool late = elapsed_s >= 0.0 && late_s > std::max(0.25, 20.0 * period_s);
+  const bool alone = reading.at_once > 0 && reading.at_once * period_s <= kPrompt_s + period_s;
   if (elapsed_s > 0.0 && reopened_)
     step.samples = at_least_one(elapsed_s / period_s);
-  else if (late && late_s_ > 0.0 && elapsed_s >= kPace * period_s)
+  else if (late && (late_s_ > 0.0 ? elapsed_s >= kPace * period_s : alone))
     step.samples = at_least_one(late_s / period_s + 1.0);
   else if (late)
     step.late_s = late_s;
@@ -128,31 +91,12 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading, double el
   return step;
 }
 
-Incrementer::Step Incrementer::step(const Reading& reading) noexcept {
-  const double elapsed = arrivals_.elapsed_s(reading.arrival_ns);
-  Step step;
-  const bool clocked = reading.device_time_ns >= 0 && last_.device_time_ns >= 0;
-  if (reading.has_sequence && facts_.sequence_modulus > 0) {
-    const DeviceCount::Frame frame = frame_of(reading);
-    step = step_by_counter(reading, frame);
-    if (step.restarted) clock_steps_.restart();
-    if (!step.repeated && !step.restarted && clocked && reading.device_time_ns >= last_.device_time_ns) {
-      const std::int64_t passed_ns = reading.device_time_ns - last_.device_time_ns;
-      const ClockSteps::Step passed = clock_steps_.take(passed_ns, step.samples);
-      if (clock_steps_.coarse()) step.dt_s = passed.dt_s;
-    }
-    if (!step.repeated)
-      count_.take(frame,
-                  {step.samples, step.dt_s, step.gap, step.restarted, false, step.clock_moved, step.late_s});
-  } else {
-    step = clocked ? step_by_clock(reading, elapsed) : step_by_arrival(reading, elapsed);
-    late_s_ = step.late_s;
-  }
-  // A clock that was set back says nothing of what has passed.
-  if (reading.arrival_ns > 0 &&
-      static_cast<double>(arrivals_.latest_ns() - reading.arrival_ns) * 1e-9 > kSetBack_s)
-    step.clock_moved = true;
-  if (reopened_) step.gap = true;
+Incrementer::Step Incrementer::step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept {
+  if (timeline_.tells(frame)) return timeline_.next(frame);
+  Step step = step_by_arrival(reading);
+  late_s_ = step.late_s;
+  step.gap = step.gap || reopened_;
+  step.time_ns = timeline_.first(frame);
   return step;
 }
 
@@ -235,11 +179,36 @@ void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, I
   out.channel_age_s = channel_age_s_;
 }
 
+// When the sample was taken, by a line through the times of arrival.
+void Incrementer::label(const Reading& reading, const Step& step, Increment& out) noexcept {
+  // A clock that was set back says nothing of what has passed.
+  const bool set_back = reading.arrival_ns > 0 &&
+                        static_cast<double>(arrivals_.latest_ns() - reading.arrival_ns) * 1e-9 > kSetBack_s;
+  const bool moved = started_ && (step.clock_moved || set_back);
+  if (step.clock_moved || set_back) clock_.restart();
+  // Of recorded times nobody knows whether the clock was set or the device did not count on; by one that
+  // nobody sets it was the device.
+  if (started_ &&
+      (reading.wall_shift_ns != last_.wall_shift_ns || set_back || (moved && reading.arrival_recorded))) {
+    out.flags |= kClockStep;
+    ++counts_.clock_steps;
+  } else if (moved) {
+    ++counts_.pauses;
+  }
+  // What is held up on its way says nothing of the clock.
+  out.utime_ns =
+      clock_.advance(step.samples, step.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
+  // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
+  // fro by as much as arrival times scatter.
+  if (started_ && (out.flags & kClockStep) == 0) out.utime_ns = std::max(out.utime_ns, last_.utime_ns + 1000);
+}
+
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
+  const DeviceTimeline::Frame frame = frame_of(reading);
   Step now;
   if (started_) {
-    now = step(reading);
-    if (now.repeated) {
+    now = step(reading, frame);
+    if (now.out_of_turn) {
       ++counts_.repeated;
       return false;
     }
@@ -247,7 +216,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   } else {
     now.dt_s = period_s_;
     sequence_ = reading.has_sequence ? reading.sequence : 0;
-    count_.first(frame_of(reading));
+    now.time_ns = timeline_.first(frame);
   }
   out.flags = 0;
   if (started_ && now.gap) {
@@ -270,25 +239,14 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.arrival_ns = reading.arrival_ns;
   out.came_ns = reading.came_ns;
   out.wall_shift_ns = reading.wall_shift_ns;
-  if (now.clock_moved) clock_.restart();
-  if (started_ && (now.clock_moved || reading.wall_shift_ns != last_.wall_shift_ns)) {
-    out.flags |= kClockStep;
-    ++counts_.clock_steps;
-  }
-  out.device_time_ns = reading.device_time_ns;
+  out.device_time_ns = frame.clocked ? now.time_ns : -1;
   out.dt_s = now.dt_s;
-  // What is held up on its way says nothing of the clock.
-  out.utime_ns =
-      clock_.advance(now.samples, now.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
-  // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
-  // fro by as much as arrival times scatter.
-  if (started_ && (out.flags & kClockStep) == 0) out.utime_ns = std::max(out.utime_ns, last_.utime_ns + 1000);
+  label(reading, now, out);
   arrivals_.came(reading.arrival_ns, now.dt_s);
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.arrival_ns, reading.wall_shift_ns, reading.device_time_ns,
-           out.utime_ns,       reading.sequence,      reading.value};
+  last_ = {reading.wall_shift_ns, reading.device_time_ns, out.utime_ns};
   started_ = true;
   reopened_ = false;
   return true;

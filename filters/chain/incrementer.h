@@ -5,17 +5,17 @@
 // counter; the fitted period for a device that has neither. So a replay of the same frames gives the same
 // bits, whatever the scheduling did to arrival times, for every device that counts.
 //
-// How many samples are missing: drivers/ifog/device_count.h for a device that counts. Of one that does not, a
-// silence is a gap when what follows comes at its pace; what comes at once was held up on its way, and
-// nothing of it is missing.
+// What is new, came again or late, and how many samples are missing: drivers/ifog/device_timeline.h for a
+// device that counts or has a clock. Of one with neither a silence is a gap before the sample that ends it
+// where that came alone, or else when what follows comes at its pace; what comes at once was held up on its
+// way, and nothing of it is missing.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "drivers/ifog/arrivals.h"
-#include "drivers/ifog/clock_steps.h"
-#include "drivers/ifog/device_count.h"
+#include "drivers/ifog/device_timeline.h"
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
@@ -34,6 +34,7 @@ struct IncrementerCounts {
   std::uint64_t implausible = 0;  // of those: marked good, but a value that cannot be
   std::uint64_t channel_implausible = 0;  // values of channels that cannot be; the one before is held
   std::uint64_t clock_steps = 0;          // times the clock of the labels was set: they moved, nothing else
+  std::uint64_t pauses = 0;  // times they moved because the device had not counted on for a while
 };
 
 class Incrementer {
@@ -55,20 +56,11 @@ class Incrementer {
   [[nodiscard]] double interval_error() const noexcept;
 
  private:
-  struct Step {
-    std::uint64_t samples = 1;  // of the device, since the reading before
-    double dt_s = 0.0;
-    bool gap = false;
-    bool restarted = false;
-    bool repeated = false;
-    bool clock_moved = false;  // the times of arrival have moved against the count, for good
-    double late_s = 0.0;       // later than the count, and nothing decided yet
-  };
-  [[nodiscard]] Step step(const Reading& reading) noexcept;
-  [[nodiscard]] DeviceCount::Frame frame_of(const Reading& reading) const noexcept;
-  [[nodiscard]] Step step_by_counter(const Reading& reading, const DeviceCount::Frame& frame) const noexcept;
-  [[nodiscard]] Step step_by_clock(const Reading& reading, double elapsed_s) noexcept;
-  [[nodiscard]] Step step_by_arrival(const Reading& reading, double elapsed_s) const noexcept;
+  using Step = DeviceTimeline::Step;
+  [[nodiscard]] Step step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept;
+  [[nodiscard]] DeviceTimeline::Frame frame_of(const Reading& reading) const noexcept;
+  [[nodiscard]] Step step_by_arrival(const Reading& reading) const noexcept;
+  void label(const Reading& reading, const Step& step, Increment& out) noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
   [[nodiscard]] Verdict turn(std::size_t axis, double value, double own_s, Turn& out) noexcept;
@@ -76,15 +68,12 @@ class Incrementer {
   SensorFacts facts_;
   double period_s_;
   FittedClock clock_;
-  DeviceCount count_;  // of a device that counts
-  ClockSteps clock_steps_;
+  DeviceTimeline timeline_;  // of a device that counts or has a clock
   bool started_ = false;
   bool reopened_ = false;
   // Of the reading before; its channels are kept below.
   struct Last {
-    std::int64_t arrival_ns = 0, wall_shift_ns = 0, device_time_ns = -1, utime_ns = 0;
-    std::uint32_t sequence = 0;
-    Axes value{};
+    std::int64_t wall_shift_ns = 0, device_time_ns = -1, utime_ns = 0;
   };
   Last last_;
   Arrivals arrivals_;

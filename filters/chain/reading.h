@@ -51,7 +51,10 @@ struct Reading {
   std::int64_t arrival_ns = 0;
   std::int64_t came_ns = 0;        // the same, or where that is 0 when it was read; 0: offline, nobody knows
   std::int64_t wall_shift_ns = 0;  // time of day less that clock
-  std::int64_t device_time_ns = -1;  // the device's clock, unwrapped; −1: it has none
+  bool arrival_recorded = false;   // arrival_ns is of another day, by a clock that may have been set
+  std::int64_t device_time_ns = -1;  // the device's clock, as sent; −1: it has none
+  std::int64_t device_wrap_ns = 0;   // that begins again after this; 0: never
+  std::uint32_t at_once = 0;         // about how many samples came in one portion with it; 0: not known
   std::uint32_t sequence = 0;        // as sent
   bool has_sequence = false;
   std::uint32_t status = 0;
@@ -73,18 +76,18 @@ enum IncrementFlags : std::uint32_t {
 
 // The angle turned over one step, and what came with it.
 struct Increment {
-  std::int64_t utime_ns = 0;       // fitted time of the sample, time of day, ns since the epoch
-  std::int64_t arrival_ns = 0;     // as in Reading
-  std::int64_t came_ns = 0;        // likewise
-  std::int64_t wall_shift_ns = 0;  // likewise
-  std::int64_t device_time_ns = -1;
-  std::uint64_t sequence = 0;  // unwrapped; starts at the device's first counter value
-  double dt_s = 0.0;           // since the sample before, gap included
-  Axes delta_theta_rad{};      // only what the device sent: a gap adds nothing
-  Axes covered_s{};            // time delta_theta covers: dt less gap and invalid samples
-  Axes rate_radps{};           // delta_theta / covered; NaN where the axis is not valid
-  Axes delta_v_mps{};          // specific force times time, of x, y, z where the frames have it
-  Axes moved_s{};              // time delta_v covers
+  std::int64_t utime_ns = 0;         // fitted time of the sample, time of day, ns since the epoch
+  std::int64_t arrival_ns = 0;       // as in Reading
+  std::int64_t came_ns = 0;          // likewise
+  std::int64_t wall_shift_ns = 0;    // likewise
+  std::int64_t device_time_ns = -1;  // the device's clock, over its wraps; −1: it has none
+  std::uint64_t sequence = 0;        // unwrapped; starts at the device's first counter value
+  double dt_s = 0.0;                 // since the sample before, gap included
+  Axes delta_theta_rad{};            // only what the device sent: a gap adds nothing
+  Axes covered_s{};                  // time delta_theta covers: dt less gap and invalid samples
+  Axes rate_radps{};                 // delta_theta / covered; NaN where the axis is not valid
+  Axes delta_v_mps{};                // specific force times time, of x, y, z where the frames have it
+  Axes moved_s{};                    // time delta_v covers
   std::uint32_t valid_axes = 0;
   std::uint32_t stuck_axes = 0;  // of those: repeat one value, as the sensor sent it
   std::uint32_t status = 0;

@@ -232,12 +232,22 @@ void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
   }
 }
 
-// 0, with a variance that says how well that is known, would be believed.
-void SignalChain::leave_unknown(ChainOutput& out) const noexcept {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(parts_->facts_.axes); ++i)
-    if ((known_axes_ >> i & 1U) == 0)
-      out.estimate.denoised_radps[i] = out.estimate.variance_rad2ps2[i] =
-          std::numeric_limits<double>::quiet_NaN();
+// Of an axis that has had no value 0, with a variance that says how well that is known, would be believed;
+// and of one that the filter in use has not been given yet. That one holds what was known of it.
+void SignalChain::hold_unmeasured(ChainOutput& out) noexcept {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  EstimatorOutput& now = out.estimate;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parts_->facts_.axes); ++i) {
+    if ((known_axes_ >> i & 1U) == 0) {
+      now.denoised_radps[i] = now.variance_rad2ps2[i] = kNone;
+    } else if ((parts_->measured_axes_ >> i & 1U) != 0 || !std::isfinite(held_radps_[i])) {
+      held_radps_[i] = now.denoised_radps[i];
+      held_rad2ps2_[i] = now.variance_rad2ps2[i];
+    } else {
+      now.denoised_radps[i] = held_radps_[i];
+      now.variance_rad2ps2[i] = held_rad2ps2_[i];
+    }
+  }
 }
 
 void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
@@ -251,7 +261,9 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   }
   if (parts.estimator_ == nullptr) {
     parts.publish_raw(in, out);
-    leave_unknown(out);
+    parts.measured_axes_ = in.valid_axes;  // a raw rate is nobody's estimate
+    hold_unmeasured(out);
+    parts.measured_axes_ = 0;
     parts.learn(in, out);
     return;
   }
@@ -270,7 +282,8 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   if (parts.compensator_)
     for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i)
       out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];
-  leave_unknown(out);
+  parts.measured_axes_ |= in.valid_axes & ~in.stuck_axes;
+  hold_unmeasured(out);
 }
 
 EstimatorHealth SignalChain::health() const noexcept {

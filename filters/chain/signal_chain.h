@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -120,6 +121,7 @@ class ChainParts {
   std::size_t collected_ = 0;
   std::unique_ptr<Estimator> estimator_;
   FirstSamples first_samples_;
+  std::uint32_t measured_axes_ = 0;  // that the estimator has been given
   bool learns_process_noise_ = false, learns_measurement_noise_ = false;
   RestNoise rest_noise_;
   double rest_measurement_noise_ = 0.0;  // as that has found it
@@ -128,6 +130,9 @@ class ChainParts {
 };
 
 class SignalChain {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  static constexpr Axes kUnknownAxes{kUnknown, kUnknown, kUnknown};
+
  public:
   explicit SignalChain(std::unique_ptr<ChainParts> parts) : parts_(std::move(parts)) {}
 
@@ -143,11 +148,12 @@ class SignalChain {
   [[nodiscard]] EstimatorHealth health() const noexcept;
 
  private:
-  void leave_unknown(ChainOutput& out) const noexcept;
+  void hold_unmeasured(ChainOutput& out) noexcept;
 
   std::unique_ptr<ChainParts> parts_;
-  std::uint32_t known_axes_ = 0;  // that have had a value
-  EstimatorHealth before_;        // the counters of estimators that are gone
+  std::uint32_t known_axes_ = 0;                                  // that have had a value
+  Axes held_radps_ = kUnknownAxes, held_rad2ps2_ = kUnknownAxes;  // denoised, of what was measured last
+  EstimatorHealth before_;                                        // the counters of estimators that are gone
   std::array<ExactSum, kMaxAxes> angle_{};
 };
 

@@ -35,7 +35,8 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       rest_(std::move(rest)),
       steady_(steady),
       change_(rest_->rate_alone()),
-      ledger_(period_s, settings.follow_manoeuvres) {
+      ledger_(period_s, settings.follow_manoeuvres),
+      noise_of_one_(settings.measurement_noise) {
   noise_.fill(NoiseScale(settings.measurement_noise));
 }
 
@@ -357,7 +358,9 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       }
     }
     out.denoised_radps[a] = rate;
-    out.variance_rad2ps2[a] = variance;
+    // A rule without a floor may take the covariance below zero: it then says nothing of the rate but what
+    // one measurement does.
+    out.variance_rad2ps2[a] = variance >= 0.0 ? variance : noise_of_one_;
     out.gain[a] = published_.gain;
     out.innovation_variance[a] = innovation_variance(a);
     health_.measurement_noise[a] = loudness_[a] * rest_->rule().measurement_noise();

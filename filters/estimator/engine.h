@@ -141,6 +141,7 @@ class Engine {
   Axes kept_out_{};                 // angle of the measurements kept out in a row
   Axes waiting_rate_{};             // that measurement
   Axes surprised_{};                // running mean of the least normalised square in the manoeuvre
+  double noise_of_one_;             // variance of a measurement, as set
   double rest_variance_ = 0.0;      // of the predicted rate at rest, averaged
   double at_rest_for_ = 0.0;        // measurements since the end of the last manoeuvre
   double since_moved_ = 0.0;        // measurements since the filter at rest was last moved

@@ -13,6 +13,9 @@ namespace ifog {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// No sensor is so loud, or so quiet; within them fourth powers of an innovation over its deviation are
+// numbers.
+constexpr double kMostNoise = 1e12, kLeastMeasurementNoise = 1e-60;
 
 using S = FilterSettings;
 using C = FilterChoice;
@@ -39,14 +42,14 @@ constexpr std::array kTable{
     FilterSetting{"process_noise",
                   "--process-noise",
                   SettingMember<double>{&S::process_noise, &C::process_noise},
-                  {0.0, kInfinity},
+                  {0.0, kMostNoise},
                   {},
                   "(rad/s)^2/s",
                   "driving noise of the state; 0: not given"},
     FilterSetting{"measurement_noise",
                   "--measurement-noise",
                   SettingMember<double>{&S::measurement_noise, &C::measurement_noise},
-                  {0.0, kInfinity},
+                  {0.0, kMostNoise, false, kLeastMeasurementNoise},
                   {},
                   "(rad/s)^2",
                   "variance of one sample; 0: not given"},
@@ -132,7 +135,8 @@ constexpr std::array kTable{
 
 bool inside(double value, const SettingRange& range) {
   return std::isfinite(value) && value >= range.least &&
-         (range.below_most ? value < range.most : value <= range.most);
+         (range.below_most ? value < range.most : value <= range.most) &&
+         (value == 0.0 || value >= range.least_but_zero);
 }
 
 bool one_of(const std::string& value, std::span<const char* const> choices) {
@@ -199,7 +203,9 @@ std::string as_text(const SettingValue& value) {
 
 std::string in_words(const char* type, const SettingRange& range) {
   std::string out = type;
-  if (std::isinf(range.most)) {
+  if (range.least_but_zero > 0.0) {
+    out += " " + shortest(range.least_but_zero) + " ... " + shortest(range.most) + ", or 0";
+  } else if (std::isinf(range.most)) {
     if (!std::isinf(range.least)) out += " >= " + shortest(range.least);
   } else if (range.below_most) {
     out += " >= " + shortest(range.least) + " and < " + shortest(range.most);

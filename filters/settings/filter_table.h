@@ -23,6 +23,7 @@ struct SettingRange {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   bool below_most = false;
+  double least_but_zero = 0.0;  // > 0: 0 is allowed, and what is at least this
 };
 
 // A value as a source holds it, before it is narrowed to what the setting takes. A whole number will do for a

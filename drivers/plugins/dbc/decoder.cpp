@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "drivers/dbc/codec.h"
@@ -14,9 +15,15 @@ namespace ifog::dbc {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNsPerSecond = 1e9;
 
 constexpr std::uint32_t bit(std::size_t i) { return 1U << i; }
+
+// A float that holds anything may hold what no int64 of nanoseconds can.
+std::optional<std::int64_t> nanoseconds(double seconds) {
+  constexpr double kMost = 9e9, kNsPerSecond = 1e9;
+  if (!(std::abs(seconds) < kMost)) return {};
+  return std::llround(seconds * kNsPerSecond);
+}
 
 }  // namespace
 
@@ -29,7 +36,9 @@ Decoder::Decoder(const Picks& picks) : picks_(picks) {
     add(Role::kTime, 0, *picks.time);
     const Signal& s = *picks.time->signal;
     if (is_integer(s.type))
-      time_wrap_s_ = std::ldexp(std::abs(s.scale), static_cast<int>(s.length)) * picks.seconds_per_unit;
+      sample_.device_wrap_ns =
+          nanoseconds(std::ldexp(std::abs(s.scale), static_cast<int>(s.length)) * picks.seconds_per_unit)
+              .value_or(0);
   }
   for (std::size_t i = 0; i < picks.environments.size(); ++i)
     add(Role::kEnvironment, i, picks.environments[i].pick);
@@ -95,8 +104,7 @@ void Decoder::reset() noexcept {
   give_up();
   last_counted_ = false;
   sample_.environment_fresh = 0;
-  time_started_ = false;
-  arrivals_.forget();
+  timed_ = false;
 }
 
 void Decoder::decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept {
@@ -146,7 +154,6 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
       return;
     }
   }
-  arrival_ns_ = frame.arrival_ns;
   for (const Entry& entry : wanted.entries)
     if (selected(*entry.message, *entry.signal, data) && (entry.role != Role::kCounter || brings != 0))
       set(entry, raw_bits(*entry.signal, data));
@@ -188,7 +195,10 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
       break;
     case Role::kTime: {
       const double seconds = physical(*entry.signal, bits) * picks_.seconds_per_unit;
-      if (std::isfinite(seconds)) sample_.device_time_ns = unwrapped_ns(seconds);
+      if (const std::optional<std::int64_t> ns = nanoseconds(seconds)) {
+        sample_.device_time_ns = *ns;
+        timed_ = true;
+      }
       break;
     }
     case Role::kEnvironment: {
@@ -205,37 +215,11 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
   }
 }
 
-// How often the clock went round beside the once that its step shows: behind a silence, or where that step
-// shows a gap, as many times as the times of arrival tell. What is only late is not behind a gap.
-double Decoder::wraps_behind(double step_s) const noexcept {
-  constexpr double kSilence_s = 2.0, kGap = 1.5, kClocksApart = 1e-3;
-  const double elapsed_s = arrivals_.elapsed_s(arrival_ns_);
-  const bool gap = picks_.rate_hz > 0.0 && step_s > kGap / picks_.rate_hz;
-  if (elapsed_s <= kSilence_s && !gap) return 0.0;
-  return whole_rounds(elapsed_s - step_s, time_wrap_s_, kPrompt_s + kClocksApart * elapsed_s, kAdapter_s);
-}
-
-std::int64_t Decoder::unwrapped_ns(double seconds) noexcept {
-  double step = time_started_ ? seconds - last_time_s_ : seconds;
-  if (time_started_ && time_wrap_s_ > 0.0) {
-    if (step < 0.0) step += time_wrap_s_;
-    step += time_wrap_s_ * wraps_behind(step);
-  }
-  arrivals_.came(arrival_ns_, time_started_ ? step : 0.0);
-  last_time_s_ = seconds;
-  // A float that holds anything may hold what no int64 of nanoseconds can.
-  constexpr double kLongest = 1e9;
-  if (std::abs(step) < kLongest)
-    time_ns_ = (time_started_ ? time_ns_ : 0) + std::llround(step * kNsPerSecond);
-  time_started_ = true;
-  return time_ns_;
-}
-
 void Decoder::complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept {
   sample_.arrival_ns = arrival_ns;
   sample_.flags = 0;
   if (counted_) sample_.flags |= IFOG_SAMPLE_SEQUENCE;
-  if (time_started_) sample_.flags |= IFOG_SAMPLE_DEVICE_TIME;
+  if (timed_) sample_.flags |= IFOG_SAMPLE_DEVICE_TIME;
   const bool good = !picks_.status_good || (sample_.status & picks_.status_mask) == *picks_.status_good;
   sample_.valid_axes = good ? good_ : 0;
   emit(sink, &sample_);

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "drivers/ifog/arrivals.h"
 #include "drivers/plugins/dbc/picks.h"
 
 namespace ifog::dbc {
@@ -61,8 +60,6 @@ class Decoder {
   void begin_sample() noexcept;
   void give_up() noexcept;
   void complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept;
-  [[nodiscard]] double wraps_behind(double step_s) const noexcept;
-  std::int64_t unwrapped_ns(double seconds) noexcept;
 
   const Picks& picks_;
   std::vector<Wanted> wanted_;
@@ -78,12 +75,7 @@ class Decoder {
   std::uint32_t last_sequence_ = 0;
   std::array<double, IFOG_MAX_AXES> last_value_{};
   ifog_sample sample_{};
-  double time_wrap_s_ = 0.0;  // the device's clock starts again at this; 0: it is a float and does not
-  double last_time_s_ = 0.0;
-  std::int64_t time_ns_ = 0;
-  std::int64_t arrival_ns_ = 0;  // of the frame at hand
-  Arrivals arrivals_;
-  bool time_started_ = false;
+  bool timed_ = false;  // its clock has been read
   ifog_driver_counters counters_{};
 };
 

@@ -13,8 +13,8 @@
 #include <optional>
 
 #include "drivers/plugins/framing/channels.h"
-#include "drivers/plugins/framing/device_clock.h"
 #include "drivers/plugins/framing/fields.h"
+#include "drivers/plugins/framing/stamp.h"
 #include "drivers/plugins/kvh1750/frame.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
 #include "ifog/byte_driver.h"
@@ -144,10 +144,7 @@ class Driver {
     });
   }
 
-  void reset() noexcept {
-    finder_.reset();
-    time_.restart();
-  }
+  void reset() noexcept { finder_.reset(); }
 
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out, other_format_); }
 
@@ -167,7 +164,8 @@ class Driver {
     sample.status = frame.status;
     sample.flags = IFOG_SAMPLE_SEQUENCE;
     if (frame.format == Format::kB) {
-      sample.device_time_ns = time_.next_ns(frame.time_stamp_us, arrival_ns, set_up_.stamp_modulus_us);
+      sample.device_time_ns = stamp_.time_ns(frame.time_stamp_us);
+      sample.device_wrap_ns = stamp_.time_ns(set_up_.stamp_modulus_us);
       sample.flags |= IFOG_SAMPLE_DEVICE_TIME;
     }
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -209,7 +207,7 @@ class Driver {
     if (frame.format == Format::kB) {
       if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) == 0)
         throw std::invalid_argument("format b needs the device's time, and the sample has none");
-      frame.time_stamp_us = time_.stamp_at(sample.device_time_ns, set_up_.stamp_modulus_us);
+      frame.time_stamp_us = stamp_.stamp_at(sample.device_time_ns, set_up_.stamp_modulus_us);
     }
     encode_slow(sample, frame);
     return frame;
@@ -237,7 +235,7 @@ class Driver {
 
   SetUp set_up_;
   FrameFinder finder_;
-  framing::DeviceClock time_{1000};
+  framing::Stamp stamp_{1000};
   std::uint64_t other_format_ = 0;
   framing::Channels channels_;
   std::uint32_t sent_ = 0;

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "drivers/plugins/framing/channels.h"
-#include "drivers/plugins/framing/device_clock.h"
+#include "drivers/plugins/framing/stamp.h"
 #include "drivers/plugins/sbgecom/message.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
@@ -68,10 +68,7 @@ class Driver {
     });
   }
 
-  void reset() noexcept {
-    finder_.reset();
-    clock_.restart();
-  }
+  void reset() noexcept { finder_.reset(); }
 
   // The device's other messages are good frames, too.
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out); }
@@ -82,7 +79,7 @@ class Driver {
       throw std::invalid_argument("the message carries the device's time, and the sample has none");
     Imu imu;
     imu.message = message_.value_or(kImuShort);
-    imu.time_stamp_us = clock_.stamp_at(sample.device_time_ns, kStampModulus);
+    imu.time_stamp_us = stamp_.stamp_at(sample.device_time_ns, kStampModulus);
     imu.status = kComOk | kImuOk | kAccelerationsInRange | kGyrosInRange;
     for (unsigned axis = 0; axis < 3; ++axis) {
       if ((sample.valid_axes & 1U << axis) != 0) {
@@ -107,7 +104,8 @@ class Driver {
     ifog_sample sample{};
     sample.arrival_ns = arrival_ns;
     sample.status = imu.status;
-    sample.device_time_ns = clock_.next_ns(imu.time_stamp_us, arrival_ns, kStampModulus);
+    sample.device_time_ns = stamp_.time_ns(imu.time_stamp_us);
+    sample.device_wrap_ns = stamp_.time_ns(kStampModulus);
     sample.flags = IFOG_SAMPLE_DEVICE_TIME;
     const bool alive = (imu.status & kComOk) != 0;
     const bool gyros = alive && (imu.status & kGyrosInRange) != 0;
@@ -127,7 +125,7 @@ class Driver {
   std::optional<std::uint8_t> message_;
   double rate_hz_, full_scale_radps_;
   framing::FrameFinder<Protocol> finder_;
-  framing::DeviceClock clock_{1000};
+  framing::Stamp stamp_{1000};
   framing::Channels channels_;
 };
 

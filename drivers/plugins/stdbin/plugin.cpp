@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "drivers/plugins/framing/channels.h"
-#include "drivers/plugins/framing/device_clock.h"
 #include "drivers/plugins/framing/fields.h"
+#include "drivers/plugins/framing/stamp.h"
 #include "drivers/plugins/stdbin/telegram.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
@@ -85,7 +85,7 @@ class Driver {
 
   void reset() noexcept {
     finder_.reset();
-    clock_.restart();
+    beyond_a_day_ = false;
   }
 
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out, without_rate_); }
@@ -96,7 +96,7 @@ class Driver {
       throw std::invalid_argument("the telegram carries the device's time, and the sample has none");
     Telegram telegram;
     telegram.version = version_;
-    telegram.validity_100us = clock_.stamp_at(sample.device_time_ns, kTicksOfADay);
+    telegram.validity_100us = stamp_.stamp_at(sample.device_time_ns, kTicksOfADay);
     const std::uint32_t sequence = (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 ? sample.sequence : sent_;
     sent_ = sequence + 1;
     telegram.counter = sequence;
@@ -131,9 +131,9 @@ class Driver {
     sample.status = telegram.sensor_status.value_or(0);
     sample.sequence = telegram.counter % kSequenceModulus;
     // A stamp that has passed a day is none of the time of day.
-    const std::int64_t modulus = last_stamp_ < kTicksOfADay ? kTicksOfADay : kTicksOfTheField;
-    last_stamp_ = telegram.validity_100us;
-    sample.device_time_ns = clock_.next_ns(telegram.validity_100us, arrival_ns, modulus);
+    beyond_a_day_ = beyond_a_day_ || telegram.validity_100us >= kTicksOfADay;
+    sample.device_time_ns = stamp_.time_ns(telegram.validity_100us);
+    sample.device_wrap_ns = stamp_.time_ns(beyond_a_day_ ? kTicksOfTheField : kTicksOfADay);
     sample.flags = IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME;
     for (unsigned axis = 0; axis < 3; ++axis) {
       sample.value[axis] = static_cast<double>(rate[axis]) * kRadiansPerDegree;
@@ -153,10 +153,10 @@ class Driver {
   std::uint8_t version_;
   double rate_hz_, full_scale_radps_;
   framing::FrameFinder<Protocol> finder_;
-  framing::DeviceClock clock_{kTick_ns};
+  framing::Stamp stamp_{kTick_ns};
   framing::Channels channels_;
   std::uint64_t without_rate_ = 0;
-  std::int64_t last_stamp_ = 0;
+  bool beyond_a_day_ = false;
   std::uint32_t sent_ = 0;
 };
 

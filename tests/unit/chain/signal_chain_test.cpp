@@ -59,6 +59,30 @@ TEST(SignalChain, TheSameIncrementsGiveTheSameBits) {
   }
 }
 
+// Also of a filter that is begun with it: at start-up, by what was learned there, or by a reload.
+TEST(SignalChain, AnAxisThatHasHadValuesKeepsOneOverAnInvalidSample) {
+  for (const double noise : {0.0, 1e-8}) {
+    ChainSettings with = settings(noise, noise);
+    with.start_up_s = 1.0;
+    SignalChain chain(std::make_unique<ChainParts>(with));
+    ChainOutput out;
+    const std::vector<Increment> all = increments(2500, 2);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Increment in = all[i];
+      if (i % 9 == 5 || (i > 990 && i < 1010) || (i >= 1800 && i < 1820)) {
+        in.valid_axes = 0;
+        in.covered_s[0] = in.delta_theta_rad[0] = 0.0;
+        in.rate_radps[0] = std::numeric_limits<double>::quiet_NaN();
+        in.flags |= kInvalid;
+      }
+      if (i == 1800) static_cast<void>(chain.swap(std::make_unique<ChainParts>(with)));
+      chain.process(in, out);
+      ASSERT_NEAR(out.estimate.denoised_radps[0], 0.01, 1e-3) << noise << ", sample " << i;
+      ASSERT_GE(out.estimate.variance_rad2ps2[0], 0.0) << noise << ", sample " << i;
+    }
+  }
+}
+
 TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
   ChainSettings unknown = settings(0.0, 0.0);
   unknown.start_up_s = 1.0;

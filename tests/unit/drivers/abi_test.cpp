@@ -18,6 +18,8 @@ std::map<std::string, std::size_t> layout() {
   return {{"ifog_sample", sizeof(ifog_sample)},
           FIELD(ifog_sample, arrival_ns),
           FIELD(ifog_sample, device_time_ns),
+          FIELD(ifog_sample, device_wrap_ns),
+          FIELD(ifog_sample, at_once),
           FIELD(ifog_sample, sequence),
           FIELD(ifog_sample, status),
           FIELD(ifog_sample, flags),
@@ -85,10 +87,10 @@ std::map<std::string, std::size_t> layout() {
 #undef FIELD
 
 // Of a machine with pointers of eight bytes, x86-64 and AArch64 alike.
-TEST(DriverAbi, VersionFourIsWhatItWas) {
+TEST(DriverAbi, VersionFiveIsWhatItWas) {
   static_assert(sizeof(void*) == 8);
-  ASSERT_EQ(IFOG_DRIVER_ABI, 4U) << "another version: write its layout here";
-  const std::map<std::string, std::size_t> four = {
+  ASSERT_EQ(IFOG_DRIVER_ABI, 5U) << "another version: write its layout here";
+  const std::map<std::string, std::size_t> five = {
       {"ifog_can_frame", 80},
       {"ifog_can_frame.arrival_ns", 0},
       {"ifog_can_frame.data", 14},
@@ -143,19 +145,21 @@ TEST(DriverAbi, VersionFourIsWhatItWas) {
       {"ifog_option.help", 24},
       {"ifog_option.key", 0},
       {"ifog_option.values", 8},
-      {"ifog_sample", 192},
+      {"ifog_sample", 200},
       {"ifog_sample.arrival_ns", 0},
+      {"ifog_sample.at_once", 68},
       {"ifog_sample.device_time_ns", 8},
-      {"ifog_sample.environment", 64},
-      {"ifog_sample.environment_fresh", 56},
-      {"ifog_sample.flags", 24},
-      {"ifog_sample.sequence", 16},
-      {"ifog_sample.status", 20},
-      {"ifog_sample.valid_axes", 28},
-      {"ifog_sample.value", 32},
+      {"ifog_sample.device_wrap_ns", 16},
+      {"ifog_sample.environment", 72},
+      {"ifog_sample.environment_fresh", 64},
+      {"ifog_sample.flags", 32},
+      {"ifog_sample.sequence", 24},
+      {"ifog_sample.status", 28},
+      {"ifog_sample.valid_axes", 36},
+      {"ifog_sample.value", 40},
       {"ifog_setting", 16},
   };
-  EXPECT_EQ(layout(), four) << "the layout has changed: IFOG_DRIVER_ABI must grow";
+  EXPECT_EQ(layout(), five) << "the layout has changed: IFOG_DRIVER_ABI must grow";
 }
 
 }  // namespace

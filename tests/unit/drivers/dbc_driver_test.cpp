@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
+#include "drivers/host/timeline_frame.h"
+#include "drivers/ifog/device_timeline.h"
 
 namespace {
 
@@ -248,7 +250,9 @@ TEST_F(DbcText, UnitsCountersAndClocks) {
       decode(b, {frame(2, {0, 0, 0x00, 0xFF, 0xFF, 0xFF, 0, 0}),    // 2^32 - 256 µs
                  frame(2, {1, 0, 0x00, 0x01, 0x00, 0x00, 0, 0})});  // 256 µs later still
   ASSERT_EQ(t.size(), 2U);
-  EXPECT_EQ(t[1].device_time_ns - t[0].device_time_ns, 512'000);
+  EXPECT_EQ(t[0].device_time_ns, ((std::int64_t{1} << 32U) - 256) * 1000);
+  EXPECT_EQ(t[1].device_time_ns, 256'000);
+  EXPECT_EQ(t[1].device_wrap_ns, (std::int64_t{1} << 32U) * 1000);
   EXPECT_DOUBLE_EQ(t[1].value[0], 0.01 * std::numbers::pi / 180.0 / 3600.0);
 }
 
@@ -257,6 +261,8 @@ TEST_F(DbcText, HowOftenAClockWentRoundInAGapTheTimesOfArrivalSay) {
   const std::string text =
       "BO_ 2 B: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"deg/s\" X\n SG_ T : 16|8@1+ (1,0) [0|0] \"ms\" X\n";
   ifog::DriverInstance b = driver(text, {{"signal", "B.R"}, {"time", "T"}, {"rate_hz", "125"}});
+  EXPECT_EQ(b.description().has_device_time, 1U);
+  ifog::DeviceTimeline timeline(0, 125.0);
   std::int64_t taken = 0, last_ns = 0;
   const auto step_ns = [&](std::int64_t samples, std::int64_t late_ns = 0) {
     taken += samples;
@@ -264,7 +270,9 @@ TEST_F(DbcText, HowOftenAClockWentRoundInAGapTheTimesOfArrivalSay) {
     sent.arrival_ns = 1'000'000'000 + taken * 8'000'000 + late_ns;
     const std::vector<ifog_sample> got = decode(b, {sent});
     EXPECT_EQ(got.size(), 1U);
-    return got.front().device_time_ns - std::exchange(last_ns, got.front().device_time_ns);
+    const ifog::DeviceTimeline::Frame one = ifog::timeline_frame(got.front(), 1);
+    const std::int64_t now_ns = timeline.tells(one) ? timeline.next(one).time_ns : timeline.first(one);
+    return now_ns - std::exchange(last_ns, now_ns);
   };
   step_ns(1);
   for (const std::int64_t samples : {1, 21, 1, 41, 1, 1, 301, 1, 34, 2})

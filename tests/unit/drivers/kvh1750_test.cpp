@@ -168,20 +168,20 @@ TEST(Kvh1750, AnotherFormatThanConfiguredIsCountedNotTaken) {
   EXPECT_EQ(driver.counters().bytes_skipped, 0U);
 }
 
-TEST(Kvh1750, TheStampRunsOnOverItsWrapAndOverPauses) {
-  ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "b"}});
-  const auto at = [&](std::uint32_t stamp_us, std::int64_t arrival_ns) {
-    std::vector<std::uint8_t> frame = hex(kFrameB);
-    frame.resize(36);
-    for (unsigned i = 0; i < 4; ++i) frame[28 + i] = static_cast<std::uint8_t>(stamp_us >> (24U - 8U * i));
-    append_crc(frame);
-    return decode(driver, frame, arrival_ns).at(0).device_time_ns;
-  };
-  const std::int64_t wrap_ns = (std::int64_t{1} << 32U) * 1000;
-  const std::int64_t start = at(0xFFFFFF00U, 0);
-  EXPECT_EQ(at(0x000000F4U, 500'000) - start, 500'000);
-  // Three hours later by the arrival times, 5 ms late: two whole wraps have gone by unseen.
-  EXPECT_EQ(at(0x000000F4U, 2 * wrap_ns + 5'500'000) - start, 2 * wrap_ns + 500'000);
+TEST(Kvh1750, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
+  for (const auto& [set, wrap_ns] :
+       {std::pair("free", (std::int64_t{1} << 32U) * 1000), std::pair("pps", std::int64_t{1'000'000'000})}) {
+    ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "b"}, {"time_stamp", set}});
+    for (const std::uint32_t stamp_us : {0xFFFFFF00U, 0x000000F4U, 0xFFFFFF00U}) {
+      std::vector<std::uint8_t> frame = hex(kFrameB);
+      frame.resize(36);
+      for (unsigned i = 0; i < 4; ++i) frame[28 + i] = static_cast<std::uint8_t>(stamp_us >> (24U - 8U * i));
+      append_crc(frame);
+      const ifog_sample sample = decode(driver, frame, 1).at(0);
+      EXPECT_EQ(sample.device_time_ns, std::int64_t{stamp_us} * 1000);
+      EXPECT_EQ(sample.device_wrap_ns, wrap_ns);
+    }
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------------------

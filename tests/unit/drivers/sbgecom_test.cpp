@@ -159,7 +159,7 @@ TEST(SbgEcom, AHeaderAmongTheValuesIsNoFrame) {
   }
 }
 
-TEST(SbgEcom, TheStampRunsOnOverItsWrap) {
+TEST(SbgEcom, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
   DriverInstance driver = make_driver("sbgecom", {});
   ifog_sample sample{};
   sample.flags = IFOG_SAMPLE_DEVICE_TIME;
@@ -172,8 +172,10 @@ TEST(SbgEcom, TheStampRunsOnOverItsWrap) {
   }
   const auto samples = decode(driver, bytes, 0);
   ASSERT_EQ(samples.size(), 3U);
-  EXPECT_EQ(samples[1].device_time_ns - samples[0].device_time_ns, 5'000'000);
-  EXPECT_EQ(samples[2].device_time_ns - samples[0].device_time_ns, 10'000'000);
+  EXPECT_EQ(samples[0].device_time_ns, (wrap_ns - 5'000'000) / 1000 * 1000);
+  EXPECT_EQ(samples[1].device_time_ns, 0);
+  EXPECT_EQ(samples[2].device_time_ns, 5'000'000);
+  for (const ifog_sample& each : samples) EXPECT_EQ(each.device_wrap_ns, wrap_ns);
 }
 
 TEST(SbgEcom, EncodesTheHandPackedFrameAgain) {

@@ -100,7 +100,7 @@ TEST(StdBin, AWrongLengthIsNoTelegram) {
   EXPECT_TRUE(decode(driver, telegram).empty());
 }
 
-TEST(StdBin, TheTimeOfDayRunsOnOverMidnight) {
+TEST(StdBin, TheTimeOfDayGoesRoundAtMidnight) {
   DriverInstance driver = make_driver("stdbin", {});
   ifog_sample sample{};
   sample.flags = IFOG_SAMPLE_DEVICE_TIME;
@@ -113,8 +113,10 @@ TEST(StdBin, TheTimeOfDayRunsOnOverMidnight) {
   }
   const auto samples = decode(driver, bytes, 0);
   ASSERT_EQ(samples.size(), 3U);
-  EXPECT_EQ(samples[1].device_time_ns - samples[0].device_time_ns, 10'000'000);
-  EXPECT_EQ(samples[2].device_time_ns - samples[1].device_time_ns, 10'000'000);
+  EXPECT_EQ(samples[0].device_time_ns, kDay_ns - 10'000'000);
+  EXPECT_EQ(samples[1].device_time_ns, 0);
+  EXPECT_EQ(samples[2].device_time_ns, 10'000'000);
+  for (const ifog_sample& each : samples) EXPECT_EQ(each.device_wrap_ns, kDay_ns);
 }
 
 TEST(StdBin, EncodesEveryVersionSoThatItReadsBack) {

@@ -45,8 +45,9 @@ std::string by_model(const std::string& line) {
 TEST(FilterTable, BothFilesTakeAndRefuseTheSame) {
   for (const char* const good :
        {"window = 2", "window = 100000", "draws = 1", "draws = 1000", "floor = 0", "floor = 0.999",
-        "process_noise = 0", "process_noise = 1", "seed = 0", "seed = 9223372036854775807",
-        "weights = \"fresh\"", "state_parameters = [1, -0.5]", "conserve_angle = false"}) {
+        "process_noise = 0", "process_noise = 1", "process_noise = 1e-310", "measurement_noise = 0",
+        "measurement_noise = 1e-60", "seed = 0", "seed = 9223372036854775807", "weights = \"fresh\"",
+        "state_parameters = [1, -0.5]", "conserve_angle = false"}) {
     EXPECT_EQ(by_configuration(good), "") << good;
     EXPECT_EQ(by_model(good), "") << good;
   }
@@ -56,6 +57,10 @@ TEST(FilterTable, BothFilesTakeAndRefuseTheSame) {
                                 "window = 4294967346",
                                 "window = 50.0",
                                 "window = true",
+                                "process_noise = 1e308",
+                                "process_noise = 1e13",
+                                "measurement_noise = 1e-308",
+                                "measurement_noise = 1e13",
                                 "draws = 0",
                                 "draws = 1001",
                                 "draws = 4294967297",

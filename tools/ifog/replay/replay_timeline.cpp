@@ -11,6 +11,8 @@
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/recording.h"
+#include "drivers/host/timeline_frame.h"
+#include "drivers/ifog/device_timeline.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/say.h"
@@ -77,18 +79,18 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
     throw std::runtime_error(source.path + ": driver " + source.input.driver_name() + " takes no bytes");
   if (d.has_device_time == 0 && !(d.nominal_rate_hz > 0.0))
     throw std::runtime_error(source.path + ": the frames carry no time, expected --option rate_hz=HZ");
-  std::uint64_t periods = 0;
-  std::uint32_t last = 0;
+  DeviceTimeline steps(d.sequence_modulus, d.nominal_rate_hz);
+  double time_s = 0.0;
   for (std::size_t i = 0; i < timeline.bytes.size(); ++i)
     driver.decode_bytes({&timeline.bytes[i], 1}, 0, [&](const ifog_sample& sample) {
-      const bool counted = d.sequence_modulus != 0 && (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0;
-      if (!timeline.blocks.empty())
-        periods += counted ? (sample.sequence + d.sequence_modulus - last) % d.sequence_modulus : 1;
-      last = sample.sequence;
-      const bool timed = (sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0;
-      timeline.blocks.push_back(
-          {timed ? sample.device_time_ns : nanoseconds(static_cast<double>(periods) / d.nominal_rate_hz),
-           i + 1});
+      const DeviceTimeline::Frame frame = timeline_frame(sample, d.axes);
+      if (timeline.blocks.empty() || !steps.tells(frame)) {
+        static_cast<void>(steps.first(frame));
+        if (!timeline.blocks.empty() && d.nominal_rate_hz > 0.0) time_s += 1.0 / d.nominal_rate_hz;
+      } else if (const DeviceTimeline::Step step = steps.next(frame); !step.out_of_turn) {
+        time_s += step.dt_s;
+      }  // what came again or late is sent where it came
+      timeline.blocks.push_back({nanoseconds(time_s), i + 1});
     });
   if (timeline.blocks.empty())
     throw std::runtime_error(source.path + ": no frame of driver " + source.input.driver_name() + " in it");

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place that decides of each sample of a device that counts or has a clock: whether it is new, came
+// again or late, comes behind a gap, or from a device that was switched off and on; and what the device's
+// stamp, which goes round, then stands for. The daemon and every command that reads recordings ask here.
+//
+// A sample that comes again, or after one that follows it, is left out: its place is that of one that came,
+// with the very values, or of one that is missing. One that has another's place and other values is of a
+// device that began anew; its time begins with its stamp, and no round is made of it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/clock_steps.h"
+#include "drivers/ifog/device_count.h"
+#include "drivers/ifog/recent_frames.h"
+#include "drivers/ifog/rolling_stamp.h"
+
+namespace ifog {
+
+class DeviceTimeline {
+ public:
+  struct Frame {
+    bool counts = false;         // it has a counter
+    std::uint32_t sequence = 0;  // as sent
+    bool clocked = false;        // it has a stamp
+    RollingStamp::Stamp stamp;
+    std::int64_t arrival_ns = 0;  // on a clock that nobody sets; 0: not known
+    bool reopened = false;        // the device was closed and opened in between
+    std::span<const double> values;
+  };
+  struct Step {
+    std::uint64_t samples = 1;  // since the frame before
+    double dt_s = 0.0;
+    bool gap = false;
+    bool restarted = false;
+    bool out_of_turn = false;  // it came again, or late: left out, and all else here says nothing
+    bool clock_moved = false;  // as in DeviceCount::Step
+    double late_s = 0.0;       // likewise
+    std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
+  };
+
+  // modulus: the counter's; 0: it has none. rate_hz: nominal; 0: not known.
+  DeviceTimeline(std::uint64_t modulus, double rate_hz) noexcept
+      : modulus_(modulus),
+        rate_known_(rate_hz > 0.0),
+        period_s_(rate_hz > 0.0 ? 1.0 / rate_hz : 1.0),
+        count_(modulus > 0 ? modulus : 1, period_s_),
+        clock_steps_(period_s_) {}
+
+  // Whether it decides of this frame: else there is neither counter nor clock to go by.
+  [[nodiscard]] bool tells(const Frame& frame) const noexcept {
+    return counted(frame) || (frame.clocked && last_clocked_);
+  }
+  // The first, or one that does not join those before.
+  std::int64_t first(const Frame& frame) noexcept {
+    arrivals_.forget();
+    recent_.forget();
+    clock_steps_.restart();
+    const Look now = look_at(frame, -1.0, frame.stamp.ns);
+    count_.first(now.count);
+    keep(frame, now, period_s_);
+    return frame.stamp.ns;
+  }
+  // The next; it is taken into account.
+  Step next(const Frame& frame) noexcept {
+    const double elapsed_s = arrivals_.elapsed_s(frame.arrival_ns);
+    const Look now = look_at(frame, elapsed_s, proposed(frame, elapsed_s));
+    Step step = counted(frame) ? by_counter(frame, now) : by_clock(frame, now);
+    if (step.out_of_turn) {
+      if (frame.arrival_ns > 0) seen_ns_ = frame.arrival_ns;
+      return step;
+    }
+    step.time_ns = now.time_ns;
+    if (step.restarted) {
+      recent_.forget();
+      clock_steps_.restart();
+    }
+    if (step.restarted || clock_jumped(frame, now)) step.time_ns = frame.stamp.ns;
+    Look taken = now;
+    taken.time_ns = step.time_ns;
+    keep(frame, taken, step.dt_s);
+    return step;
+  }
+  // Its clock has stood still while it measured: only the sum of its steps says how much has passed.
+  [[nodiscard]] bool clock_stood() const noexcept { return clock_steps_.stood(); }
+  // Of the arrivals, ns; 0: none was known.
+  [[nodiscard]] std::int64_t latest_arrival_ns() const noexcept { return arrivals_.latest_ns(); }
+
+ private:
+  static constexpr double kShortStep_s = 1.0;   // of a clock that is set while it runs
+  static constexpr double kSamplesLate = 64.0;  // at most
+  static constexpr double kSilence_s = 2.0;     // nothing is late behind it
+  static constexpr double kSamePlace = 0.25;    // of a period
+
+  struct Look {
+    double elapsed_s = -1.0;
+    std::int64_t time_ns = 0;
+    std::uint64_t digest = 0;
+    DeviceCount::Frame count;
+  };
+
+  [[nodiscard]] bool counted(const Frame& frame) const noexcept { return frame.counts && modulus_ > 0; }
+  [[nodiscard]] std::int64_t proposed(const Frame& frame, double elapsed_s) const noexcept {
+    if (!last_clocked_) return frame.stamp.ns;
+    return stamp_.look(frame.stamp, elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s));
+  }
+  // Since any frame came, also one that was left out.
+  [[nodiscard]] double quiet_s(const Frame& frame, double elapsed_s) const noexcept {
+    if (frame.arrival_ns <= 0 || seen_ns_ <= 0) return elapsed_s;
+    return std::max(0.0, static_cast<double>(frame.arrival_ns - seen_ns_) * 1e-9);
+  }
+  [[nodiscard]] double passed_s(const Look& now) const noexcept {
+    return static_cast<double>(now.time_ns - stamp_.time_ns()) * 1e-9;
+  }
+
+  [[nodiscard]] Look look_at(const Frame& frame, double elapsed_s, std::int64_t time_ns) const noexcept {
+    Look now{elapsed_s, time_ns, digest_of(frame.values), {}};
+    DeviceCount::Frame& count = now.count;
+    count.sequence = frame.sequence;
+    count.clocked = frame.clocked;
+    count.time_ns = time_ns;
+    count.arrival_ns = frame.arrival_ns;
+    count.reopened = frame.reopened;
+    count.digest = now.digest;
+    count.quiet_s = quiet_s(frame, elapsed_s);
+    return now;
+  }
+
+  [[nodiscard]] Step by_counter(const Frame& frame, const Look& now) noexcept {
+    DeviceCount::Step counted = count_.look(now.count);
+    Step step;
+    // The same counter again, too soon for a full round. CAN may deliver a frame twice; a device whose
+    // counter stands still yet measures is followed.
+    step.out_of_turn = counted.out_of_turn || (counted.samples == 0 && now.digest == last_digest_);
+    if (step.out_of_turn) return step;
+    counted.samples = std::max<std::uint64_t>(counted.samples, 1);
+    if (!counted.restarted && frame.clocked && last_clocked_ && now.time_ns >= stamp_.time_ns()) {
+      const ClockSteps::Step passed = clock_steps_.take(now.time_ns - stamp_.time_ns(), counted.samples);
+      if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
+    }
+    count_.take(now.count, counted);
+    step.samples = counted.samples;
+    step.dt_s = counted.dt_s;
+    step.gap = counted.gap;
+    step.restarted = counted.restarted;
+    step.clock_moved = counted.clock_moved;
+    step.late_s = counted.late_s;
+    return step;
+  }
+
+  [[nodiscard]] Step by_clock(const Frame& frame, const Look& now) noexcept {
+    Step step;
+    const std::int64_t passed_ns = now.time_ns - stamp_.time_ns();
+    const double passed_s = this->passed_s(now);
+    step.out_of_turn = !frame.reopened && (passed_ns == 0 ? same_again(now) : passed_ns < 0 && late(now));
+    if (step.out_of_turn) return step;
+    standing_ = passed_ns == 0 ? standing_ + 1 : 0;
+    if (passed_ns < 0 || (now.elapsed_s >= 0.0 && ifog::restarted(passed_s, now.elapsed_s))) {
+      step.restarted = step.gap = true;
+      step.samples = now.elapsed_s > 0.0 && rate_known_ ? at_least_one(now.elapsed_s / period_s_) : 1;
+      step.dt_s = static_cast<double>(step.samples) * period_s_;
+      return step;
+    }
+    step.dt_s = passed_s;
+    if (rate_known_) {
+      const ClockSteps::Step passed = clock_steps_.take(passed_ns, 0);
+      step.samples = passed.samples;
+      step.dt_s = passed.dt_s;
+    }
+    step.gap = step.samples > 1 || frame.reopened;
+    return step;
+  }
+  // With the stamp of the frame before. Of a clock of coarse ticks it may be another that measured the same,
+  // but for what is more of them than a tick holds.
+  [[nodiscard]] bool same_again(const Look& now) const noexcept {
+    return now.digest == last_digest_ &&
+           (!clock_steps_.stood() || standing_ >= clock_steps_.most_in_a_tick());
+  }
+  [[nodiscard]] bool late(const Look& now) const noexcept {
+    if (!rate_known_ || -passed_s(now) > kSamplesLate * period_s_) return false;
+    if (now.count.quiet_s > std::max(kSilence_s, 2.0 * period_s_)) return false;
+    const auto near_ns = static_cast<std::int64_t>(kSamePlace * period_s_ * 1e9);
+    const RecentFrames::Had had = recent_.at_time(now.time_ns, near_ns, now.digest);
+    return had != RecentFrames::Had::other || clock_steps_.coarse();
+  }
+  // Of a device that counts on: its clock was set.
+  [[nodiscard]] bool clock_jumped(const Frame& frame, const Look& now) const noexcept {
+    if (!frame.clocked || !last_clocked_ || frame.stamp.wrap_ns <= 0) return false;
+    const double passed_s = this->passed_s(now);
+    return passed_s < -kShortStep_s || (now.elapsed_s >= 0.0 && ifog::restarted(passed_s, now.elapsed_s));
+  }
+
+  void keep(const Frame& frame, const Look& now, double dt_s) noexcept {
+    if (!counted(frame)) recent_.add(0, now.time_ns, now.digest);
+    if (frame.clocked) stamp_.take(frame.stamp, now.time_ns);
+    if (counted(frame)) count_.keep_time(now.time_ns);
+    last_clocked_ = frame.clocked;
+    last_digest_ = now.digest;
+    arrivals_.came(frame.arrival_ns, dt_s);
+    seen_ns_ = frame.arrival_ns;
+  }
+
+  std::uint64_t modulus_;
+  bool rate_known_;
+  double period_s_;
+  DeviceCount count_;
+  ClockSteps clock_steps_;
+  RollingStamp stamp_;
+  Arrivals arrivals_;
+  RecentFrames recent_;  // of a device with a clock alone; the count keeps its own
+  bool last_clocked_ = false;
+  std::uint64_t last_digest_ = 0, standing_ = 0;  // standing_: frames with this same stamp before
+  std::int64_t seen_ns_ = 0;                      // arrival of the last frame, used or not; 0: not known
+};
+
+}  // namespace ifog
