@@ -30,6 +30,7 @@ struct Surprise {
   Axes innovation{};         // of the filter at rest
   Axes covered_s{};          // time it stands for
   Axes scale{};              // variance of an innovation at rest as the noise is now
+  Axes degrees{};            // of freedom that it is known with
   double rest_factor = 1.0;  // innovation variance of the filter at rest over that
 };
 

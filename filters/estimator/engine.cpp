@@ -37,6 +37,7 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       change_(rest_->rate_alone()),
       ledger_(period_s, settings.follow_manoeuvres) {
   noise_.fill(NoiseScale(settings.measurement_noise));
+  begin();
 }
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
@@ -73,12 +74,12 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
 // The filter's gain and variance are of the axes that are measured.
 void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
   Axes variance = published_.variance;
-  for (std::size_t a = 0; !in_manoeuvre() && a < axes_; ++a) variance[a] = rest_variance(a);
+  for (std::size_t a = 0; motion_ == Motion::at_rest && a < axes_; ++a) variance[a] = rest_variance(a);
   for (std::size_t a = 0; a < axes_; ++a) {
     const double walked = grown * walk_share_[a];
     if (has(m.valid, a))
       unmeasured_.measure(a, published_.gain, variance[a]);
-    else if (m.valid == 0 && !in_manoeuvre())  // the filter is not measured either
+    else if (m.valid == 0 && motion_ == Motion::at_rest)  // the filter is not measured either
       unmeasured_.miss_with_all(a, walked);
     else if (has(started_, a))
       unmeasured_.miss(a, walked, published_.rate, variance);
@@ -99,7 +100,7 @@ void Engine::restart() noexcept {
   for (NoiseScale& noise : noise_) noise.break_off();
   started_ = 0;
   knowledge_ = Knowledge::nothing;
-  motion_ = Motion::at_rest;
+  begin();
   untested_ = {};
   unmeasured_ = {};
   since_moved_ = at_rest_for_ = 0.0;
@@ -141,18 +142,6 @@ std::uint32_t Engine::screen(const EstimatorInput& in, EstimatorOutput& out) noe
   return valid;
 }
 
-void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
-  const std::uint32_t fresh = valid & ~started_;
-  if (fresh == 0) return;
-  rest_->shift_to(rate, fresh);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (has(fresh, a)) ledger_.refer(a, rate[a]);
-  }
-  // The trackers' first measurement is the first that all axes have had.
-  trackers_.begin();
-  started_ |= fresh;
-}
-
 void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   if (m.valid == 0) {
     rest_->skip();
@@ -191,12 +180,15 @@ Surprise Engine::surprise(const Measurement& m) const noexcept {
   now.innovation = m.innovation;
   // Of R nothing: it is in the scale, and what both say of it must not differ.
   const double usual = rest_variance_ + rest_->rule().measurement_noise();
-  if (rest_variance_ > 0.0)
+  if (beginning() && knowledge_ != Knowledge::heard)
+    now.rest_factor = 1.0 + rest_->measurement_variance() / rest_->rule().measurement_noise();
+  else if (rest_variance_ > 0.0)
     now.rest_factor = std::max(1.0, 1.0 + (rest_->measurement_variance() - rest_variance_) / usual);
   for (std::size_t a = 0; a < axes_; ++a) {
     now.covered_s[a] = m.covered_s(a);
     now.scale[a] = noise_[a].now() * m.noise_scale;
-    if (has(m.valid, a) && noise_[a].known() && now.scale[a] > 0.0) now.valid |= 1U << a;
+    now.degrees[a] = noise_[a].degrees();
+    if (has(m.valid, a) && (noise_[a].known() || beginning()) && now.scale[a] > 0.0) now.valid |= 1U << a;
   }
   return now;
 }
@@ -206,6 +198,8 @@ void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
   const Surprise now = surprise(m);
   if (in_manoeuvre()) {
     follow_manoeuvre(m, now, out);
+  } else if (beginning()) {
+    follow_beginning(m, now, out);
   } else {
     follow_rest(m, now, out);
   }
@@ -287,9 +281,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
     update_rest(m, learns);
     if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m);
-    if (learns)
-      rest_variance_ +=
-          (knowledge_ == Knowledge::heard ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
+    if (learns) average_rest(predicted);
   }
   publish_rest();
   // Until the next measurement says which, it may be the first of a jump.
@@ -297,8 +289,13 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     published_.variance[a] += m.innovation[a] * m.innovation[a];
 }
 
+// Variance of the rate predicted at rest: what the filter told itself last, until the noise was heard.
+void Engine::average_rest(double predicted) noexcept {
+  rest_variance_ += (knowledge_ == Knowledge::heard ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
+}
+
 bool Engine::rests(const Measurement& m) const noexcept {
-  if (!follow_manoeuvres_ || in_manoeuvre() || lost_ || published_.passed_over || m.valid == 0 ||
+  if (!follow_manoeuvres_ || motion_ != Motion::at_rest || lost_ || published_.passed_over || m.valid == 0 ||
       (m.valid & ~m.tested) != 0 || at_rest_for_ < kRestMemory || change_.suspected())
     return false;
   for (std::size_t a = 0; a < axes_; ++a)
@@ -344,7 +341,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), under_way);
       // What was fallen short of before its noise was known no test has seen: a filter that begins under way
       // finds that out late, and owes it to the manoeuvre.
-      if (!has(m.tested, a)) {
+      if (!has(m.tested, a) || beginning()) {
         untested_[a] += grown;
         tested_for_[a] = 0.0;
       } else {
@@ -369,7 +366,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     refresh_lag();
   }
   // A tracker has no lag in a rate, slope or curvature that lasts.
-  health_.group_delay_s = in_manoeuvre() ? mix_.rest_weight() * lag_s_ : lag_s_;
+  health_.group_delay_s = motion_ != Motion::at_rest ? mix_.rest_weight() * lag_s_ : lag_s_;
 }
 
 // The lag of the filter at rest, not of one that has just been moved and still has to forget by how much.
