@@ -52,6 +52,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   rest_->predict(m.dt_s);
   const double grown = std::max(0.0, rest_->variance() - before);
   begin_axes(in.rate_radps, m.valid);
+  if (follow_manoeuvres_) begin_after_gap(m);
   for (std::size_t a = 0; a < axes_; ++a) {
     if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->measurement(a);
     if (noise_[a].known()) m.tested |= 1U << a;
@@ -172,7 +173,11 @@ bool Engine::hardly_tested(std::size_t axis) const noexcept {
   return !noise_[axis].white() && tested_for_[axis] < kColouredUntested;
 }
 
-double Engine::lag_samples() const noexcept { return std::max(longest_lag_, 1.0); }
+// A filter that has just begun is as slow as what it has had is long.
+double Engine::lag_samples() const noexcept {
+  const bool young = rest_->rate_alone() && rest_->gain() > 0.0 && since_moved_ < kLagEvery;
+  return std::max({longest_lag_, 1.0, young ? std::min(since_moved_, 1.0 / rest_->gain()) : 0.0});
+}
 
 Surprise Engine::surprise(const Measurement& m) const noexcept {
   Surprise now;

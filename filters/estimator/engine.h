@@ -76,6 +76,7 @@ class Engine {
   [[nodiscard]] std::uint32_t screen(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void begin_axes(const Axes& rate, std::uint32_t valid) noexcept;
   void begin() noexcept;
+  void begin_after_gap(const Measurement& m) noexcept;
   void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void take_in(const Measurement& m, const Surprise& now) noexcept;
   void wait(const Measurement& m, EstimatorOutput& out) noexcept;
@@ -145,6 +146,7 @@ class Engine {
   std::uint32_t started_ = 0;  // axes that have a state
   Knowledge knowledge_ = Knowledge::nothing;
   Motion motion_ = Motion::at_rest;
+  double unmeasured_s_ = 0.0;       // time that no measurement has covered, since the last one
   bool waiting_ = false;            // the last measurement was foreseen by nobody: an outlier, or a jump
   bool lost_ = false;               // was found so, and has not been well since: guard()
   Axes tested_for_{};               // measurements since the noise was known

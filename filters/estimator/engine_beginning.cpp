@@ -7,6 +7,7 @@
 // counts for as many degrees of freedom as it has.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "filters/estimator/engine.h"
 
@@ -15,6 +16,8 @@ namespace {
 
 // Measurements that a parabola goes through: from then on it foresees something.
 constexpr double kParabola = 3.0;
+// Samples missed after which no tracker that is quick foresees anything.
+constexpr double kGap = 16.0;
 
 }  // namespace
 
@@ -42,6 +45,21 @@ void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
   // The trackers' first measurement is the first that all axes have had.
   trackers_.begin();
   started_ |= fresh;
+}
+
+// What the rate does while nobody looks is not known. The filter at rest has what it had, and earns its part
+// anew.
+void Engine::begin_after_gap(const Measurement& m) noexcept {
+  double covered_s = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(m.valid, a)) covered_s = std::max(covered_s, m.covered_s(a));
+  unmeasured_s_ += std::max(0.0, m.dt_s - covered_s);
+  if (m.valid == 0) return;
+  if (std::exchange(unmeasured_s_, 0.0) < kGap * period_s_ || knowledge_ == Knowledge::nothing) return;
+  for (NoiseScale& noise : noise_) noise.break_off();
+  trackers_.begin();
+  outliers_.clear();
+  begin();
 }
 
 bool Engine::heard(std::uint32_t axes) const noexcept {
@@ -79,6 +97,13 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
     expect_surprise(least);
     mix_.judge(trackers_, now, least);
   }
+  const bool heard_now = heard(m.valid);
+  std::optional<std::size_t> changed;
+  if (heard_now) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
+  if (changed && (m.valid & ~m.tested) == 0) {
+    begin_manoeuvre(m, *changed, out);
+    return;
+  }
   take_in(m, now);
   judge_beginning(m, out);
 }
@@ -113,6 +138,7 @@ void Engine::take_in(const Measurement& m, const Surprise& now) noexcept {
   mix_.weigh(trackers_);
   mix_.compare(trackers_, now);
   publish_mix(now);
+  for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += mix_.rest_weight() * change_.unseen(a);
 }
 
 // Rest or motion is known where the noise is and one of them explains the measurements. Of coloured noise the

@@ -24,6 +24,7 @@ constexpr double kRandomWalk = 0.005 * kDegree / 60.0;  // rad/√s
 // of 64 squares is beyond 2.2 once in 10^7. A motion that begins slowly adds what is needed to notice it.
 constexpr std::size_t kSamples = 64;
 constexpr double kMost = 12.0;
+constexpr unsigned kSeeds = 20;
 
 double noise_of(double rate_hz) { return kRandomWalk * kRandomWalk * rate_hz; }
 
@@ -121,11 +122,13 @@ TEST(BegunMoving, EveryRateAndSwingIsFollowedFromTheFirstSample) {
       for (const double amplitude : kAmplitudes) {
         SCOPED_TRACE((told ? "told, " : "untold, ") + std::to_string(rate_hz) + " Hz, " +
                      std::to_string(amplitude) + " °/s");
-        Simulated run(settings(rate_hz, told), 1);
-        run.go(120.0, rolling(amplitude * kDegree));
-        EXPECT_LT(worst(run.errors.normalised), kMost);
-        const auto minute = static_cast<std::size_t>(60.0 * rate_hz);
-        EXPECT_LT(mean_square(run.errors.published, minute), 1.01 * mean_square(run.errors.raw, minute));
+        for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+          Simulated run(settings(rate_hz, told), seed);
+          run.go(120.0, rolling(amplitude * kDegree));
+          EXPECT_LT(worst(run.errors.normalised), kMost) << seed;
+          const auto minute = static_cast<std::size_t>(60.0 * rate_hz);
+          EXPECT_LT(mean_square(run.errors.published, minute), 1.01 * mean_square(run.errors.raw, minute));
+        }
       }
 }
 
@@ -176,12 +179,9 @@ TEST(BegunMoving, AGapAReloadOrAPullingAwayIsFollowedToo) {
         reload.go(60.0, motion);
         EXPECT_LT(worst(reload.errors.normalised), kMost) << "reload, " << rests;
       }
-      for (const double still_s : {0.3, 0.6, 3.0}) {
-        Simulated away(settings(rate_hz, true), 4);
-        away.go(30.0,
-                [&](double t) { return 20.0 * amplitude * kDegree * std::clamp(t - still_s, 0.0, 1.0); });
-        EXPECT_LT(worst(away.errors.normalised), kMost) << "pulls away after " << still_s << " s";
-      }
+      Simulated away(settings(rate_hz, true), 4);
+      away.go(30.0, [&](double t) { return 20.0 * amplitude * kDegree * std::clamp(t - 0.3, 0.0, 1.0); });
+      EXPECT_LT(worst(away.errors.normalised), kMost) << "pulls away";
     }
 }
 
