@@ -67,13 +67,17 @@ ChangeTest::Horizon::Horizon(double length)
 double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
 
 void ChangeTest::restart() noexcept {
+  forget();
+  relaxed_ = kRelaxed;
+}
+
+void ChangeTest::forget() noexcept {
   unseen_ = {};
   suspected_ = false;
   for (Contest& contest : contests_) {
     contest.ratio = contest.rest = contest.tracker = contest.rest_squares = 0.0;
     for (Sum& sum : contest.sums) sum.angle = sum.normalised = sum.weight = 0.0;
   }
-  relaxed_ = kRelaxed;
 }
 
 // Learns how wide the sums are at rest; gives by how much the test is to believe them wider than white

@@ -60,6 +60,8 @@ class ChangeTest {
   [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[axis]; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
+  // What has come together until now was no evidence.
+  void forget() noexcept;
   // Over white noise as loud as an axis' innovations, and the walk that their variance and the gain go with.
   // expected: of the innovations' variance the part that the filter takes for noise and walk; of the walk
   // what is believed of it before the innovations say more.

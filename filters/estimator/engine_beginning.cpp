@@ -142,19 +142,23 @@ void Engine::take_in(const Measurement& m, const Surprise& now) noexcept {
 }
 
 // Rest or motion is known where the noise is and one of them explains the measurements. Of coloured noise the
-// trackers follow what is none; what can tell it from motion is the test of changes.
+// trackers follow what is none, and as its sums are wider than white noise's by about its colour, so much
+// more has to speak for motion; what is slower the test of changes will tell.
 void Engine::judge_beginning(const Measurement& m, EstimatorOutput& out) noexcept {
+  double colour = 1.0;
   bool white = true;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
     if (!noise_[a].known()) return;
     white = white && noise_[a].white();
+    colour = std::max(colour, noise_[a].colour());
   }
-  if (mix_.rest_ratio() < -ChangeTest::kEvidence) {
+  if (mix_.rest_ratio() < -ChangeTest::kEvidence * colour) {
     find_moving(m, out);
     judge_manoeuvre();
   } else if (mix_.rest_is_right() || !white) {
     motion_ = Motion::at_rest;
+    if (!white) change_.forget();
     outliers_.clear();
     publish_rest();
   }
