@@ -19,8 +19,9 @@ constexpr double kNearlyAsWell = 0.3;
 // Median of the square of a standard normal.
 constexpr double kMedianSquare = 0.4549364;
 
-// From one octave to the next, of variances: no noise does that, nor medians of few differences by chance.
-constexpr double kSmooth = 6.0;
+// Of variances, from one octave to the second after it: a walk's grow fourfold, and medians of few
+// differences come no further by chance.
+constexpr double kSmooth = 24.0;
 
 struct Octave {
   double variance = 0.0;  // of the second difference of block means, mean over axes
@@ -81,8 +82,8 @@ std::vector<Octave> octaves(std::span<const double> rate) {
 }
 
 [[nodiscard]] bool smooth(const std::vector<Octave>& octaves) {
-  for (std::size_t k = 1; k < octaves.size(); ++k)
-    if (octaves[k - 1].variance > 0.0 && octaves[k].variance > kSmooth * octaves[k - 1].variance) return true;
+  for (std::size_t k = 2; k < octaves.size(); ++k)
+    if (octaves[k - 2].variance > 0.0 && octaves[k].variance > kSmooth * octaves[k - 2].variance) return true;
   return false;
 }
 

@@ -25,11 +25,10 @@ struct NoiseEstimate {
 // m at m samples a block; R and q are fitted by Gaussian quasi-likelihood to all octaves but the shortest,
 // where these are of another kind (octave_fit.h). A record that shows no random walk gets one that it might
 // hide; a constant record the noise of its last digit.
-// From one octave to the next a motion grows sixteenfold, noise that is itself the sum of a walk eightfold:
-// where that is seen the sensor moved, R is what is left of third differences, and the walk is the motion's.
-// A few seconds show the white noise well and the random walk badly: `ifog tune` on an hour at rest is the
-// better way. Takes about 0.1 ms a thousand values. Allocates. Throws std::invalid_argument when no axis has
-// 32 measurements.
+// From one octave to the next a motion grows sixteenfold and no noise by more than twice: where that is seen
+// the sensor moved, R is what is left of third differences, and the walk is the motion's. A few seconds show
+// the white noise well and the random walk badly: `ifog tune` on an hour at rest is the better way. Takes
+// about 0.1 ms a thousand values. Allocates. Throws std::invalid_argument when no axis has 32 measurements.
 [[nodiscard]] NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s);
 
 }  // namespace ifog
