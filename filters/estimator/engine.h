@@ -80,7 +80,7 @@ class Engine {
   void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void take_in(const Measurement& m, const Surprise& now) noexcept;
   void wait(const Measurement& m, EstimatorOutput& out) noexcept;
-  void judge_beginning(const Measurement& m, EstimatorOutput& out) noexcept;
+  void judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept;
   void find_moving(const Measurement& m, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool heard(std::uint32_t axes) const noexcept;
   void update_rest(const Measurement& m, bool learn) noexcept;

@@ -97,15 +97,10 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
     expect_surprise(least);
     mix_.judge(trackers_, now, least);
   }
-  const bool heard_now = heard(m.valid);
-  std::optional<std::size_t> changed;
-  if (heard_now) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
-  if (changed && (m.valid & ~m.tested) == 0) {
-    begin_manoeuvre(m, *changed, out);
-    return;
-  }
+  const bool changed =
+      heard(m.valid) && change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
   take_in(m, now);
-  judge_beginning(m, out);
+  judge_beginning(m, changed && (m.valid & ~m.tested) == 0, out);
 }
 
 // Kept out until the next one says whether it was an outlier or the first of a jump.
@@ -144,7 +139,7 @@ void Engine::take_in(const Measurement& m, const Surprise& now) noexcept {
 // Rest or motion is known where the noise is and one of them explains the measurements. Of coloured noise the
 // trackers follow what is none, and as its sums are wider than white noise's by about its colour, so much
 // more has to speak for motion; what is slower the test of changes will tell.
-void Engine::judge_beginning(const Measurement& m, EstimatorOutput& out) noexcept {
+void Engine::judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept {
   double colour = 1.0;
   bool white = true;
   for (std::size_t a = 0; a < axes_; ++a) {
@@ -153,7 +148,7 @@ void Engine::judge_beginning(const Measurement& m, EstimatorOutput& out) noexcep
     white = white && noise_[a].white();
     colour = std::max(colour, noise_[a].colour());
   }
-  if (mix_.rest_ratio() < -ChangeTest::kEvidence * colour) {
+  if (changed || mix_.rest_ratio() < -ChangeTest::kEvidence * colour) {
     find_moving(m, out);
     judge_manoeuvre();
   } else if (mix_.rest_is_right() || !white) {

@@ -62,7 +62,8 @@ class Simulated {
 
   void go(double seconds, const std::function<double(double)>& motion) {
     for (const double until = time_s_ + seconds; time_s_ < until; time_s_ += period_s_) {
-      const double truth = motion(time_s_), measured = truth + noise_ * normal_(random_);
+      const double truth = motion(time_s_),
+                   measured = truth + noise_ * normal_(random_) + std::exchange(blow_, 0.0);
       Increment in;
       in.sequence = sequence_++;
       in.samples = 1;
@@ -81,6 +82,7 @@ class Simulated {
     }
     errors.manoeuvres = chain_.health().manoeuvres;
   }
+  void add_once(double rate) { blow_ = rate; }
   void skip(double seconds) {
     time_s_ += seconds;
     gap_s_ = seconds;
@@ -92,7 +94,7 @@ class Simulated {
   Errors errors;
 
  private:
-  double period_s_, noise_, time_s_ = 0.0, gap_s_ = 0.0;
+  double period_s_, noise_, time_s_ = 0.0, gap_s_ = 0.0, blow_ = 0.0;
   std::uint64_t sequence_ = 0;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
@@ -181,6 +183,55 @@ TEST(BegunMoving, WhatAMotionTaughtIsUnlearnedAtRest) {
   Simulated still(settings(10.0, false), 5);
   still.go(60.0, [](double) { return 1e-3; });
   EXPECT_FALSE(still.moved_in_start_up());
+}
+
+// Among the first samples, too.
+TEST(BegunMoving, AJumpIsFollowedAndASingleOutlierPassedOver) {
+  const double sigma = std::sqrt(noise_of(100.0));
+  for (const int at : {24, 40, 60, 100})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      const double since = (at - 0.5) / 100.0;
+      Simulated jump(settings(100.0, true), seed);
+      jump.go(3.0, [&](double t) { return t < since ? 0.0 : 20.0 * sigma; });
+      for (std::size_t i = static_cast<std::size_t>(at) + 10; i < jump.errors.published.size(); ++i)
+        ASSERT_LT(std::abs(jump.errors.published[i]), 6.0 * sigma) << at << " " << seed << " " << i;
+      EXPECT_LT(worst(jump.errors.normalised), kMost) << at << " " << seed;
+      Simulated outlier(settings(100.0, true), seed);
+      outlier.go(since, [](double) { return 0.0; });
+      outlier.add_once(50.0 * sigma);
+      outlier.go(2.0, [](double) { return 0.0; });
+      for (std::size_t i = static_cast<std::size_t>(at); i < outlier.errors.published.size(); ++i)
+        ASSERT_LT(std::abs(outlier.errors.published[i]), 2.5 * sigma) << at << " " << seed << " " << i;
+      EXPECT_EQ(outlier.errors.manoeuvres, 0U) << at << " " << seed;
+    }
+}
+
+// An axis that has its first value when the others have long rested is not known by their variance.
+TEST(BegunMoving, AnAxisThatComesLateIsFollowedToo) {
+  for (const double amplitude : {0.0, 0.1, 10.0}) {
+    const double sigma = std::sqrt(noise_of(100.0));
+    std::mt19937_64 random(6);
+    std::normal_distribution<double> normal(0.0, sigma);
+    FilterSettings told;
+    told.process_noise = 1e-16;
+    told.measurement_noise = sigma * sigma;
+    Estimator estimator(told, 2, 0.01);
+    EstimatorInput in;
+    EstimatorOutput out;
+    std::vector<double> normalised;
+    for (int i = 0; i < 6000; ++i) {
+      const double truth = amplitude * kDegree * std::cos(0.006 * i);
+      in = {};
+      in.sequence = static_cast<std::uint64_t>(i);
+      in.dt_s = 0.01;
+      in.valid_axes = i < 3000 ? 1U : 3U;
+      in.rate_radps = {normal(random), truth + normal(random)};
+      estimator.step(in, out);
+      const double error = out.denoised_radps[1] - truth;
+      if (i >= 3000) normalised.push_back(error * error / out.variance_rad2ps2[1]);
+    }
+    EXPECT_LT(worst(normalised), kMost) << amplitude;
+  }
 }
 
 TEST(BegunMoving, AGapAReloadOrAPullingAwayIsFollowedToo) {
