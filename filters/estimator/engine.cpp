@@ -118,7 +118,7 @@ Axes Engine::owed() const noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     angle[a] = ledger_.owed(a);
     // Outliers or a jump: nobody will tell any more, and measured they were.
-    if (!in_manoeuvre() && !outliers_.run().empty()) angle[a] += kept_out_[a];
+    if (!in_manoeuvre() && (waiting_ || !outliers_.run().empty())) angle[a] += kept_out_[a];
   }
   return angle;
 }

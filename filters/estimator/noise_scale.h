@@ -16,7 +16,7 @@ namespace ifog {
 
 class NoiseScale {
  public:
-  // told: R, (rad/s)^2, believed until enough innovations at rest are there.
+  // told: R, (rad/s)^2, believed with a few degrees of freedom until enough innovations are there.
   explicit NoiseScale(double told = 1.0) : told_(told), rest_(told), local_(told) {}
 
   // Before the first measurement: colour() as an earlier filter has found it.
