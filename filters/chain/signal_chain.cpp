@@ -22,6 +22,8 @@ constexpr std::size_t kMostStartUp = 20000;
 // Ten thousand times any gyro's: what looks quicker was a motion, and a filter that is quicker than the
 // trackers of motions would never be found at rest again, nor learn better.
 constexpr double kMostLearnedRatio = 1e-3;
+// Beyond that by so much, the noise having turned out quieter, it is brought back.
+constexpr double kOutOfReach = 2.0;
 
 double within_reach(double process_noise, double measurement_noise, double period_s) noexcept {
   return std::min(process_noise, kMostLearnedRatio * measurement_noise / period_s);
@@ -196,6 +198,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
     if (learns_process_noise_ && filter_.follow_manoeuvres)
       filter_.process_noise = within_reach(noise.process_noise, filter_.measurement_noise, period_s_);
   }
+  moved_ = noise.moved;
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
   estimator_->expect_walk(noise.walk_share);
   estimator_->owe(owed_);
@@ -205,12 +208,24 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   collected_ = 0;
 }
 
+// Noise that turns out quieter than the start-up data said makes a walk that was within reach one that is
+// not.
+void ChainParts::keep_within_reach() noexcept {
+  if (!filter_.follow_manoeuvres) return;
+  double noise = 0.0;
+  for (const double axis : estimator_->health().measurement_noise) noise = std::max(noise, axis);
+  if (!(noise > 0.0) || filter_.process_noise * period_s_ <= kOutOfReach * kMostLearnedRatio * noise) return;
+  filter_.process_noise = within_reach(filter_.process_noise, noise, period_s_);
+  estimator_->retune(filter_.process_noise);
+}
+
 // The random walk shows itself slowly: what start-up data said of it, perhaps under way, is corrected
 // whenever the sensor has rested long enough to say more.
 void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept {
   RestSample is = (out.estimate.flags & kAtRest) != 0 ? RestSample::kRest : RestSample::kPassedOver;
   if ((out.estimate.flags & kManoeuvre) != 0 || (in.flags & kGapBefore) != 0) is = RestSample::kMotion;
   rest_noise_.take(out.compensated_radps, in.valid_axes & ~stuck_beside_others(in), is);
+  keep_within_reach();
   const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
   if (!found) return;
   filter_.process_noise = filter_.follow_manoeuvres

@@ -89,6 +89,8 @@ class ChainParts {
   // The settings in use, with the noise once it is known.
   [[nodiscard]] const FilterSettings& filter() const { return filter_; }
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
+  // The start-up data were of a sensor that moved: what they say of its noise is too much.
+  [[nodiscard]] bool moved_in_start_up() const { return moved_; }
   // Effects of the model that cannot be corrected here, in words.
   [[nodiscard]] std::vector<std::string> left_out() const;
   // What is worth keeping for the next start; nothing where the noise is told, or not known yet.
@@ -103,6 +105,7 @@ class ChainParts {
   void compensate(const Increment& in, ChainOutput& out) noexcept;
   void refuse_impossible(const Increment& in, ChainOutput& out) noexcept;
   void learn(const Increment& in, const ChainOutput& out) noexcept;
+  void keep_within_reach() noexcept;
   void learn_on(const Increment& in, const ChainOutput& out) noexcept;
   void publish_raw(const Increment& in, ChainOutput& out) noexcept;
 
@@ -126,6 +129,7 @@ class ChainParts {
   RestNoise rest_noise_;
   double rest_measurement_noise_ = 0.0;  // as that has found it
   Axes owed_{};                          // by the estimator before, until this one is there
+  bool moved_ = false;
   bool first_ = true;
 };
 

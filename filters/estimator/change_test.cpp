@@ -67,13 +67,17 @@ ChangeTest::Horizon::Horizon(double length)
 double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
 
 void ChangeTest::restart() noexcept {
+  forget();
+  relaxed_ = kRelaxed;
+}
+
+void ChangeTest::forget() noexcept {
   unseen_ = {};
   suspected_ = false;
   for (Contest& contest : contests_) {
     contest.ratio = contest.rest = contest.tracker = contest.rest_squares = 0.0;
     contest.sums.angle = contest.sums.normalised = contest.sums.weight = Lanes::Zero();
   }
-  relaxed_ = kRelaxed;
 }
 
 ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {

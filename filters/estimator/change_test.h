@@ -31,6 +31,7 @@ struct Surprise {
   Axes innovation{};         // of the filter at rest
   Axes covered_s{};          // time it stands for
   Axes scale{};              // variance of an innovation at rest as the noise is now
+  Axes degrees{};            // of freedom that it is known with
   double rest_factor = 1.0;  // innovation variance of the filter at rest over that
 };
 
@@ -60,6 +61,8 @@ class ChangeTest {
   [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[axis]; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
+  // What has come together until now was no evidence.
+  void forget() noexcept;
   // Over white noise as loud as an axis' innovations, and the walk that their variance and the gain go with.
   // expected: of the innovations' variance the part that the filter takes for noise and walk; of the walk
   // what is believed of it before the innovations say more.

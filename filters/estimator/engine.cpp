@@ -38,6 +38,7 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       ledger_(period_s, settings.follow_manoeuvres),
       noise_of_one_(settings.measurement_noise) {
   noise_.fill(NoiseScale(settings.measurement_noise));
+  begin();
 }
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
@@ -52,6 +53,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   rest_->predict(m.dt_s);
   const double grown = std::max(0.0, rest_->variance() - before);
   begin_axes(in.rate_radps, m.valid);
+  if (follow_manoeuvres_) begin_after_gap(m);
   for (std::size_t a = 0; a < axes_; ++a) {
     if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->measurement(a);
     if (noise_[a].known()) m.tested |= 1U << a;
@@ -74,12 +76,12 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
 // The filter's gain and variance are of the axes that are measured.
 void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
   Axes variance = published_.variance;
-  for (std::size_t a = 0; !in_manoeuvre() && a < axes_; ++a) variance[a] = rest_variance(a);
+  for (std::size_t a = 0; motion_ == Motion::at_rest && a < axes_; ++a) variance[a] = rest_variance(a);
   for (std::size_t a = 0; a < axes_; ++a) {
     const double walked = grown * walk_share_[a];
     if (has(m.valid, a))
       unmeasured_.measure(a, published_.gain, variance[a]);
-    else if (m.valid == 0 && !in_manoeuvre())  // the filter is not measured either
+    else if (m.valid == 0 && motion_ == Motion::at_rest)  // the filter is not measured either
       unmeasured_.miss_with_all(a, walked);
     else if (has(started_, a))
       unmeasured_.miss(a, walked, published_.rate, variance);
@@ -100,7 +102,7 @@ void Engine::restart() noexcept {
   for (NoiseScale& noise : noise_) noise.break_off();
   started_ = 0;
   knowledge_ = Knowledge::nothing;
-  motion_ = Motion::at_rest;
+  begin();
   untested_ = {};
   unmeasured_ = {};
   since_moved_ = at_rest_for_ = 0.0;
@@ -117,7 +119,7 @@ Axes Engine::owed() const noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     angle[a] = ledger_.owed(a);
     // Outliers or a jump: nobody will tell any more, and measured they were.
-    if (!in_manoeuvre() && !outliers_.run().empty()) angle[a] += kept_out_[a];
+    if (!in_manoeuvre() && (waiting_ || !outliers_.run().empty())) angle[a] += kept_out_[a];
   }
   return angle;
 }
@@ -140,18 +142,6 @@ std::uint32_t Engine::screen(const EstimatorInput& in, EstimatorOutput& out) noe
     valid |= 1U << a;
   }
   return valid;
-}
-
-void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
-  const std::uint32_t fresh = valid & ~started_;
-  if (fresh == 0) return;
-  rest_->shift_to(rate, fresh);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (has(fresh, a)) ledger_.refer(a, rate[a]);
-  }
-  // The trackers' first measurement is the first that all axes have had.
-  trackers_.begin();
-  started_ |= fresh;
 }
 
 void Engine::update_rest(const Measurement& m, bool learn) noexcept {
@@ -184,7 +174,11 @@ bool Engine::hardly_tested(std::size_t axis) const noexcept {
   return !noise_[axis].white() && tested_for_[axis] < kColouredUntested;
 }
 
-double Engine::lag_samples() const noexcept { return std::max(longest_lag_, 1.0); }
+// A filter that has just begun is as slow as what it has had is long.
+double Engine::lag_samples() const noexcept {
+  const bool young = rest_->rate_alone() && rest_->gain() > 0.0 && since_moved_ < kLagEvery;
+  return std::max({longest_lag_, 1.0, young ? std::min(since_moved_, 1.0 / rest_->gain()) : 0.0});
+}
 
 Surprise Engine::surprise(const Measurement& m) const noexcept {
   Surprise now;
@@ -192,12 +186,15 @@ Surprise Engine::surprise(const Measurement& m) const noexcept {
   now.innovation = m.innovation;
   // Of R nothing: it is in the scale, and what both say of it must not differ.
   const double usual = rest_variance_ + rest_->rule().measurement_noise();
-  if (rest_variance_ > 0.0)
+  if (beginning() && knowledge_ != Knowledge::heard)
+    now.rest_factor = 1.0 + rest_->measurement_variance() / rest_->rule().measurement_noise();
+  else if (rest_variance_ > 0.0)
     now.rest_factor = std::max(1.0, 1.0 + (rest_->measurement_variance() - rest_variance_) / usual);
   for (std::size_t a = 0; a < axes_; ++a) {
     now.covered_s[a] = m.covered_s(a);
     now.scale[a] = noise_[a].now() * m.noise_scale;
-    if (has(m.valid, a) && noise_[a].known() && now.scale[a] > 0.0) now.valid |= 1U << a;
+    now.degrees[a] = noise_[a].degrees();
+    if (has(m.valid, a) && (noise_[a].known() || beginning()) && now.scale[a] > 0.0) now.valid |= 1U << a;
   }
   return now;
 }
@@ -207,6 +204,8 @@ void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
   const Surprise now = surprise(m);
   if (in_manoeuvre()) {
     follow_manoeuvre(m, now, out);
+  } else if (beginning()) {
+    follow_beginning(m, now, out);
   } else {
     follow_rest(m, now, out);
   }
@@ -288,9 +287,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
     update_rest(m, learns);
     if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m);
-    if (learns)
-      rest_variance_ +=
-          (knowledge_ == Knowledge::heard ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
+    if (learns) average_rest(predicted);
   }
   publish_rest();
   // Until the next measurement says which, it may be the first of a jump.
@@ -298,8 +295,13 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     published_.variance[a] += m.innovation[a] * m.innovation[a];
 }
 
+// Variance of the rate predicted at rest: what the filter told itself last, until the noise was heard.
+void Engine::average_rest(double predicted) noexcept {
+  rest_variance_ += (knowledge_ == Knowledge::heard ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
+}
+
 bool Engine::rests(const Measurement& m) const noexcept {
-  if (!follow_manoeuvres_ || in_manoeuvre() || lost_ || published_.passed_over || m.valid == 0 ||
+  if (!follow_manoeuvres_ || motion_ != Motion::at_rest || lost_ || published_.passed_over || m.valid == 0 ||
       (m.valid & ~m.tested) != 0 || at_rest_for_ < kRestMemory || change_.suspected())
     return false;
   for (std::size_t a = 0; a < axes_; ++a)
@@ -345,7 +347,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), under_way);
       // What was fallen short of before its noise was known no test has seen: a filter that begins under way
       // finds that out late, and owes it to the manoeuvre.
-      if (!has(m.tested, a)) {
+      if (!has(m.tested, a) || beginning()) {
         untested_[a] += grown;
         tested_for_[a] = 0.0;
       } else {
@@ -372,7 +374,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     refresh_lag();
   }
   // A tracker has no lag in a rate, slope or curvature that lasts.
-  health_.group_delay_s = in_manoeuvre() ? mix_.rest_weight() * lag_s_ : lag_s_;
+  health_.group_delay_s = motion_ != Motion::at_rest ? mix_.rest_weight() * lag_s_ : lag_s_;
 }
 
 // The lag of the filter at rest, not of one that has just been moved and still has to forget by how much.

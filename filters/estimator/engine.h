@@ -43,16 +43,17 @@ class Engine {
 
  private:
   enum class Motion {
+    beginning,  // rest or motion, nobody knows: followed by the trackers, and by rest as it earns it
     at_rest,
-    manoeuvre,   // followed by the trackers
-    unforeseen,  // a manoeuvre whose last measurement was foreseen by nobody: an outlier, or it begins anew
+    manoeuvre,  // followed by the trackers
   };
   enum class Knowledge {
     nothing,  // no measurement has come
     told,     // R is what the filter was told
     heard,    // R is what was heard at rest
   };
-  [[nodiscard]] bool in_manoeuvre() const noexcept { return motion_ != Motion::at_rest; }
+  [[nodiscard]] bool in_manoeuvre() const noexcept { return motion_ == Motion::manoeuvre; }
+  [[nodiscard]] bool beginning() const noexcept { return motion_ == Motion::beginning; }
 
   // What one step knows of its measurement.
   struct Measurement {
@@ -74,12 +75,22 @@ class Engine {
 
   [[nodiscard]] std::uint32_t screen(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void begin_axes(const Axes& rate, std::uint32_t valid) noexcept;
+  void begin() noexcept;
+  void begin_after_gap(const Measurement& m) noexcept;
+  void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
+  void take_in(const Measurement& m, const Surprise& now) noexcept;
+  void wait(const Measurement& m, EstimatorOutput& out) noexcept;
+  void judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept;
+  void find_moving(const Measurement& m, EstimatorOutput& out) noexcept;
+  [[nodiscard]] bool heard(std::uint32_t axes) const noexcept;
   void update_rest(const Measurement& m, bool learn) noexcept;
   [[nodiscard]] Surprise surprise(const Measurement& m) const noexcept;
   void follow(const Measurement& m, EstimatorOutput& out) noexcept;
   void follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void follow_manoeuvre(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool unforeseen(const Measurement& m, const Surprise& now, Axes& least) noexcept;
+  void average_rest(double predicted) noexcept;
+  void expect_surprise(const Axes& least) noexcept;
   void know_unmeasured(const Measurement& m, double grown) noexcept;
   void forget_unmeasured(std::uint32_t valid) noexcept;
   void hear(const Measurement& m) noexcept;
@@ -135,6 +146,8 @@ class Engine {
   std::uint32_t started_ = 0;  // axes that have a state
   Knowledge knowledge_ = Knowledge::nothing;
   Motion motion_ = Motion::at_rest;
+  double unmeasured_s_ = 0.0;       // time that no measurement has covered, since the last one
+  bool waiting_ = false;            // the last measurement was foreseen by nobody: an outlier, or a jump
   bool lost_ = false;               // was found so, and has not been well since: guard()
   Axes tested_for_{};               // measurements since the noise was known
   Axes untested_{};                 // angle fallen short of while the noise was not known, or the test blunt

@@ -100,6 +100,11 @@ bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) 
   return far && beyond;
 }
 
+void Engine::expect_surprise(const Axes& least) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a)
+    surprised_[a] += (std::min(least[a], kMostSurprise) - surprised_[a]) / kSurpriseMemory;
+}
+
 // A blow goes on as it began, and its next sample is no outlier for being as far off.
 void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
   const std::array<Axes, 2> both{waiting_rate_, m.in.rate_radps};
@@ -113,6 +118,7 @@ void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
   move_rest(m.in.rate_radps, scale);
   mix_.begin(0.0);
   motion_ = Motion::manoeuvre;
+  waiting_ = false;
   rest_->skip();
   mix_.weigh(trackers_);
 }
@@ -122,10 +128,10 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   Axes least{};
   const bool unforeseen_now = unforeseen(m, now, least);
   hear(m);
-  if (unforeseen_now && motion_ != Motion::unforeseen) {
+  if (unforeseen_now && !waiting_) {
     out.flags |= kGated;
     ++health_.gated;
-    motion_ = Motion::unforeseen;
+    waiting_ = true;
     waiting_rate_ = m.in.rate_radps;
     rest_->skip();
     for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += m.innovation[a] * m.innovation[a];
@@ -136,14 +142,13 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     publish_mix(now);
     return;
   }
-  motion_ = Motion::manoeuvre;
+  waiting_ = false;
   if (m.valid == 0) {
     rest_->skip();
     publish_mix(now);
     return;
   }
-  for (std::size_t a = 0; a < axes_; ++a)
-    surprised_[a] += (std::min(least[a], kMostSurprise) - surprised_[a]) / kSurpriseMemory;
+  expect_surprise(least);
   mix_.judge(trackers_, now, least);
   trackers_.correct(m.in.rate_radps, m.valid);
   update_rest(m, false);

@@ -29,8 +29,10 @@ struct EstimatorInput {
 };
 
 enum EstimatorFlags : std::uint32_t {
-  kGated = 1,      // a measurement was kept out as an outlier
-  kManoeuvre = 2,  // change of rate detected, covariance raised
+  kGated = 1,  // a measurement was kept out as an outlier
+  // A change of rate was detected, covariance raised. A filter that begins under way follows from its first
+  // measurement on, and says so once that is known.
+  kManoeuvre = 2,
   kRestarted = 4,  // divergence: the filter started again from this measurement
   kStuck = 8,      // the sensor repeats one value
   // All axes rest: no change of rate is found or suspected, none has been for 64 measurements, and no axis

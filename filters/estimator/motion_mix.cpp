@@ -36,6 +36,13 @@ constexpr double kFirstApart = 0.09;
 constexpr double kApart = 0.65;
 constexpr double kShared = 1.4;
 
+// Of a square over a variance that is known with so many degrees of freedom: -2 log-likelihood of Student's
+// t.
+double unlikely(double square, double degrees) noexcept {
+  constexpr double kMany = 1e5;
+  return degrees > kMany ? square : (degrees + 1.0) * logarithm(1.0 + square / degrees);
+}
+
 double certain(double ratio) noexcept { return 1.0 / (1.0 + exponential(-std::clamp(ratio, -30.0, 30.0))); }
 
 }  // namespace
@@ -55,14 +62,16 @@ void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Ax
   double of_rest = 0.0;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     if ((now.valid >> a & 1U) == 0) continue;
-    const double scale = now.scale[a];
+    const double scale = now.scale[a], degrees = now.degrees[a];
+    const double foreseen = unlikely(least[a], degrees);
     for (std::size_t j = 0; j < trackers.size(); ++j) {
       const double apart = now.rate[a] - trackers.rate(j, a);
       const double square = apart * apart / (trackers.factor(j) * scale);
-      log[j] -= 0.5 * (std::min(square - least[a], kMostSquare) + trackers.log_factor(j));
+      log[j] -= 0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + trackers.log_factor(j));
     }
     const double square = now.innovation[a] * now.innovation[a] / (now.rest_factor * scale);
-    of_rest -= 0.5 * (std::min(square - least[a], kMostSquare) + logarithm(now.rest_factor));
+    of_rest -=
+        0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + logarithm(now.rest_factor));
   }
   double mean = 0.0, sum = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
@@ -78,7 +87,8 @@ void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Ax
 }
 
 void MotionMix::weigh(const TrackerBank& trackers) noexcept {
-  rest_weight_ = rest_age_ < kHoldLonger * failed_after_ ? 0.0 : certain(rest_ratio_ - kAgainstRest);
+  const bool judged = rest_age_ > 0.0 && rest_age_ >= kHoldLonger * failed_after_;
+  rest_weight_ = judged ? certain(rest_ratio_ - kAgainstRest) : 0.0;
   double up_to_here = 1.0 - rest_weight_;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double next = j + 1 < trackers.size() ? up_to_here * certain(link_[j + 1] + kForLonger) : 0.0;

@@ -34,6 +34,8 @@ class MotionMix {
   // The filter at rest is so wrong that it should begin again; begin_rest() says that it did.
   [[nodiscard]] bool rest_is_wrong() const noexcept;
   void begin_rest() noexcept;
+  // Log-likelihood ratio of the filter at rest over the trackers' mean, since it began.
+  [[nodiscard]] double rest_ratio() const noexcept { return rest_ratio_; }
   // It explains the measurements so well that the motion is over.
   [[nodiscard]] bool rest_is_right() const noexcept;
 

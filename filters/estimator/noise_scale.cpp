@@ -32,10 +32,15 @@ void NoiseScale::take(double rate) noexcept {
     different_ = std::min(different_ + 1, kDifferent);
     if (in_a_row_ > 0) digit_ = std::min(digit_, step);
   }
+  if (in_a_row_ >= 2 && !known_) {
+    const double second = rate - 2.0 * last_[2] + last_[1];
+    bent_count_ += 1.0;
+    bent_ += (second * second / 6.0 - bent_) / bent_count_;
+  }
   if (in_a_row_ >= 3) {
     const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
     const double square = third * third / 20.0;
-    local_ += (std::min(square, kClip * now()) - local_) / kLocalMemory;
+    local_ += (std::min(square, kClip * now()) - local_) / std::min(kLocalMemory, kToldCount + rough_count_);
     rough_count_ = std::min(rough_count_ + 1.0, kMemory);
     // Beside the scale, so that a coarse sensor's runs of equal values do not end in a variance of zero that
     // nothing could raise again.
@@ -51,18 +56,24 @@ void NoiseScale::recall(double colour) noexcept {
 }
 
 // What was told counts only where the innovations are much louder than they are rough and no tracker follows
-// them: then it is colour, and how slow it is nothing else says yet.
+// them: then it is colour, and how slow it is nothing else says yet. What is smoother than any noise is
+// motion, though it be too quick for the trackers that are asked.
 void NoiseScale::settle(double foreseen) noexcept {
   if (rough_count_ < kDifferent) rough_ = told_;
   const double rough = std::max(rough_, 1e-9 * told_);
   const double found = squares_ / learned_;
   const double usual = recalled_ * rough;
-  const bool motion = foreseen <= kForeseen * rough;
+  const bool motion = foreseen <= kForeseen * rough || bent_ > kSmooth * rough;
   rest_ = found <= kLouder * usual || motion ? usual : std::max(told_, usual);
   rough_ = rough;
   colour_ = rest_ / rough;
   colour_count_ = recalled_ > 1.0 ? kColourMemory : kMemory;
+  local_ = std::min(local_, rest_);
   known_ = true;
+}
+
+void NoiseScale::take_roughness() noexcept {
+  if (!known_) settle(0.0);
 }
 
 bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept {

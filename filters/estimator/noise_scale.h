@@ -16,7 +16,7 @@ namespace ifog {
 
 class NoiseScale {
  public:
-  // told: R, (rad/s)^2, believed until enough innovations at rest are there.
+  // told: R, (rad/s)^2, believed with a few degrees of freedom until enough innovations are there.
   explicit NoiseScale(double told = 1.0) : told_(told), rest_(told), local_(told) {}
 
   // Before the first measurement: colour() as an earlier filter has found it.
@@ -33,6 +33,14 @@ class NoiseScale {
   // Variance of an innovation at rest as the noise is now.
   [[nodiscard]] double now() const noexcept;
   [[nodiscard]] bool known() const noexcept { return known_; }
+  // Degrees of freedom that now() stands on.
+  [[nodiscard]] double degrees() const noexcept {
+    return known_ ? kSure : kToldDegrees + kIndependent * rough_count_;
+  }
+  // Third differences enough that now() is not far from the noise, whatever was told.
+  [[nodiscard]] bool heard() const noexcept { return known_ || rough_count_ >= kHeard; }
+  // The sensor moves, and what it is rough by is all that is its noise: known from here on.
+  void take_roughness() noexcept;
   // At rest, over the last thousand samples.
   [[nodiscard]] double rest() const noexcept { return rest_; }
   // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
@@ -56,6 +64,14 @@ class NoiseScale {
   // After so many, none of whose neighbours were alike, as in a queue that merges now two and now nine, the
   // noise is what was told until it can be heard.
   static constexpr int kUnheard = 4 * kLearning;
+  // What was told counts for so many third differences, which overlap.
+  static constexpr double kToldCount = 4.0;
+  static constexpr double kIndependent = 0.43;
+  static constexpr double kToldDegrees = 2.0;
+  static constexpr double kSure = 1e6;
+  static constexpr double kHeard = 16.0;
+  // Of noise, be it a walk's own walk, second differences are at most 1.7 times as loud as third ones say.
+  static constexpr double kSmooth = 2.5;
   static constexpr double kLocalMemory = 32.0;
   static constexpr double kMemory = 1024.0;
   static constexpr double kColourMemory = 8192.0;
@@ -79,6 +95,7 @@ class NoiseScale {
 
   double told_, rest_, local_;
   double rough_ = 0.0, rough_count_ = 0.0;  // variance by third differences, measurements in it
+  double bent_ = 0.0, bent_count_ = 0.0;    // the same by second ones, until the scale is known
   double recalled_ = 1.0;                   // colour
   double colour_ = 1.0, colour_count_ = 0.0;
   double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise

@@ -19,6 +19,10 @@ constexpr double kNearlyAsWell = 0.3;
 // Median of the square of a standard normal.
 constexpr double kMedianSquare = 0.4549364;
 
+// Of variances, from one octave to the second after it: a walk's grow fourfold, and medians of few
+// differences come no further by chance.
+constexpr double kSmooth = 24.0;
+
 struct Octave {
   double variance = 0.0;  // of the second difference of block means, mean over axes
   double count = 0.0;     // independent ones, of all axes
@@ -35,6 +39,16 @@ double robust_variance(std::vector<double>& squares) {
   double sum = 0.0;
   for (auto it = squares.begin(); it != squares.begin() + kept; ++it) sum += *it;
   return sum / static_cast<double>(kept);
+}
+
+// R of white noise, whatever smooth motion there is.
+double roughness(std::span<const double> rate) {
+  std::vector<double> squares;
+  for (std::size_t i = 3; i < rate.size(); ++i) {
+    const double third = rate[i] - 3.0 * rate[i - 1] + 3.0 * rate[i - 2] - rate[i - 3];
+    if (std::isfinite(third)) squares.push_back(third * third / 20.0);
+  }
+  return squares.size() >= 12 ? robust_variance(squares) : std::numeric_limits<double>::infinity();
 }
 
 // A block with a part missing stands on the other part; otherwise one lost sample in ten would leave no long
@@ -65,6 +79,12 @@ std::vector<Octave> octaves(std::span<const double> rate) {
     means = std::move(halved);
   }
   return all;
+}
+
+[[nodiscard]] bool smooth(const std::vector<Octave>& octaves) {
+  for (std::size_t k = 2; k < octaves.size(); ++k)
+    if (octaves[k - 2].variance > 0.0 && octaves[k].variance > kSmooth * octaves[k - 2].variance) return true;
+  return false;
 }
 
 [[nodiscard]] bool constant(const std::vector<Octave>& octaves) {
@@ -117,7 +137,8 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
   std::vector<Octave> all;
   Axes walk{};
   std::size_t most = 0;
-  double greatest = 0.0;
+  double greatest = 0.0, rough = 0.0;
+  bool moved = false;
   int measured = 0, taken = 0;
   for (int axis = 0; axis < axes; ++axis) {
     const auto rate = rates.subspan(static_cast<std::size_t>(axis) * length, length);
@@ -130,6 +151,8 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
       if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
     const std::vector<Octave> own = octaves(rate);
     if (constant(own)) continue;
+    moved = moved || smooth(own);
+    rough += roughness(rate);
     const Fit of_axis = fit(own, static_cast<double>(present));
     walk[static_cast<std::size_t>(axis)] = of_axis.ratio * of_axis.octaves.low_noise / dt_s;
     add(all, own, taken++);
@@ -145,6 +168,8 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
   const Fit together = fit(all, n);
   NoiseEstimate out{together.ratio * std::max(together.octaves.low_noise, least_noise) / dt_s,
                     std::max(together.octaves.noise, least_noise)};
+  out.moved = moved;
+  if (moved) out.measurement_noise = std::clamp(rough / taken, least_noise, out.measurement_noise);
   for (std::size_t a = 0; taken > 1 && a < kMaxAxes; ++a)
     if (walk[a] > 0.0) out.walk_share[a] = walk[a] / out.process_noise;
   return out;

@@ -12,6 +12,7 @@ struct NoiseEstimate {
   double process_noise = 0.0;      // of a random walk, (rad/s)^2/s
   double measurement_noise = 0.0;  // per sample, (rad/s)^2
   Axes walk_share{1.0, 1.0, 1.0};  // of an axis: its own driving noise over process_noise
+  bool moved = false;              // more smoothly than any noise: the walk is a motion's
 };
 
 // From a record of one or more axes, one after the other in `rates` (axes x n values, rad/s, at dt_s, NaN
@@ -23,9 +24,11 @@ struct NoiseEstimate {
 // some five times too large). A random walk of density q in white noise R gives them variance 6 R / m + q dt
 // m at m samples a block; R and q are fitted by Gaussian quasi-likelihood to all octaves but the shortest,
 // where these are of another kind (octave_fit.h). A record that shows no random walk gets one that it might
-// hide; a constant record the noise of its last digit. A few seconds show the white noise well and the random
-// walk badly: `ifog tune` on an hour at rest is the better way. Takes about 0.1 ms a thousand values.
-// Allocates. Throws std::invalid_argument when no axis has 32 measurements.
+// hide; a constant record the noise of its last digit.
+// From one octave to the next a motion grows sixteenfold and no noise by more than twice: where that is seen
+// the sensor moved, R is what is left of third differences, and the walk is the motion's. A few seconds show
+// the white noise well and the random walk badly: `ifog tune` on an hour at rest is the better way. Takes
+// about 0.1 ms a thousand values. Allocates. Throws std::invalid_argument when no axis has 32 measurements.
 [[nodiscard]] NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s);
 
 }  // namespace ifog

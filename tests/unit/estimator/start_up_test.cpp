@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -95,6 +96,45 @@ TEST(StartUp, AveragesTheAxesThatMeasure) {
   both.resize(15'000, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 5000; i < both.size(); ++i) both[i] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(ifog::estimate_noise(both, 3, kPeriod).measurement_noise, first.measurement_noise);
+}
+
+// A swing is no noise, whatever the sample rate: it is said, and the noise is what is rough.
+TEST(StartUp, TellsAMotionFromNoise) {
+  constexpr double kNoise = 1.5e-6;  // rad/s in one second
+  for (const double rate_hz : {10.0, 25.0, 50.0, 100.0, 200.0})
+    for (const double amplitude : {0.02, 0.1}) {  // rad/s
+      const auto length = static_cast<std::size_t>(std::max(256.0, 4.0 * rate_hz));
+      const double noise = kNoise * kNoise * rate_hz;
+      std::mt19937_64 random(11);
+      std::normal_distribution<double> normal(0.0, std::sqrt(noise));
+      std::vector<double> rate(length);
+      double rough = 0.0;  // what a swing leaves in third differences
+      for (std::size_t i = 0; i < length; ++i)
+        rate[i] = amplitude * std::cos(0.2 * std::numbers::pi * static_cast<double>(i) / rate_hz + 0.3) +
+                  normal(random);
+      rough =
+          0.5 * std::pow(2.0 * std::sin(0.1 * std::numbers::pi / rate_hz), 6) * amplitude * amplitude / 20.0;
+      const auto found = ifog::estimate_noise(rate, 1, 1.0 / rate_hz);
+      EXPECT_TRUE(found.moved) << rate_hz << " " << amplitude;
+      EXPECT_LT(found.measurement_noise, 1.6 * noise + 2.0 * rough) << rate_hz << " " << amplitude;
+      EXPECT_GT(found.measurement_noise, 0.5 * noise) << rate_hz << " " << amplitude;
+    }
+}
+
+TEST(StartUp, TakesNoNoiseForAMotion) {
+  for (const int length : {256, 800, 5000})
+    for (const double walk : {0.0, 1e-3, 1e-1, 10.0})
+      for (const double correlation : {0.0, 0.9, 0.99})
+        for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+          Record r = record(seed, length, walk);
+          double noise = 0.0;
+          for (std::size_t i = 0; i < r.measured.size(); ++i) {
+            noise = correlation * noise + r.measured[i] - r.truth[i];
+            r.measured[i] = r.truth[i] + noise;
+          }
+          EXPECT_FALSE(ifog::estimate_noise(r.measured, 1, kPeriod).moved)
+              << length << " " << walk << " " << correlation << " " << seed;
+        }
 }
 
 TEST(StartUp, RefusesTooShortARecordAndSurvivesAConstantOne) {

@@ -88,6 +88,7 @@ OfflineResult ChainRun::finish() {
   count(counts_);
   result_.filter = chain_->parts().filter();
   result_.noise_known = chain_->parts().noise_known();
+  result_.moved_in_start_up = chain_->parts().moved_in_start_up();
   return std::move(result_);
 }
 

@@ -194,6 +194,10 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
     say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
         filter.rule.c_str(), filter.state.c_str(), filter.process_noise, filter.measurement_noise,
         result.noise_learned ? " (from the first seconds of the capture)" : "");
+  if (result.moved_in_start_up)
+    say("the sensor moved in the first seconds, which the noise was learned from: a model that `ifog tune` "
+        "made at "
+        "rest knows it better\n");
   for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
 

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine from its first measurement to where it is known whether the sensor rests.
+//
+// A filter may begin anywhere in a motion. So nothing is taken for granted: the trackers follow from the
+// first measurement on, with what they have had, and the filter at rest has part of what is published as its
+// predictions earn it. Noise need not be known for that: what third differences and the settings say of it
+// counts for as many degrees of freedom as it has.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "filters/estimator/engine.h"
+
+namespace ifog {
+namespace {
+
+// Measurements that a parabola goes through: from then on it foresees something.
+constexpr double kParabola = 3.0;
+// Samples missed after which no tracker that is quick foresees anything.
+constexpr double kGap = 16.0;
+
+}  // namespace
+
+void Engine::begin() noexcept {
+  motion_ = follow_manoeuvres_ ? Motion::beginning : Motion::at_rest;
+  waiting_ = false;
+  kept_out_ = surprised_ = {};
+  mix_.begin(0.0);
+}
+
+void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
+  const std::uint32_t fresh = valid & ~started_;
+  if (fresh == 0) return;
+  // One gain is for all axes, and of this one nothing is known yet.
+  if (started_ != 0 && follow_manoeuvres_) {
+    rest_->raise_to(rest_->rule().measurement_noise());
+    since_moved_ = at_rest_for_ = 0.0;
+    change_.restart();
+    begin();
+  }
+  rest_->shift_to(rate, fresh);
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (has(fresh, a)) ledger_.refer(a, rate[a]);
+  }
+  // The trackers' first measurement is the first that all axes have had.
+  trackers_.begin();
+  started_ |= fresh;
+}
+
+// What the rate does while nobody looks is not known. The filter at rest has what it had, and earns its part
+// anew.
+void Engine::begin_after_gap(const Measurement& m) noexcept {
+  double covered_s = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(m.valid, a)) covered_s = std::max(covered_s, m.covered_s(a));
+  unmeasured_s_ += std::max(0.0, m.dt_s - covered_s);
+  if (m.valid == 0) return;
+  if (std::exchange(unmeasured_s_, 0.0) < kGap * period_s_ || knowledge_ == Knowledge::nothing) return;
+  for (NoiseScale& noise : noise_) noise.break_off();
+  trackers_.begin();
+  outliers_.clear();
+  begin();
+}
+
+bool Engine::heard(std::uint32_t axes) const noexcept {
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(axes, a) && !noise_[a].heard()) return false;
+  return true;
+}
+
+void Engine::follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
+  Axes least{};
+  const bool foreseen = trackers_.age(0) >= kParabola;
+  const bool far = foreseen && unforeseen(m, now, least) && heard(m.valid);
+  hear(m);
+  if (far && !waiting_) {
+    wait(m, out);
+    return;
+  }
+  if (far) {
+    find_moving(m, out);
+    begin_again(m, least);
+    publish_mix(now);
+    return;
+  }
+  waiting_ = false;
+  kept_out_ = {};
+  if (m.valid == 0) {
+    rest_->skip();
+    if (knowledge_ == Knowledge::nothing)
+      publish_rest();
+    else
+      publish_mix(now);
+    return;
+  }
+  if (foreseen) {
+    expect_surprise(least);
+    mix_.judge(trackers_, now, least);
+  }
+  const bool changed =
+      heard(m.valid) && change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
+  take_in(m, now);
+  judge_beginning(m, changed && (m.valid & ~m.tested) == 0, out);
+}
+
+// Kept out until the next one says whether it was an outlier or the first of a jump.
+void Engine::wait(const Measurement& m, EstimatorOutput& out) noexcept {
+  out.flags |= kGated;
+  ++health_.gated;
+  waiting_ = published_.passed_over = true;
+  waiting_rate_ = m.in.rate_radps;
+  rest_->skip();
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(m.valid, a)) continue;
+    const double apart = m.in.rate_radps[a] - published_.rate[a];
+    kept_out_[a] = apart * m.covered_s(a);
+    published_.variance[a] += apart * apart;
+  }
+}
+
+void Engine::take_in(const Measurement& m, const Surprise& now) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(m.valid, a) && !noise_[a].known())
+      foresight_[a].take(trackers_, a, m.in.rate_radps[a], m.noise_scale);
+  trackers_.correct(m.in.rate_radps, m.valid);
+  const bool first = knowledge_ == Knowledge::nothing;
+  const double predicted = rest_->measurement_variance();
+  update_rest(m, true);
+  if (!first) {
+    learn_noise(m);
+    average_rest(predicted);
+  }
+  mix_.weigh(trackers_);
+  mix_.compare(trackers_, now);
+  publish_mix(now);
+  for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += mix_.rest_weight() * change_.unseen(a);
+}
+
+// Rest or motion is known where the noise is and one of them explains the measurements. Of coloured noise the
+// trackers follow what is none, and as its sums are wider than white noise's by about its colour, so much
+// more has to speak for motion; what is slower the test of changes will tell.
+void Engine::judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept {
+  double colour = 1.0;
+  bool white = true;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(m.valid, a)) continue;
+    if (!noise_[a].known()) return;
+    white = white && noise_[a].white();
+    colour = std::max(colour, noise_[a].colour());
+  }
+  if (changed || mix_.rest_ratio() < -ChangeTest::kEvidence * colour) {
+    find_moving(m, out);
+    judge_manoeuvre();
+  } else if (mix_.rest_is_right() || !white) {
+    motion_ = Motion::at_rest;
+    if (!white) change_.forget();
+    outliers_.clear();
+    publish_rest();
+  }
+}
+
+// What was fallen short of until now is the manoeuvre's.
+void Engine::find_moving(const Measurement& m, EstimatorOutput& out) noexcept {
+  out.flags |= kManoeuvre;
+  ++health_.manoeuvres;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (has(m.valid, a)) noise_[a].take_roughness();
+    owe_to_manoeuvre(a);
+  }
+  ledger_.pace(mix_.length(trackers_, rest_->gain()));
+  motion_ = Motion::manoeuvre;
+  forget_unmeasured(m.valid);
+}
+
+}  // namespace ifog
