@@ -239,7 +239,8 @@ TEST(Series, RecordsFollowEachOtherWhateverTheirClocksCountFrom) {
     first.before = first.written = std::vector<double>(250, 1.0);
     second.before = second.written = std::vector<double>(150, 1.0);
     KnownPeriodograms known;
-    const DiagnosisSeries series = series_of(data, {first, second}, {}, {}, {}, known);
+    KnownAngles angles;
+    const DiagnosisSeries series = series_of(data, {first, second}, {}, {}, {}, known, angles);
     ASSERT_EQ(series.time_s.size(), 400U);
     for (std::size_t b = 0; b < 400; ++b) EXPECT_EQ(series.time_s[b], start + static_cast<double>(b) + 0.5);
   }
