@@ -136,7 +136,7 @@ constexpr std::array kTable{
 bool inside(double value, const SettingRange& range) {
   return std::isfinite(value) && value >= range.least &&
          (range.below_most ? value < range.most : value <= range.most) &&
-         (value == 0.0 || value >= range.least_but_zero);
+         (range.least_but_zero == 0.0 || value == 0.0 || value >= range.least_but_zero);
 }
 
 bool one_of(const std::string& value, std::span<const char* const> choices) {

@@ -25,8 +25,8 @@ struct Convert {
 };
 
 void Convert::run() const {
-  will_write("TO", to);
   input.will_read("FROM", from);
+  will_write("TO", to);
   expect_capture_name("TO", to, &input);
   InputFile file(from);
   const bool from_columns = input.has_layout() || file_kind(file) == FileKind::capture;

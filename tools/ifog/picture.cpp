@@ -30,8 +30,8 @@ struct Arguments {
 };
 
 void run(const Arguments& a) {
-  will_write("--output", a.picture);
   will_read("log", a.log);
+  will_write("--output", a.picture);
   InputFile log(a.log);
   if (const FileKind kind = file_kind(log); kind != FileKind::lcm_log && kind != FileKind::flight)
     throw std::runtime_error(a.log + ": is no log of lcm-logger");

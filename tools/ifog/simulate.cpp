@@ -27,9 +27,9 @@ struct Simulate {
   bool seed_given = false;
 
   void run() const {
+    encoding.will_read("SCENARIO", scenario);
     will_write("--output", output);
     will_write("--truth", truth);
-    encoding.will_read("SCENARIO", scenario);
     expect_capture_name("--output", output, &encoding);
     expect_ending("--truth", truth,
                   has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,

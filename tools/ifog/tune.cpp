@@ -254,9 +254,9 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
 }
 
 void run(const Options& options) {
+  options.input.will_read("capture", options.capture);
   will_write("--json", options.json_file, kJsonEndings);
   will_write("--write-model", options.model, kModelEndings);
-  options.input.will_read("capture", options.capture);
   LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
     return column.starts_with("rate") || column.starts_with("reference_rate");
   });

@@ -46,7 +46,7 @@ bool nanoseconds_in(std::string_view cell, std::int64_t& ns) {
   for (const char c : cell) {
     if (c == '.' && decimals < 0) {
       decimals = 0;
-    } else if (c < '0' || c > '9' || size > kMost) {
+    } else if (c < '0' || c > '9' || (decimals < 9 && size > kMost)) {
       return false;
     } else if (decimals < 9) {
       size = 10 * size + (c - '0');

@@ -48,7 +48,7 @@ TEST(LongHoles, PartAndShortOnesDoNot) {
   EXPECT_EQ(two.records[0].time_s.size(), 6001U);
   EXPECT_EQ(two.records[1].time_s.size(), 5999U);
   EXPECT_EQ(two.records[1].channels[0].values.data(), parted.temperature.data() + 6001);
-  EXPECT_EQ(two.records[1].name, "sensor (from 144600 s)");
+  EXPECT_EQ(two.records[1].name, "sensor (from 144600.1 s)");
   ASSERT_EQ(two.remarks.size(), 1U);
   const Capture whole = with_hole(200.0);
   const PartedRecords one = part_at_long_holes({whole.record()});

@@ -25,9 +25,9 @@ struct Arguments {
 };
 
 void run(Arguments& a) {
+  for (const std::string& capture : a.captures) a.input.will_read("capture", capture);
   will_write("--json", a.json, kJsonEndings);
   will_write("--plot", a.picture);
-  for (const std::string& capture : a.captures) a.input.will_read("capture", capture);
   a.options.kind = a.estimator == "modified"   ? Deviation::kModified
                    : a.estimator == "hadamard" ? Deviation::kHadamard
                                                : Deviation::kAllan;

@@ -140,10 +140,10 @@ void print_axis(const Comparison& result, int axis, bool reference) {
 }
 
 void run(const Options& options) {
-  will_write("--json", options.json_file, kJsonEndings);
-  will_write("--plot", options.plot_file);
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);
+  will_write("--json", options.json_file, kJsonEndings);
+  will_write("--plot", options.plot_file);
   const LongCapture read =
       options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
         std::string axis;

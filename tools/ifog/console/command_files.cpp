@@ -50,8 +50,8 @@ void will_read(const std::string& option, const std::string& path) {
 
 void will_write(const std::string& option, const std::string& path,
                 std::span<const std::string_view> endings) {
-  expect_no_other_kind(option, path, endings);
   will_write(option, path);
+  expect_no_other_kind(option, path, endings);
 }
 
 void will_write(const std::string& option, const std::string& path) {

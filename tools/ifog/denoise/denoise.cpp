@@ -232,13 +232,13 @@ void run(DenoiseOptions options) {
   if (!options.sensor.empty() && options.config.empty())
     throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
                                                ", expected --config with it, whose sensors have names");
-  will_write("--output", options.output);
-  will_write("--json", options.json, kJsonEndings);
-  will_write("--plot", options.picture);
   options.input.will_read("CAPTURE", options.capture);
   will_read("--model", options.model);
   will_read("--noise", options.noise);
   will_read("--config", options.config);
+  will_write("--output", options.output);
+  will_write("--json", options.json, kJsonEndings);
+  will_write("--plot", options.picture);
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;

@@ -34,11 +34,11 @@ struct Arguments {
 };
 
 void run(const Arguments& arguments) {
+  for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
+  will_read("--model", arguments.model);
   will_write("--json", arguments.json, kJsonEndings);
   will_write("--write-model", arguments.write_model, kModelEndings);
   will_write("--report", arguments.report, kPageEndings);
-  for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
-  will_read("--model", arguments.model);
   std::vector<LongCapture> read;
   std::vector<std::string> hashes;  // for the model file, which says what it was found on
   for (const std::string& path : arguments.captures) {

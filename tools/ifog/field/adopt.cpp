@@ -93,8 +93,8 @@ void tell_innovations(const Watched& watched) {
 }
 
 void adopt(const Arguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   will_read("--config", arguments.field.config);
+  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   catch_interrupts();
   const Field field(arguments.field);

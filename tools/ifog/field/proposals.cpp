@@ -29,8 +29,8 @@ bool is_stale(const Field& field, const Proposal& proposal) {
 }
 
 void run(const Arguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   will_read("--config", arguments.field.config);
+  will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   bool damaged = false, any = false;

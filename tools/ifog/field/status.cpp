@@ -218,8 +218,8 @@ pid_t daemon_of(const Field& field) {
 }
 
 void run(const Arguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   will_read("--config", arguments.field.config);
+  will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   const pid_t daemon = daemon_of(field);
   LiveStatus live(field.lcm_url());

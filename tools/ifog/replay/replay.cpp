@@ -159,10 +159,10 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
 
 void run(ReplaySettings settings) {
   const ReplayDestination to = ReplayDestination::parse(settings.to);
+  settings.source.input.will_read("capture", settings.source.path);
   if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
   if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
   will_write("--json", settings.json, kJsonEndings);
-  settings.source.input.will_read("capture", settings.source.path);
   settings.source.prefer_can = to.is_can();
   const ReplayTimeline timeline = read_timeline(settings.source);
   if (to.kind == ReplayDestination::Kind::file) {
