@@ -20,7 +20,7 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 struct RowBlock {
   std::vector<double> time_s;                // strictly increasing, within and from block to block; never NaN
   std::vector<std::vector<double>> columns;  // in the order of the names, each as long as time_s
-  TimeOrigin origin{};                         // what time_s is counted from, the same in all blocks
+  TimeOrigin origin{};                       // what time_s is counted from, the same in all blocks
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };

@@ -90,7 +90,7 @@ class Checks:
             (self.folder / name).write_bytes(text)
             assert figures(self.folder / name) == expected, name
         theirs = self.write("theirs.txt", "t;w", ";")
-        refused(1, "allan", theirs, says=["theirs.txt:1: ", "--time", "--column"])
+        refused(1, "allan", theirs, says=["theirs.txt:1: ", "--separator ';'"])
         ifog("convert", self.folder / "one.txt", self.folder / "one.kvh", "--driver", "kvh1750")
         (self.folder / "bytes.txt").write_bytes((self.folder / "one.kvh").read_bytes())
         refused(1, "allan", self.folder / "bytes.txt", says=["no capture in columns", "--driver NAME"])

@@ -132,9 +132,8 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   ASSERT_EQ(files.size(), 4U);
   fs::remove(files.front());
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
-  EXPECT_NE(
-      complaint_.find("from 0 s on, until the filter has settled, this need not be what was published"),
-      std::string::npos)
+  EXPECT_NE(complaint_.find("from 0 s on, until the filter has settled, this need not be what was published"),
+            std::string::npos)
       << complaint_;
 }
 

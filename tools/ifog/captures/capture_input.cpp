@@ -163,8 +163,8 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter or clock\n", path.c_str(), builder.missing());
   if (builder.restarts() != 0)
-    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n", path.c_str(),
-         builder.restarts());
+    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
+         path.c_str(), builder.restarts());
   if (builder.repeated() != 0)
     warn("%s: %zu samples came twice or after one that follows, and are left out\n", path.c_str(),
          builder.repeated());

@@ -179,10 +179,11 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
   if (builder.missing() != 0)
-    warn("%s: %zu samples are missing by the device's counter or clock\n", file_.path().c_str(), builder.missing());
+    warn("%s: %zu samples are missing by the device's counter or clock\n", file_.path().c_str(),
+         builder.missing());
   if (builder.restarts() != 0)
-    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n", file_.path().c_str(),
-         builder.restarts());
+    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
+         file_.path().c_str(), builder.restarts());
   if (builder.repeated() != 0)
     warn("%s: %zu samples came twice or after one that follows, and are left out\n", file_.path().c_str(),
          builder.repeated());
