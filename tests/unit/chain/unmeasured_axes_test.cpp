@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the chain makes of axes that are not measured: invalid samples, values that repeat, none at all.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "filters/chain/incrementer.h"
+#include "filters/chain/signal_chain.h"
+#include "tests/unit/chain/one_axis.h"
+
+namespace ifog {
+namespace {
+
+// Also of a filter that is begun with it: at start-up, by what was learned there, or by a reload.
+TEST(SignalChain, AnAxisThatHasHadValuesKeepsOneOverAnInvalidSample) {
+  for (const double noise : {0.0, 1e-8}) {
+    ChainSettings with = settings(noise, noise);
+    with.start_up_s = 1.0;
+    SignalChain chain(std::make_unique<ChainParts>(with));
+    ChainOutput out;
+    const std::vector<Increment> all = increments(2500, 2);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Increment in = all[i];
+      if (i % 9 == 5 || (i > 990 && i < 1010) || (i >= 1800 && i < 1820)) {
+        in.valid_axes = 0;
+        in.covered_s[0] = in.delta_theta_rad[0] = 0.0;
+        in.rate_radps[0] = std::numeric_limits<double>::quiet_NaN();
+        in.flags |= kInvalid;
+      }
+      if (i == 1800) static_cast<void>(chain.swap(std::make_unique<ChainParts>(with)));
+      chain.process(in, out);
+      ASSERT_NEAR(out.estimate.denoised_radps[0], 0.01, 1e-3) << noise << ", sample " << i;
+      ASSERT_GE(out.estimate.variance_rad2ps2[0], 0.0) << noise << ", sample " << i;
+    }
+  }
+}
+
+// A correction by a channel that is alive makes every compensated value another. What repeats itself is told
+// of what the sensor sent: from the 101st on, without a model and with one, before the noise is known and
+// after; the flag ends with the first other value.
+TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
+  ChainSettings plain = settings();
+  plain.channels = {"accel_x_mps2"};
+  plain.channel_max_age_s = {0.0};
+  plain.facts.frame_channels = plain.facts.channels = 1;
+  auto model = std::make_shared<Model>();
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = "accel_x_mps2";
+  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/(m/s^2)"}};
+  model->effects.push_back(effect);
+  ChainSettings with = plain, learning = plain;
+  with.model = learning.model = model;
+  learning.filter = FilterChoice{};
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> normal;
+  for (const SensorKind kind : {SensorKind::rate, SensorKind::delta_angle, SensorKind::angle})
+    for (ChainSettings* const each : {&plain, &with, &learning}) {
+      each->facts.kind = kind;
+      SignalChain chain(std::make_unique<ChainParts>(*each));
+      Incrementer incrementer(each->facts);
+      Increment increment;
+      ChainOutput out;
+      int flagged = 0;
+      for (int i = 0; i < 1200; ++i) {
+        Reading reading;
+        reading.sequence = static_cast<std::uint32_t>(i % 128);
+        reading.has_sequence = true;
+        // A device clock that trembles makes another rate of the same turn.
+        reading.device_time_ns = std::int64_t{1'000'000} * i + (i % 7) * 1000;
+        reading.valid_axes = 1;
+        reading.fresh_channels = 1;
+        reading.channel[0] = 0.1 * normal(engine);
+        const bool stands = i >= 400 && i < 1000;
+        const double scale = kind == SensorKind::rate ? 1.0 : kPeriod_s;
+        reading.value[0] = scale * (stands ? 0.1 : 0.1 + 1e-4 * normal(engine));
+        incrementer.next(reading, increment);
+        chain.process(increment, out);
+        const bool stuck = (out.estimate.flags & kStuck) != 0;
+        ASSERT_EQ(stuck, i >= 500 && i < 1000) << i;
+        flagged += stuck ? 1 : 0;
+      }
+      EXPECT_EQ(flagged, 500);
+    }
+}
+
+// Three axes of which one is not as the others: until `dead_until` it has no value, or it repeats one.
+ChainOutput of_three(int n, int dead_until, bool repeats, SignalChain& chain) {
+  ChainSettings three = settings();
+  three.facts.axes = 3;
+  Incrementer incrementer(three.facts);
+  Increment increment;
+  ChainOutput out;
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal(0.01, 1e-4);
+  for (int i = 0; i < n; ++i) {
+    Reading reading;
+    reading.sequence = static_cast<std::uint32_t>(i % 128);
+    reading.has_sequence = true;
+    reading.value = {normal(engine), repeats ? 0.0 : normal(engine), normal(engine)};
+    reading.valid_axes = repeats || i >= dead_until ? 7 : 5;
+    incrementer.next(reading, increment);
+    chain.process(increment, out);
+    const bool known = repeats || i >= dead_until;
+    EXPECT_EQ(std::isfinite(out.estimate.denoised_radps[1]), known) << i;
+    EXPECT_EQ(std::isfinite(out.estimate.variance_rad2ps2[1]), known) << i;
+    EXPECT_TRUE(std::isfinite(out.estimate.denoised_radps[0] + out.estimate.variance_rad2ps2[2])) << i;
+  }
+  return out;
+}
+
+SignalChain chain_of_three(double q, double r) {
+  ChainSettings three = settings(q, r);
+  three.facts.axes = 3;
+  three.axes = {"x", "y", "z"};
+  three.start_up_s = 1.0;
+  return SignalChain(std::make_unique<ChainParts>(three));
+}
+
+// Nothing is known of it, and 0 with a small variance would say that all is.
+TEST(SignalChain, AnAxisThatHasHadNoValueHasNoEstimate) {
+  for (const double q : {1e-10, 0.0}) {
+    SignalChain chain = chain_of_three(q, 100.0 * q);
+    of_three(3000, 3000, false, chain);
+    SignalChain late = chain_of_three(q, 100.0 * q);
+    const ChainOutput out = of_three(6000, 2500, false, late);
+    EXPECT_NEAR(out.estimate.denoised_radps[1], 0.01, 1e-4);
+  }
+}
+
+// The others' noise is what it is: an axis that repeats one value has none to share.
+TEST(SignalChain, AStuckAxisMakesTheOthersNoQuieter) {
+  SignalChain chain = chain_of_three(0.0, 0.0);
+  of_three(1500, 0, true, chain);
+  EXPECT_NEAR(chain.parts().filter().measurement_noise, 1e-8, 0.1e-8);
+}
+
+}  // namespace
+}  // namespace ifog
