@@ -86,8 +86,8 @@ bool add_ns(std::string& digits, std::int64_t ns) {
 
 TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
   if (std::abs(static_cast<double>(first_ns)) * 1e-9 < kFineTimes_s) return {};
-  const std::int64_t ns = first_ns - floor_to(first_ns, kNsPerSecond);
-  return {first_ns / kNsPerSecond - (first_ns % kNsPerSecond < 0 ? 1 : 0), ns};
+  const std::int64_t over = first_ns % kNsPerSecond;
+  return {first_ns / kNsPerSecond - (over < 0 ? 1 : 0), over < 0 ? over + kNsPerSecond : over};
 }
 
 std::optional<SaidTime> SaidTime::parse(std::string_view text) {

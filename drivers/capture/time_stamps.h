@@ -31,7 +31,10 @@ struct TimeOrigin {
   }
   // What 64 bits have room for.
   [[nodiscard]] std::int64_t in_ns(double since_s) const {
-    return s * 1'000'000'000 + ns + std::llround(since_s * 1e9);
+    // Modulo 2^64, as the whole second may lie below what has room.
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(s) * 1'000'000'000U +
+                                     static_cast<std::uint64_t>(ns) +
+                                     static_cast<std::uint64_t>(std::llround(since_s * 1e9)));
   }
   // By how much this is later.
   [[nodiscard]] double later_than(const TimeOrigin& other) const {

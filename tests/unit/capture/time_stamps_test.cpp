@@ -72,6 +72,8 @@ TEST(TimeStamps, AreHeldToWhatHasRoom) {
   EXPECT_EQ(since("-4599999999999999999", 1e-9, "4599999999999999999"), 9199999999999999999.0);
   EXPECT_EQ(TimeOrigin::of(INT64_MIN), (TimeOrigin{-9223372037, 145'224'192}));
   EXPECT_EQ(TimeOrigin::of(INT64_MAX), (TimeOrigin{9223372036, 854'775'807}));
+  EXPECT_EQ(TimeOrigin::of(INT64_MIN).in_ns(0.0), INT64_MIN);
+  EXPECT_EQ(TimeOrigin::of(INT64_MAX).in_ns(-1e-9), INT64_MAX - 1);
   EXPECT_EQ(TimeOrigin::of(-1'700'000'000'500'000'000), (TimeOrigin{-1700000001, 500'000'000}));
   EXPECT_EQ(TimeOrigin::of(1'000'000'000), TimeOrigin{});
 }
