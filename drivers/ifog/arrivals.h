@@ -9,6 +9,11 @@
 
 namespace ifog {
 
+// Between two times, whatever a device says: what has no room wraps, and is a clock that jumps.
+inline std::int64_t ns_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(to_ns) - static_cast<std::uint64_t>(from_ns));
+}
+
 class Arrivals {
  public:
   void forget() noexcept { known_ns_ = 0; }

@@ -156,7 +156,7 @@ class DeviceCount {
 
   [[nodiscard]] bool clocked(const Frame& frame) const noexcept { return frame.clocked && last_.clocked; }
   [[nodiscard]] double passed_s(const Frame& frame) const noexcept {
-    return static_cast<double>(frame.time_ns - last_.time_ns) * 1e-9;
+    return static_cast<double>(ns_between(last_.time_ns, frame.time_ns)) * 1e-9;
   }
 
   // False where there is no clock, or it does not agree with the counter.

@@ -113,7 +113,7 @@ class DeviceTimeline {
     return std::max(0.0, static_cast<double>(frame.arrival_ns - seen_ns_) * 1e-9);
   }
   [[nodiscard]] double passed_s(const Look& now) const noexcept {
-    return static_cast<double>(now.time_ns - stamp_.time_ns()) * 1e-9;
+    return static_cast<double>(ns_between(stamp_.time_ns(), now.time_ns)) * 1e-9;
   }
 
   [[nodiscard]] Look look_at(const Frame& frame, double elapsed_s, std::int64_t time_ns) const noexcept {
@@ -138,7 +138,8 @@ class DeviceTimeline {
     if (step.out_of_turn) return step;
     counted.samples = std::max<std::uint64_t>(counted.samples, 1);
     if (!counted.restarted && frame.clocked && last_clocked_ && now.time_ns >= stamp_.time_ns()) {
-      const ClockSteps::Step passed = clock_steps_.take(now.time_ns - stamp_.time_ns(), counted.samples);
+      const ClockSteps::Step passed =
+          clock_steps_.take(ns_between(stamp_.time_ns(), now.time_ns), counted.samples);
       if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
     }
     count_.take(now.count, counted);
@@ -153,7 +154,7 @@ class DeviceTimeline {
 
   [[nodiscard]] Step by_clock(const Frame& frame, const Look& now) noexcept {
     Step step;
-    const std::int64_t passed_ns = now.time_ns - stamp_.time_ns();
+    const std::int64_t passed_ns = ns_between(stamp_.time_ns(), now.time_ns);
     const double passed_s = this->passed_s(now);
     step.out_of_turn = !frame.reopened && (passed_ns == 0 ? same_again(now) : passed_ns < 0 && late(now));
     if (step.out_of_turn) return step;

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <span>
 
+#include "drivers/ifog/arrivals.h"
+
 namespace ifog {
 
 // Of the values of a sample, NaN by its bits: two that differ have, but for one in 2^64, another.
@@ -46,8 +48,9 @@ class RecentFrames {
   [[nodiscard]] Had at_time(std::int64_t time_ns, std::int64_t near_ns, std::uint64_t digest) const noexcept {
     Had had = Had::no;
     for (const Kept& one : kept()) {
-      const std::int64_t apart = one.time_ns > time_ns ? one.time_ns - time_ns : time_ns - one.time_ns;
-      if (apart <= near_ns) had = std::max(had, apart == 0 && one.digest == digest ? Had::same : Had::other);
+      const std::int64_t apart = ns_between(time_ns, one.time_ns);
+      if (-near_ns <= apart && apart <= near_ns)
+        had = std::max(had, apart == 0 && one.digest == digest ? Had::same : Had::other);
     }
     return had;
   }

@@ -24,7 +24,7 @@ class RollingStamp {
   [[nodiscard]] std::int64_t look(const Stamp& stamp, double elapsed_s, double period_s,
                                   double quiet_s) const noexcept {
     if (!started_) return stamp.ns;
-    if (stamp.wrap_ns <= 0) return after(wrapping_difference(stamp.ns, last_ns_));
+    if (stamp.wrap_ns <= 0) return after(ns_between(last_ns_, stamp.ns));
     std::int64_t step = (stamp.ns - last_ns_) % stamp.wrap_ns;
     if (step < 0) step += stamp.wrap_ns;
     const double step_s = static_cast<double>(step) * 1e-9,
@@ -42,10 +42,6 @@ class RollingStamp {
   [[nodiscard]] std::int64_t time_ns() const noexcept { return time_ns_; }
 
  private:
-  // Whatever a device says: what has no room wraps, and is a clock that jumps.
-  static std::int64_t wrapping_difference(std::int64_t a, std::int64_t b) noexcept {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
-  }
   [[nodiscard]] std::int64_t after(std::int64_t step) const noexcept {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns_) + static_cast<std::uint64_t>(step));
   }

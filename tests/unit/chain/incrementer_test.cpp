@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "drivers/ifog/device_timeline.h"
+
 namespace ifog {
 namespace {
 
@@ -349,6 +351,22 @@ TEST(Incrementer, AStepOfTheWallClockMovesTheLabelAloneAndIsFlagged) {
       EXPECT_EQ(incrementer.counts().clock_steps, 1U);
     }
   }
+}
+
+// The least and the most of a capture's own clock are further apart than 64 bits hold.
+TEST(DeviceTimeline, AClockMayJumpAcrossAllThatHasRoom) {
+  DeviceTimeline timeline(0, 100.0);
+  const double value = 0.5;
+  DeviceTimeline::Frame frame;
+  frame.clocked = true;
+  frame.values = {&value, 1};
+  frame.stamp.ns = -8'999'999'999'000'000'000;
+  timeline.first(frame);
+  frame.stamp.ns = 8'999'999'999'000'000'000;
+  const DeviceTimeline::Step step = timeline.next(frame);
+  EXPECT_FALSE(step.out_of_turn);
+  EXPECT_TRUE(step.restarted);
+  EXPECT_EQ(step.time_ns, frame.stamp.ns);
 }
 
 }  // namespace
