@@ -52,8 +52,9 @@ def main():
     if subprocess.run([*separate, "true"], capture_output=True, check=False).returncode != 0:
         print("no namespaces for this user, in which LCM could be tried; run as root")
         return NOT_POSSIBLE
-    found = blocks(README.read_text())
-    assert found, f"{README}: no block of commands"
+    text = README.read_text()
+    found = blocks(text)
+    assert 0 < len(found) == text.count("```sh\n"), f"{README}: {len(found)} blocks of commands"
     script = script_of(found, SCENES.read_text() if SCENES else "")
     result = subprocess.run([*separate, "bash", "-c", INSIDE], input=script, cwd=SOURCE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                             text=True, timeout=600, check=False)
