@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -16,11 +17,13 @@
 #include <string>
 
 #include "daemon/config/config.h"
+#include "daemon/config/version_text.h"
 #include "daemon/housekeeping/housekeeping.h"
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/signals.h"
 #include "daemon/publish/publisher.h"
-#include "drivers/ifog/driver.h"
+#include "drivers/ifog/nearest.h"
+#include "drivers/ifog/quoted.h"
 
 namespace {
 
@@ -42,6 +45,18 @@ std::unique_ptr<ifog::Publisher> publish_nowhere(const std::string&) {
   return std::make_unique<NowherePublisher>();
 }
 
+// The parser tells of --config that is missing before an option that it does not know.
+std::string unknown_option(const CLI::App& app, int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const std::string name = word.substr(0, word.find('='));
+    if (name.starts_with("--") && app.get_option_no_throw(name) == nullptr)
+      return "unknown option " + ifog::in_quotes(name) +
+             ifog::meant_or_known(name, std::array{"--config", "--check", "--version", "--help"});
+  }
+  return "";
+}
+
 // What was asked for and cannot be written has failed.
 int said(int code) {
   std::cout.flush();
@@ -57,8 +72,7 @@ int main(int argc, char** argv) {
   ifog::block_signals();
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
-  app.set_version_flag("--version",
-                       "ifogd " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");
+  app.set_version_flag("--version", ifog::version_text("ifogd"));
   std::string file;
   bool check = false;
   app.add_option("--config", file, "configuration (TOML)")->required()->type_name("FILE");
@@ -66,6 +80,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const std::string unknown = unknown_option(app, argc, argv); !unknown.empty()) {
+      std::fprintf(stderr, "ifogd: %s\n", unknown.c_str());
+      return 2;
+    }
     return app.exit(error) == 0 ? said(0) : 2;
   }
   try {

@@ -11,7 +11,6 @@
 namespace ifog {
 namespace {
 
-constexpr std::uint16_t kVersion = 1;
 constexpr std::size_t kFixed = 10;  // u64 file, u16 version
 constexpr const char* kCarries[] = {"bytes", "can", "messages"};
 
@@ -137,7 +136,7 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   add_named("file.", header.files);
   std::vector<std::uint8_t> out(kFixed + text.size());
   std::memcpy(out.data(), &header.file, sizeof header.file);
-  std::memcpy(out.data() + sizeof header.file, &kVersion, sizeof kVersion);
+  std::memcpy(out.data() + sizeof header.file, &kFlightVersion, sizeof kFlightVersion);
   std::copy(text.begin(), text.end(), out.begin() + kFixed);
   return out;
 }
@@ -148,9 +147,9 @@ FlightHeader parse_header(std::span<const std::uint8_t> payload) {
   if (payload.size() < kFixed) throw std::runtime_error("its header is cut off");
   std::memcpy(&out.file, payload.data(), sizeof out.file);
   std::memcpy(&version, payload.data() + sizeof out.file, sizeof version);
-  if (version != kVersion)
+  if (version != kFlightVersion)
     throw std::runtime_error("is a flight recording of version " + std::to_string(version) +
-                             ", expected version " + std::to_string(kVersion));
+                             ", expected version " + std::to_string(kFlightVersion));
   std::string_view text(reinterpret_cast<const char*>(payload.data()) + kFixed, payload.size() - kFixed);
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));

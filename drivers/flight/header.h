@@ -13,6 +13,8 @@
 
 namespace ifog {
 
+inline constexpr std::uint16_t kFlightVersion = 1;  // of the format
+
 struct FlightHeader {
   enum class Carries { bytes, can, messages };
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -20,15 +21,15 @@ using ErrorText = std::array<char, kErrorLength>;
 // The settings in the plugin's own order, defaults filled in.
 std::vector<ifog_setting> complete(const ifog_driver& table, const DriverSettings& settings) {
   const std::string who = std::string("driver ") + table.name + ": ";
-  std::string known;
+  std::vector<std::string_view> known;
   for (const ifog_option* option = table.options; option->key != nullptr; ++option)
-    known += (known.empty() ? "" : ", ") + std::string(option->key);
+    known.emplace_back(option->key);
   for (const auto& [key, value] : settings) {
     const ifog_option* option = table.options;
     while (option->key != nullptr && key != option->key) ++option;
     if (option->key == nullptr)
       throw std::runtime_error(who + "unknown option " + in_quotes(key) + " (value " + in_quotes(value) +
-                               "), expected one of: " + (known.empty() ? "(it has none)" : known));
+                               ")" + (known.empty() ? ", expected none" : meant_or_known(key, known)));
   }
   std::vector<ifog_setting> all;
   for (const ifog_option* option = table.options; option->key != nullptr; ++option) {

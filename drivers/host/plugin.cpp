@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "drivers/host/object_file.h"
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -120,11 +121,9 @@ std::shared_ptr<const Plugin> find_plugin(const std::string& name, const std::ve
     for (const fs::path& object : objects_in(folder)) known.insert(object.stem().string());
     searched += (searched.empty() ? "" : ", ") + folder;
   }
-  std::string there;
-  for (const std::string& each : known) there += (there.empty() ? "" : ", ") + each;
   throw std::runtime_error("driver is " + in_quotes(name) +
-                           ", expected one of: " + (there.empty() ? "(none found)" : there) + " (looked in " +
-                           (searched.empty() ? "no folder: none exists" : searched) + ")");
+                           (known.empty() ? ", and there is none" : meant_or_known(name, known)) +
+                           " (looked in " + (searched.empty() ? "no folder: none exists" : searched) + ")");
 }
 
 std::vector<FoundPlugin> list_plugins(const std::vector<std::string>& folders) {

@@ -46,7 +46,10 @@ class ClockSteps {
       step.samples = counted;
     else if (!first_tick)
       step.samples = at_least_one(ahead_s / period_s);
-    step.dt_s = static_cast<double>(step.samples) * period_s;
+    // Whatever the nominal period is: what is told stays by the clock's own sum.
+    const double slack_s = tick_ns_ > 0 ? kSlack * static_cast<double>(tick_ns_) * 1e-9 : HUGE_VAL;
+    step.dt_s = std::clamp(static_cast<double>(step.samples) * period_s, ahead_s - slack_s,
+                           std::max(ahead_s + slack_s, kLeast * nominal_s_));
     time_s_ += passed_s;
     counted_s_ += step.dt_s;
     samples_ += static_cast<double>(step.samples);
@@ -57,6 +60,8 @@ class ClockSteps {
     if (stood_) return true;
     if (steps_ < kProof) return false;
     const double ticks = nominal_s_ * 1e9 / static_cast<double>(std::max<std::int64_t>(tick_ns_, 1));
+    // One that ticks less often than the device samples stands now and then: the nominal rate is another one.
+    if (ticks < 1.0) return false;
     const bool beats = std::abs(ticks - std::round(ticks)) > kBeat;
     return ticks < kFine && beats;
   }
@@ -69,9 +74,11 @@ class ClockSteps {
   }
 
  private:
-  static constexpr double kFine = 4.0;   // ticks a period
-  static constexpr int kProof = 32;      // steps without a finer one
-  static constexpr double kBeat = 1e-7;  // of a tick
+  static constexpr double kFine = 4.0;    // ticks a period
+  static constexpr int kProof = 32;       // steps without a finer one
+  static constexpr double kBeat = 1e-7;   // of a tick
+  static constexpr double kSlack = 2.0;   // ticks that the sum of what is told may be beside the clock's
+  static constexpr double kLeast = 0.05;  // of the nominal period: a sample takes some time
 
   // The nominal one, as far as the sum of the steps allows, which is known to a tick.
   [[nodiscard]] double period_s() const noexcept {

@@ -45,4 +45,14 @@ std::string did_you_mean(std::string_view written, const Names& names) {
   return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
 }
 
+// The same with all of the names: ", did you mean 'allan'? Known here: allan, tune", or ", expected one of:
+// allan, tune" where none is near.
+template <typename Names>
+std::string meant_or_known(std::string_view written, const Names& names) {
+  std::string known;
+  for (const auto& name : names) (known += known.empty() ? "" : ", ") += name;
+  const std::string meant = did_you_mean(written, names);
+  return meant.empty() ? ", expected one of: " + known : meant + " Known here: " + known;
+}
+
 }  // namespace ifog

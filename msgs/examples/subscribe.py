@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints of one sensor, as ifogd publishes it: number; of each axis angle increment (rad), denoised rate (rad/s)
+"""Prints of one sensor, as ifogd publishes it: number; of each axis angle increment (rad), denoised rate (rad/s);
+of IFOG_NOSE_IMU increments of angle and of velocity (m/s).
 
   subscribe.py CHANNEL COUNT [GROUP:PORT]       IFOG_NOSE 100 239.255.76.67:7667
 
@@ -32,6 +33,20 @@ def receive(group, port):
             yield datagram[8:name_end].decode(), datagram[name_end + 1:]
 
 
+def line(data):
+    """A message in words. Each type has a hash, which its message begins with: decode() refuses another's."""
+    try:
+        message = ifog.rate_t.decode(data)
+        axes = zip(message.delta_theta, message.denoised)
+    except ValueError:
+        try:
+            message = ifog.imu_t.decode(data)
+        except ValueError:
+            sys.exit("subscribe.py: neither a rate_t nor an imu_t comes on this channel, or one of another version of ifogd")
+        axes = zip(message.delta_theta, message.delta_v)
+    return f"{message.seq}{''.join(f' {one:.9g} {other:.9g}' for one, other in axes)} {'gap' if message.flags & ifog.rate_t.FLAG_GAP else '-'}"
+
+
 def main():
     if len(sys.argv) < 3:
         sys.exit("usage: subscribe.py CHANNEL COUNT [GROUP:PORT]")
@@ -40,9 +55,7 @@ def main():
     for channel, data in receive(group, int(port)):
         if channel != wanted:
             continue
-        message = ifog.rate_t.decode(data)
-        axes = "".join(f" {increment:.9g} {rate:.9g}" for increment, rate in zip(message.delta_theta, message.denoised))
-        print(f"{message.seq}{axes} {'gap' if message.flags & ifog.rate_t.FLAG_GAP else '-'}", flush=True)
+        print(line(data), flush=True)
         left -= 1
         if left <= 0:
             return

@@ -253,6 +253,21 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
   return model;
 }
 
+json tuning_json(const Options& options, const Tuning& tuning, std::size_t left, double period,
+                 const NoiseByAxis& noise, const std::vector<std::string>& axes) {
+  json models = json::array();
+  for (const TunedModel& model : tuning.models) models.push_back(model_json(model, axes));
+  return json{{"schema", "ifog.tune/1"},
+              {"capture", options.capture},
+              {"samples", tuning.samples},
+              {"left_out", left},
+              {"sample_rate_hz", 1.0 / period},
+              {"best", tuning.models[tuning.chosen].settings.state},
+              {"best_by_bic", tuning.models.front().settings.state},
+              {"noise", noise_json(noise)},
+              {"models", models}};
+}
+
 void run(const Options& options) {
   options.input.will_read("capture", options.capture);
   will_write("--json", options.json_file, kJsonEndings);
@@ -296,19 +311,8 @@ void run(const Options& options) {
   for (const auto& [axis, found] : noise)
     say("\nnoise%s%s at rest, as `ifog allan` finds it\n%s", axis.empty() ? "" : " of ", axis.c_str(),
         report::coefficient_lines(found.terms).c_str());
-  if (!options.json_file.empty()) {
-    json models = json::array();
-    for (const TunedModel& model : tuning.models) models.push_back(model_json(model, capture.axes));
-    write_json(options.json_file, json{{"schema", "ifog.tune/1"},
-                                       {"capture", options.capture},
-                                       {"samples", tuning.samples},
-                                       {"left_out", left},
-                                       {"sample_rate_hz", 1.0 / period},
-                                       {"best", tuning.models[tuning.chosen].settings.state},
-                                       {"best_by_bic", tuning.models.front().settings.state},
-                                       {"noise", noise_json(noise)},
-                                       {"models", models}});
-  }
+  if (!options.json_file.empty())
+    write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
   if (!options.model.empty()) {
     write_file(options.model, model_text(model_of(tuning, noise, options.capture)));
     say("\nwritten: %s\n  ifog denoise %s%s --model %s --output denoised.csv\n", options.model.c_str(),
@@ -321,7 +325,7 @@ void run(const Options& options) {
 
 void add_tune(CLI::App& app) {
   auto* command =
-      app.add_subcommand("tune", "noise and state model of a sensor at rest, by maximum likelihood");
+      app.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<Options>();
   command->add_option("capture", options->capture, "a capture at rest")->required();
   command->add_option("--write-model", options->model, "model file that ifogd and denoise read");

@@ -45,7 +45,14 @@ def section(text, heading):
     found = re.search(rf"^(#+) {re.escape(heading)}\n(.*?)(?=^#{{1,6}} |\Z)", text, re.M | re.S)
     if not found:
         raise SystemExit(f"no heading '{heading}'")
-    return found.group(2)
+    return less_of_the_source(found.group(2))
+
+
+def less_of_the_source(text):
+    """Who reads an installed page has no source to look into: neither (`health/step_test.h`) nor (see [tests](../tests/x))."""
+    named = r"[^()]*`[\w./]+\.(?:h|cpp|py)`[^()]*"
+    linked = r"[^()]*\]\((?!http)[\w./#-]*\)[^()]*"
+    return re.sub(rf"\s*\((?:{linked}|{named})\)", "", text)
 
 
 def option_lines(options):
@@ -92,20 +99,24 @@ def synopsis(program, options):
 
 
 def command_examples(text, name):
-    """The parts of tools/README.md that run the command, less the folders that they are tested in: (what for, lines)."""
-    out = []
+    """The parts of tools/README.md that run the command, in the folders of who has installed it: (what for, lines)."""
+    out, setting = [], {}
     for found in re.finditer(r"((?:^[^\n`#|][^\n]*\n|^`[^`]+`[^\n]*\n)+)\n^```sh\n(.*?)^```$", text, re.M | re.S):
         logical = found.group(2).replace("\\\n", "\0").splitlines()
-        wanted = [line for line in logical if re.search(rf"\$ifog {name}\b", line)]
-        setting = {m.group(1): m.group(2) for m in (re.match(r'(\w+)="(.*)"$', line) for line in logical) if m}
+        # What is further in is of a loop, and says little by itself.
+        wanted = [line for line in logical if re.search(rf"^\S.*\$ifog {name}\b|^\$ifog {name}\b", line)]
+        setting |= {m.group(1): m.group(2) for m in (re.match(r'(\w+)="(.*)"$', line) for line in logical) if m}
         lines = []
         for line in wanted:
             for variable, value in setting.items():
                 line = line.replace("$" + variable, value)
-            line = re.sub(r" &$", "", line).replace("$ifog", "ifog").replace("build/example/", "").replace("tools/simulate/scenarios/", "")
-            lines += line.replace("drivers/dbc/examples/", "").replace("\0", "\\\n").split("\n")
+            line = re.sub(r" &$", "", line).replace("$ifog", "ifog").replace("build/example/", "")
+            for here, installed in (("tools/simulate/scenarios/", "scenarios/"), ("drivers/dbc/examples/", "dbc/")):
+                line = line.replace(here, "/usr/share/ifogd/" + installed)
+            lines += line.replace("\0", "\\\n").split("\n")
         if lines:
-            out.append((" ".join(found.group(1).split()), lines))
+            what = re.sub(r" See \[[^\]]*\]\(#[^)]*\)\.", "", " ".join(found.group(1).split()))
+            out.append((less_of_the_source(what), lines))
     return out
 
 
@@ -138,7 +149,7 @@ class Manual:
         elif kind == "@section":
             page.markdown(section(self.file(words[1]), " ".join(words[2:])), demote=1)
         elif kind == "@page":
-            page.markdown(re.sub(r"\A# .*\n", "", self.file(words[1])), demote=1)
+            page.markdown(less_of_the_source(re.sub(r"\A# .*\n", "", self.file(words[1]))), demote=1)
         else:
             raise SystemExit(f"'{kind}' is no directive of a manual page")
 
@@ -178,7 +189,7 @@ class Manual:
                 page.markdown(capital(what))
                 page.add(roff.code(lines))
             if footer:
-                page.add(roff.code([line.removeprefix("  ") for line in footer if line != "Examples:"]))
+                page.add(roff.code([line.removeprefix("  ") for line in footer if line not in ("Examples:", "Example:")]))
         if any("--json" in option["names"] for option in options):
             page.heading("Files")
             page.markdown(f"What `--json` writes is described by the JSON schemas in `/usr/share/ifogd/schemas`.")

@@ -340,15 +340,24 @@ std::string Chart::panel(double width, double height, double left) const {
   return empty() ? "" : drawing(width, height, left, true);
 }
 
+// A drawing without numbers takes those of the one before it, within a frame of its own.
+std::string Chart::element(const std::string& style, double width, double height, bool with_numbers) const {
+  const double left = std::max(with_numbers ? kLeft : 0.0, left_margin(height));
+  const Frame f = frame(width, height, left, false, legend(left, width - kRight, 4.0));
+  return "<svg class=\"chart " + style + "\" role=\"img\" viewBox=\"0 0 " + fixed(width) + " " +
+         fixed(height) + "\" preserveAspectRatio=\"xMidYMid meet\" " +
+         (with_numbers ? "data-plot=\"" + escaped(plot_data(f))
+                       : "data-frame=\"[" + fixed(f.left) + "," + fixed(f.right) + "," + fixed(f.top) + "," +
+                             fixed(f.bottom) + "]") +
+         "\"><title>" + escaped(title_) + "</title><desc>" + escaped(description_) + "</desc>\n" +
+         drawing(width, height, left, false) + "</svg>";
+}
+
 std::string Chart::svg(double width, double height) const {
   if (empty()) return "";
-  const double left = std::max(kLeft, left_margin(height));
-  const Frame f = frame(width, height, left, false, legend(left, width - kRight, 4.0));
-  return "<div class=\"scroll\"><svg class=\"chart" + std::string(width < 600.0 ? " small" : "") +
-         "\" role=\"img\" viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
-         "\" preserveAspectRatio=\"xMidYMid meet\" data-plot=\"" + escaped(plot_data(f)) + "\"><title>" +
-         escaped(title_) + "</title><desc>" + escaped(description_) + "</desc>\n" +
-         drawing(width, height, left, false) + "</svg></div>\n";
+  constexpr double kTelephone = 350.0, kHighest = 270.0;  // px
+  return "<div class=\"scroll\">" + element(width < 600.0 ? "wide small" : "wide", width, height, true) +
+         element("narrow", kTelephone, std::min(height, kHighest), false) + "</div>\n";
 }
 
 }  // namespace ifog::report

@@ -39,7 +39,8 @@ class Chart {
   void mark_x(double x, const std::string& label);  // a vertical rule
 
   [[nodiscard]] bool empty() const;  // nothing finite to draw
-  // For a page, with its numbers for that page's script.
+  // For a page, with its numbers for that page's script: as wide as that, and once more for a telephone,
+  // whose style shows one of them. Both have letters of one size.
   [[nodiscard]] std::string svg(double width = 720, double height = 320) const;
 
   // For a picture of several: the width that the numbers and the label of the y axis want, and the drawing
@@ -71,6 +72,8 @@ class Chart {
   [[nodiscard]] Frame frame(double width, double height, double left, bool headed, const Legend& key) const;
   [[nodiscard]] std::string drawing(double width, double height, double left, bool headed) const;
   [[nodiscard]] std::string plot_data(const Frame& f) const;
+  [[nodiscard]] std::string element(const std::string& style, double width, double height,
+                                    bool with_numbers) const;
 
   std::string title_, description_;
   ChartAxis x_, y_;

@@ -6,7 +6,8 @@ namespace {
 
 // data-plot: {frame: [left, right, top, bottom] px, x, y: {log, low, high, label},
 // series: [{style, name, kind, x, y, high}]}: float32, base64; x may be the index of a series that has the
-// same. The dash of a number is the true minus, as everywhere in the page.
+// same. One for a telephone has data-frame and takes the rest from the chart before it. The dash of a number
+// is the true minus, as everywhere in the page.
 constexpr const char* kScript = R"js(
 (() => {
 const floats = t => new Float32Array(Uint8Array.from(atob(t), c => c.charCodeAt(0)).buffer);
@@ -40,8 +41,9 @@ function ticks(axis, low, high, wanted) {
   for (let k = 0; k < count; ++k) out.push((first + k) * step);
   return out;
 }
-for (const chart of document.querySelectorAll('svg[data-plot]')) {
-  const plot = JSON.parse(chart.dataset.plot), [left, right, top, bottom] = plot.frame;
+for (const chart of document.querySelectorAll('svg[data-plot],svg[data-frame]')) {
+  const plot = JSON.parse((chart.dataset.plot ? chart : chart.previousElementSibling).dataset.plot);
+  const [left, right, top, bottom] = chart.dataset.plot ? plot.frame : JSON.parse(chart.dataset.frame);
   for (const s of plot.series) {
     s.x = typeof s.x === 'number' ? plot.series[s.x].x : floats(s.x);
     s.y = floats(s.y);
@@ -97,7 +99,7 @@ for (const chart of document.querySelectorAll('svg[data-plot]')) {
     still.style.display = whole ? '' : 'none';
     moving.replaceChildren();
     if (whole) { curves.innerHTML = as_drawn; return; }
-    const along = ticks(plot.x, ...view, 7), up = ticks(plot.y, low, high, 6);
+    const along = ticks(plot.x, ...view, Math.max(3, Math.round((right - left) / 90))), up = ticks(plot.y, low, high, 6);
     for (const v of along) {
       make(moving, 'path', {class: 'grid', d: `M${sx.px(v)} ${top}V${bottom}`});
       make(moving, 'text', {class: 'tick', x: sx.px(v), y: bottom + 16, 'text-anchor': 'middle'}, beside(v, along));
@@ -140,7 +142,7 @@ for (const chart of document.querySelectorAll('svg[data-plot]')) {
       const t = make(say, 'text', {x: 0, y: top + 17 + 16 * i}, line);
       width = Math.max(width, t.getComputedTextLength());
     });
-    const x0 = flip ? px - width - 20 : px + 8;
+    const x0 = Math.max(0, Math.min(right + 4 - width, flip ? px - width - 20 : px + 8));
     for (const t of say.querySelectorAll('text')) t.setAttribute('x', x0 + 6);
     for (const [key, value] of Object.entries({x: x0, y: top + 2, width: width + 12, height: 16 * lines.length + 6})) box.setAttribute(key, value);
   }

@@ -63,6 +63,7 @@ constexpr const char* kPageRules = R"css(
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,"Segoe UI",Roboto,"DejaVu Sans",sans-serif}
 main{max-width:60rem;margin:0 auto;padding:2rem 1.25rem 4rem}
 h1{font-size:1.7rem;line-height:1.25;margin:0 0 .25rem}
+h1,.sub{overflow-wrap:anywhere}
 h2{font-size:1.25rem;margin:2.6rem 0 .6rem;padding-top:.6rem;border-top:1px solid var(--rule)}
 h3{font-size:1.05rem;margin:1.6rem 0 .4rem}
 p{margin:.5rem 0;max-width:46rem}
@@ -82,6 +83,7 @@ svg.chart{display:block;width:100%;max-width:760px;min-width:34rem;height:auto;c
 .chart .card{fill:var(--card);stroke:var(--rule)}
 .chart .shade{fill:var(--after);fill-opacity:.15;pointer-events:none}
 svg.chart.small{max-width:480px;min-width:26rem}
+svg.chart.narrow{display:none;max-width:480px;min-width:0}
 svg.chart:focus{outline:2px solid var(--rule);outline-offset:2px}
 .pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(24rem,100%),1fr));gap:1rem}
 .scroll{overflow-x:auto}
@@ -96,6 +98,8 @@ pre{background:var(--card);padding:.8rem 1rem;border-radius:6px;overflow-x:auto;
 nav ul{list-style:none;padding:0;margin:.8rem 0;display:flex;flex-wrap:wrap;gap:.2rem 1.2rem}
 a{color:var(--after)}
 footer{margin-top:3rem;color:var(--muted);font-size:.88rem}
+@media (max-width:37rem){svg.chart.wide{display:none}svg.chart.narrow{display:block}main{padding:1.2rem 1rem 3rem}
+ h1{font-size:1.4rem}table{font-size:.8rem}th,td{padding-right:.3rem}}
 @media print{:root{color-scheme:light;--paper:#fff;--ink:#000;--muted:#444;--rule:#bbb;--grid:#ddd;--before:#b55a0a;
  --after:#0b4a98;--fit:#000;--second:#2d6a3c;--raw:#999;--third:#5b2f86;--fourth:#8f1426;--card:#f4f4f4;--good:#14532d}
  main{max-width:none;padding:0}nav{display:none}h2,h3{break-after:avoid}tr{break-inside:avoid}

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog::simulate {
@@ -164,10 +166,10 @@ void complete_numbers(Recipe& recipe, const std::vector<Key>& keys) {
     const auto key =
         std::find_if(keys.begin(), keys.end(), [&n = name](const Key& k) { return n == k.name; });
     if (key == keys.end()) {
-      std::string known;
-      for (const Key& k : keys) known += (known.empty() ? "" : ", ") + std::string(k.name);
+      std::vector<std::string_view> known;
+      for (const Key& k : keys) known.emplace_back(k.name);
       throw std::invalid_argument("key " + in_quotes(name) + " is unknown for " + recipe.kind +
-                                  ", expected " + known);
+                                  meant_or_known(name, known));
     }
     if (!(value >= key->low && value <= key->high))
       throw std::invalid_argument(
@@ -218,9 +220,9 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
   const auto kind =
       std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return recipe.kind == k.name; });
   if (kind == kinds.end()) {
-    std::string known;
-    for (const Kind& k : kinds) known += (known.empty() ? "" : ", ") + std::string(k.name);
-    throw std::invalid_argument(in_quotes(recipe.kind) + " is unknown, expected one of " + known);
+    std::vector<std::string_view> known;
+    for (const Kind& k : kinds) known.emplace_back(k.name);
+    throw std::invalid_argument(in_quotes(recipe.kind) + " is unknown" + meant_or_known(recipe.kind, known));
   }
   std::vector<Key> keys = kind->keys;
   keys.insert(keys.end(), common.begin(), common.end());

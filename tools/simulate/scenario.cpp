@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenario files: strict TOML, every complaint one line with file, line, key and what was expected.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 #include <string_view>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/simulate/simulator.h"
@@ -25,6 +27,12 @@ const char* type_name(const toml::node& node) {
   if (node.is_number()) return "a number";
   return "a date";
 }
+
+constexpr std::array<std::string_view, 15> kKeys{
+    "name",          "seed",         "sample_rate_hz", "duration_s",
+    "axes",          "bias_radps",   "reference",      "reference_noise_radps",
+    "time_jitter_s", "missing_rows", "gaps",           "noise",
+    "channel",       "motion",       "effect"};
 
 class Reader {
  public:
@@ -142,10 +150,7 @@ class Reader {
     else if (key == "effect")
       recipes(node, key, "form", effect_kinds(), {}, s_.effects);
     else
-      fail(node, key,
-           "is unknown, expected name, seed, sample_rate_hz, duration_s, axes, bias_radps, reference, "
-           "reference_noise_radps, "
-           "time_jitter_s, missing_rows, gaps, [noise], [[channel]], [[motion]] or [[effect]]");
+      fail(node, key, "is unknown" + meant_or_known(key, kKeys));
   }
 
   double positive(const toml::node& node, const std::string& key) {

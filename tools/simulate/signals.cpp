@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "tools/simulate/noise.h"
 
@@ -199,106 +200,156 @@ std::vector<double> motion_signal(const Recipe& m, const Grid& grid, Draw draw) 
   return rate;
 }
 
-std::vector<double> effect_signal(const Recipe& e, const Grid& grid, std::span<const double> channel,
-                                  std::span<const double> with_channel, std::span<const double> true_rate,
-                                  Draw draw) {
-  std::vector<double> out(grid.samples);
-  const double period = grid.period();
+namespace {
+
+// What an effect is made of, and what it makes: `out` has a sample of zero for each of the grid.
+struct Making {
+  const Recipe& e;
+  const Grid& grid;
+  std::span<const double> channel, with_channel, true_rate;
+  Draw draw;
+  std::vector<double>& out;
+
+  template <typename Of>
+  void each(Of&& of) const {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = of(i);
+  }
+};
+
+// Of the channel's value now. False: of no such kind.
+bool make_of_value(const Making& m) {
+  const Recipe& e = m.e;
+  const std::span<const double> channel = m.channel;
   static const std::vector<std::pair<const char*, double>> kPowers{
       {"linear", 1}, {"quadratic", 2}, {"cubic", 3}, {"quintic", 5}, {"septic", 7}};
   for (const auto& [name, exponent] : kPowers)
-    if (e.kind == name)
-      for (std::size_t i = 0; i < out.size(); ++i)
-        out[i] = e["coefficient"] * power(channel[i] - e["reference"], exponent);
-  if (e.kind == "absolute") {
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = e["coefficient"] * std::abs(channel[i] - e["reference"]);
-  } else if (e.kind == "dead_zone") {
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = std::abs(channel[i]) < e["half_width"] ? e["coefficient"] * channel[i] : 0.0;
-  } else if (e.kind == "cosine" || e.kind == "sine") {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const double phase = kTurn * channel[i] / e["period"];
-      out[i] = e["coefficient"] * (e.kind == "sine" ? std::sin(phase) : std::cos(phase));
+    if (e.kind == name) {
+      m.each([&, power_of = exponent](std::size_t i) {
+        return e["coefficient"] * power(channel[i] - e["reference"], power_of);
+      });
+      return true;
     }
+  if (e.kind == "absolute") {
+    m.each([&](std::size_t i) { return e["coefficient"] * std::abs(channel[i] - e["reference"]); });
+  } else if (e.kind == "dead_zone") {
+    m.each([&](std::size_t i) {
+      return std::abs(channel[i]) < e["half_width"] ? e["coefficient"] * channel[i] : 0.0;
+    });
+  } else if (e.kind == "cosine" || e.kind == "sine") {
+    m.each([&](std::size_t i) {
+      const double phase = kTurn * channel[i] / e["period"];
+      return e["coefficient"] * (e.kind == "sine" ? std::sin(phase) : std::cos(phase));
+    });
   } else if (e.kind == "earth_rate") {
     // An axis along the heading, tilted as its accelerometer says: the Earth's rate along it.
     const double latitude = e["latitude_deg"] * kTurn / 360.0;
     const double north = std::cos(latitude) * std::cos(e["heading_deg"] * kTurn / 360.0);
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    m.each([&](std::size_t i) {
       const double up = std::clamp(channel[i] / kGravity, -1.0, 1.0);
-      out[i] = kEarth * (north * std::sqrt(1.0 - up * up) + std::sin(latitude) * up);
-    }
-  } else if (e.kind == "rate" || e.kind == "second_rate") {
+      return kEarth * (north * std::sqrt(1.0 - up * up) + std::sin(latitude) * up);
+    });
+  } else if (e.kind == "product") {
+    m.each([&](std::size_t i) {
+      return e["coefficient"] * power(channel[i] - e["reference"], e["power"]) *
+             power(m.with_channel[i] - e["with_reference"], e["with_power"]);
+    });
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Of what the channel was before, too.
+bool make_of_history(const Making& m) {
+  const Recipe& e = m.e;
+  const std::span<const double> channel = m.channel;
+  const double period = m.grid.period();
+  if (e.kind == "rate" || e.kind == "second_rate") {
     LowPass first(e["time_constant_s"], period), second(e["time_constant_s"], period);
     double x1 = 0.0, d1 = 0.0;
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    m.each([&](std::size_t i) {
       const bool twice = e.kind == "second_rate";
       const double x = twice ? second(first(channel[i])) : first(channel[i]);
       const double d = i > 0 ? (x - x1) / period : 0.0;
-      out[i] = e["coefficient"] * (twice ? (i > 1 ? (d - d1) / period : 0.0) : d);
+      const double value = e["coefficient"] * (twice ? (i > 1 ? (d - d1) / period : 0.0) : d);
       x1 = x;
       d1 = d;
-    }
+      return value;
+    });
   } else if (e.kind == "lagged") {
     LowPass first(e["time_constant_s"], period), second(e["second_s"], period);
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = e["coefficient"] * (second(first(channel[i])) - e["reference"]);
+    m.each([&](std::size_t i) { return e["coefficient"] * (second(first(channel[i])) - e["reference"]); });
   } else if (e.kind == "lookup") {
     double before = table(e, channel.empty() ? 0.0 : channel[0]);
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    m.each([&](std::size_t i) {
       const double value = table(e, channel[i]);
-      out[i] = e["angle"] > 0.5 ? (value - before) / period : value;
-      before = value;
-    }
-  } else if (e.kind == "product") {
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = e["coefficient"] * power(channel[i] - e["reference"], e["power"]) *
-               power(with_channel[i] - e["with_reference"], e["with_power"]);
+      return e["angle"] > 0.5 ? (value - std::exchange(before, value)) / period : value;
+    });
   } else if (e.kind == "band_power") {
     LowPass slow(e["time_constant_s"], period), mean(e["mean_s"], period);
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    m.each([&](std::size_t i) {
       const double fast = channel[i] - slow(channel[i]);
-      out[i] = e["coefficient"] * mean(fast * fast);
-    }
+      return e["coefficient"] * mean(fast * fast);
+    });
   } else if (e.kind == "backlash") {
     // A play of the given width: the output moves only when the input pushes against one side of it.
     const double half = 0.5 * e["width"];
     double play = channel.empty() ? 0.0 : channel[0];
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    m.each([&](std::size_t i) {
       play = std::clamp(play, channel[i] - half, channel[i] + half);
-      out[i] = e["coefficient"] * play;
-    }
-  } else if (e.kind == "line") {
+      return e["coefficient"] * play;
+    });
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Of time and of chance, without a channel.
+void make_of_time(Making& m) {
+  const Recipe& e = m.e;
+  const Grid& grid = m.grid;
+  const double period = grid.period();
+  if (e.kind == "line") {
     double turns = 0.0;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = e["amplitude_radps"] * std::sin(kTurn * turns + e["phase"]);
-      turns += (e["frequency_hz"] + e["hz_per_radps"] * true_rate[i]) * period;
+    m.each([&](std::size_t i) {
+      const double value = e["amplitude_radps"] * std::sin(kTurn * turns + e["phase"]);
+      turns += (e["frequency_hz"] + e["hz_per_radps"] * m.true_rate[i]) * period;
       turns -= std::floor(turns);
-    }
+      return value;
+    });
   } else if (e.kind == "step") {
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = grid.time(i) >= e["at_s"] ? e["size_radps"] : 0.0;
+    m.each([&](std::size_t i) { return grid.time(i) >= e["at_s"] ? e["size_radps"] : 0.0; });
   } else if (e.kind == "rate_ramp") {
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = e["slope_radps2"] * grid.time(i);
+    m.each([&](std::size_t i) { return e["slope_radps2"] * grid.time(i); });
   } else if (e.kind == "warm_up") {
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = e["size_radps"] * std::exp(-grid.time(i) / e["time_constant_s"]);
+    m.each([&](std::size_t i) { return e["size_radps"] * std::exp(-grid.time(i) / e["time_constant_s"]); });
   } else if (e.kind == "gauss_markov") {
-    GaussMarkov source(e["sigma_radps"], e["correlation_s"], period, draw);
-    for (double& value : out) value = source.next();
+    GaussMarkov source(e["sigma_radps"], e["correlation_s"], period, m.draw);
+    m.each([&](std::size_t) { return source.next(); });
   } else if (e.kind == "outliers") {
-    for (double& value : out) {
-      const bool hit = draw.chance(e["fraction"]);
-      const double size = e["size_radps"] * draw.normal();
-      value = hit ? size : 0.0;
-    }
+    m.each([&](std::size_t) {
+      const bool hit = m.draw.chance(e["fraction"]);
+      const double size = e["size_radps"] * m.draw.normal();
+      return hit ? size : 0.0;
+    });
   } else if (e.kind == "noise_change") {
     const double sigma = e["N"] * std::sqrt(grid.rate_hz);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const double value = sigma * draw.normal();
-      out[i] = grid.time(i) >= e["from_s"] && grid.time(i) < e["to_s"] ? value : 0.0;
-    }
+    m.each([&](std::size_t i) {
+      const double value = sigma * m.draw.normal();
+      return grid.time(i) >= e["from_s"] && grid.time(i) < e["to_s"] ? value : 0.0;
+    });
   }
+}
+
+}  // namespace
+
+std::vector<double> effect_signal(const Recipe& e, const Grid& grid, std::span<const double> channel,
+                                  std::span<const double> with_channel, std::span<const double> true_rate,
+                                  Draw draw) {
+  std::vector<double> out(grid.samples);
+  Making making{e, grid, channel, with_channel, true_rate, draw, out};
+  if (!make_of_value(making) && !make_of_history(making)) make_of_time(making);
   return out;
 }
 

@@ -11,6 +11,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -324,13 +325,16 @@ class Checks:
             refused(1, "denoise", path, "--output", out, says=[str(path), *says])
             assert not out.exists(), "a file was left behind"
         absent = self.folder / "absent.csv"
+        nearly = self.folder / "nearly.csv"
+        nearly.write_text("time_s,gyro_x (deg/s)\n0,1\n1,2\n2,3\n")
         for command in ("allan", "compare", "tune", "diagnose"):
             refused(1, command, absent, says=[str(absent)])
+            refused(1, command, nearly, says=["nearly.csv:1: no rate column", "--column 'rate_x_radps=gyro_x (deg/s):deg/s'"])
         refused(1, "diagnose", self.capture, "--model", absent, says=[str(absent)])
         refused(1, "allan", self.capture, "--axis", "w", says=[str(self.capture), "--axis is 'w'", "expected none, the capture has one axis"])
         bad = self.folder / "bad.toml"
         bad.write_text(SCENARIO.replace("duration_s", "durations_s"))
-        refused(1, "simulate", bad, "--output", self.folder / "never.csv", says=["bad.toml:", "durations_s is unknown, expected"])
+        refused(1, "simulate", bad, "--output", self.folder / "never.csv", says=["bad.toml:", "durations_s is unknown, did you mean 'duration_s'?"])
 
     def check_usage(self):
         refused(2, "allan", says=["capture"])
@@ -340,6 +344,12 @@ class Checks:
         # The parser itself says only that --output is missing.
         refused(2, "denoise", self.capture, "--outptu=a.csv", says=["unknown option '--outptu'", "'--output'"])
         refused(2, says=["expected one of", "allan"])
+        refused(1, "drivers", "kvh175", says=["did you mean 'kvh1750'?", "dsp3000"])
+        refused(1, "convert", self.capture, self.folder / "never.kvh", "--driver", "kvh1750", "--option", "rate_hx=200", says=["did you mean 'rate_hz'?"])
+        version = ran("--version").stdout.splitlines()
+        assert re.fullmatch(r"ifog \d+\.\d+\.\d+ \(driver interface \d+\)", version[0]), version
+        assert version[1].startswith("model files of version") and "flight recordings of version" in version[1] and "built by" in version[2], version
+        assert all(words[0].isupper() for words in re.findall(r"^  \w+ {2,}(\S.*)$", ran("--help").stdout.split("Subcommands:")[1], re.M))
         refused(2, "diagnose", self.capture, "--significance", "2", says=["--significance"])
         assert ran("--help").returncode == 0
 

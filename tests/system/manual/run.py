@@ -89,6 +89,19 @@ class Checks:
             for words in told:
                 assert " ".join(words.lower().split()) in text, f"ifog-{command}(1) lacks '{words}'"
 
+    def check_what_is_told_is_of_an_installed_program(self):
+        """No place in the source, no variable of a script that is not there; files that are read were installed, or an example makes them."""
+        for path in sorted(MANUAL.glob("man?/*.gz")):
+            text = page(path.name.removesuffix(".gz"))
+            found = re.search(r"\w+/\w+\.(?:h|cpp|py|md)\b|\btests/|tools/|drivers/|\.\./", text)
+            assert not found, f"{path.name}: {found.group(0)} in '{text[max(0, found.start() - 60):found.end() + 40]}'"
+        for command in commands():
+            examples = re.findall(r"^\.EX\n(.*?)^\.EE", gzip.decompress((MANUAL / f"man1/ifog-{command}.1.gz").read_bytes()).decode(), re.M | re.S)
+            for line in "\n".join(examples).splitlines():
+                assert "$" not in line, f"ifog-{command}(1): {line}"
+                for kind, name in re.findall(r"/usr/share/ifogd/(scenarios|dbc)/(\S+)", line.replace("\\", "")):
+                    assert (SOURCE / {"scenarios": "tools/simulate/scenarios", "dbc": "drivers/dbc/examples"}[kind] / name).exists(), line
+
     def check_the_daemon(self):
         holds(page("ifogd.8"), options_of_help(IFOGD), "ifogd(8)")
         # States and faults stand in daemon/README.md; a sample of what only that says.

@@ -103,13 +103,10 @@ def capture(path, seconds, rate_hz):
             out.write(f"{t:.3f},{1e-5 + 1e-7 * math.sin(7919.0 * i):.9e},{0.01 * math.sin(t):.9e},{-0.02 + 1e-6 * math.cos(104729.0 * i):.9e},25\n")
 
 
-def main():
-    binaries = os.path.realpath(sys.argv[1])
-    ifog, ifogd = f"{binaries}/tools/ifog/ifog", f"{binaries}/daemon/ifogd"
-    with tempfile.TemporaryDirectory() as work:
-        capture(f"{work}/three.csv", 60, 100)
-        with open(f"{work}/ifogd.toml", "w", encoding="utf-8") as out:
-            out.write(f"""[daemon]
+def configure(work, binaries):
+    capture(f"{work}/three.csv", 60, 100)
+    with open(f"{work}/ifogd.toml", "w", encoding="utf-8") as out:
+        out.write(f"""[daemon]
 lock_memory = false
 plugin_folder = "{binaries}/plugins"
 [[sensor]]
@@ -127,65 +124,92 @@ columns = "rate_x_radps,rate_y_radps,rate_z_radps,temperature_degC"
 process_noise = 1e-10
 measurement_noise = 1e-12
 """)
+
+
+def axes(s):
+    rows = s.splitlines()
+    return all(any(row.startswith(f"  {axis}  ") and "noise" in row and "angle" in row for row in rows) for axis in "xyz")
+
+
+def see_figures_and_keys(seen):
+    seen.wait_for(lambda s: axes(s) and "NOSE  running" in s and "waiting for" not in s, "three axes by name at 80 columns")
+    seen.wait_for(lambda s: "°/h" in s and "°/s" in s, "each rate in the unit that suits it")
+    seen.wait_for(lambda s: "nothing lost" in s and "books:" in s and "latency p50" in s, "nothing lost, and the books that say so")
+    seen.wait_for(lambda s: any(c in s for c in "▁▂▃▄▅▆▇█"), "a spark line")
+    seen.press("d")
+    seen.wait_for(lambda s: axes(s) and "books:" not in s, "d: without details")
+    seen.press("u")
+    seen.wait_for(lambda s: axes(s) and "°/s" not in s, "u: all in °/h")
+    seen.press("uu")
+    seen.wait_for(lambda s: axes(s) and s.count("rad/s") == 3, "u, u: all in rad/s")
+    seen.press("?")
+    seen.wait_for(lambda s: "scroll, page up and down" in s and not axes(s), "?: the keys")
+    seen.press("x")
+    seen.wait_for(axes, "any key: back")
+    seen.press(" ")
+    seen.wait_for(lambda s: "PAUSED" in s, "space: paused")
+    seen.read(1.0)
+    before = seen.text()
+    seen.read(1.5)
+    if seen.text() != before:
+        raise SystemExit("FAILED: figures move while it is paused")
+    seen.press(" d")
+    seen.wait_for(lambda s: "PAUSED" not in s and "books:" in s, "space: on again")
+
+
+def see_sizes(seen):
+    for columns, rows in ((132, 40), (60, 12), (80, 24)):
+        seen.resize(columns, rows)
+        seen.wait_for(lambda s: axes(s) and "q quit" in s.splitlines()[-1][:columns], f"resized to {columns} x {rows}")
+        widest = max(len(line) for line in seen.text().splitlines())
+        if widest > columns:
+            raise SystemExit(f"FAILED: a line of {widest} at {columns} columns")
+
+
+def see_lines(ifog):
+    """To programs: JSON, and to a pipe lines."""
+    told = subprocess.run([ifog, "monitor", "--seconds", "2.5", "--json", "-"], capture_output=True, text=True, check=True).stdout
+    messages = [json.loads(line) for line in told.splitlines()]
+    for message in messages:
+        schema.check(message)
+    rates = [m for m in messages if m["type"] == "rate"]
+    if len(rates) < 50 or any(len(m["raw"]) != 3 or m["sensor"] != "NOSE" for m in rates) or \
+            not any(m["type"] == "status" and m["state_name"] == "running" for m in messages):
+        raise SystemExit(f"FAILED: --json gave {len(rates)} rates: {told[:400]}")
+    print(f"ok: --json, {len(rates)} rates and {len(messages) - len(rates)} status messages, a line each")
+    piped = subprocess.run([ifog, "monitor", "--seconds", "2.2"], capture_output=True, text=True, check=True).stdout
+    if "\x1b" in piped or not axes(piped):
+        raise SystemExit(f"FAILED: to a pipe it says {piped!r}")
+    print("ok: to a pipe lines without a control sequence")
+
+
+def see_the_end(seen, daemon):
+    daemon.send_signal(signal.SIGTERM)
+    daemon.wait(20)
+    seen.wait_for(lambda s: "nothing heard" in s and "no samples in the last second" in s, "a daemon that went: said")
+    seen.press("q")
+    if (code := seen.exit_code()) != 0:
+        raise SystemExit(f"FAILED: exit {code}")
+    if "NOSE" not in seen.text() or "q quit" in seen.text():
+        raise SystemExit(f"FAILED: left on the terminal is\n{seen.text()}")
+    print("ok: q: exit 0, and what was seen last stays")
+
+
+def main():
+    binaries = os.path.realpath(sys.argv[1])
+    ifog, ifogd = f"{binaries}/tools/ifog/ifog", f"{binaries}/daemon/ifogd"
+    with tempfile.TemporaryDirectory() as work:
+        configure(work, binaries)
         seen = Terminal([ifog, "monitor", "--sensor", "nose"])
+        seen.wait_for(lambda s: "waiting for 'nose'" in s and "0 s: nothing heard" in s, "in the first second, too, it says that it waits")
         seen.wait_for(lambda s: "waiting for 'nose'" in s and "Is ifogd running" in s and "q quit" in s, "what is waited for stands there, and what to look at")
         with open(f"{work}/log", "w", encoding="utf-8") as log:
             daemon = subprocess.Popen([ifogd, "--config", f"{work}/ifogd.toml"], stdout=log, stderr=log)
         try:
-            def axes(s):
-                rows = s.splitlines()
-                return all(any(row.startswith(f"  {axis}  ") and "noise" in row and "angle" in row for row in rows) for axis in "xyz")
-            seen.wait_for(lambda s: axes(s) and "NOSE  running" in s and "waiting for" not in s, "three axes by name at 80 columns")
-            seen.wait_for(lambda s: "°/h" in s and "°/s" in s, "each rate in the unit that suits it")
-            seen.wait_for(lambda s: "nothing lost" in s and "books:" in s and "latency p50" in s, "nothing lost, and the books that say so")
-            seen.wait_for(lambda s: any(c in s for c in "▁▂▃▄▅▆▇█"), "a spark line")
-            seen.press("d")
-            seen.wait_for(lambda s: axes(s) and "books:" not in s, "d: without details")
-            seen.press("u")
-            seen.wait_for(lambda s: axes(s) and "°/s" not in s, "u: all in °/h")
-            seen.press("uu")
-            seen.wait_for(lambda s: axes(s) and s.count("rad/s") == 3, "u, u: all in rad/s")
-            seen.press("?")
-            seen.wait_for(lambda s: "scroll, page up and down" in s and not axes(s), "?: the keys")
-            seen.press("x")
-            seen.wait_for(axes, "any key: back")
-            seen.press(" ")
-            seen.wait_for(lambda s: "PAUSED" in s, "space: paused")
-            seen.read(1.0)
-            before = seen.text()
-            seen.read(1.5)
-            if seen.text() != before:
-                raise SystemExit("FAILED: figures move while it is paused")
-            seen.press(" d")
-            seen.wait_for(lambda s: "PAUSED" not in s and "books:" in s, "space: on again")
-            for columns, rows in ((132, 40), (60, 12), (80, 24)):
-                seen.resize(columns, rows)
-                seen.wait_for(lambda s: axes(s) and "q quit" in s.splitlines()[-1][:columns], f"resized to {columns} x {rows}")
-                widest = max(len(line) for line in seen.text().splitlines())
-                if widest > columns:
-                    raise SystemExit(f"FAILED: a line of {widest} at {columns} columns")
-            told = subprocess.run([ifog, "monitor", "--seconds", "2.5", "--json", "-"], capture_output=True, text=True, check=True).stdout
-            messages = [json.loads(line) for line in told.splitlines()]
-            for message in messages:
-                schema.check(message)
-            rates = [m for m in messages if m["type"] == "rate"]
-            if len(rates) < 50 or any(len(m["raw"]) != 3 or m["sensor"] != "NOSE" for m in rates) or \
-                    not any(m["type"] == "status" and m["state_name"] == "running" for m in messages):
-                raise SystemExit(f"FAILED: --json gave {len(rates)} rates: {told[:400]}")
-            print(f"ok: --json, {len(rates)} rates and {len(messages) - len(rates)} status messages, a line each")
-            piped = subprocess.run([ifog, "monitor", "--seconds", "2.2"], capture_output=True, text=True, check=True).stdout
-            if "\x1b" in piped or not axes(piped):
-                raise SystemExit(f"FAILED: to a pipe it says {piped!r}")
-            print("ok: to a pipe lines without a control sequence")
-            daemon.send_signal(signal.SIGTERM)
-            daemon.wait(20)
-            seen.wait_for(lambda s: "nothing heard" in s and "no samples in the last second" in s, "a daemon that went: said")
-            seen.press("q")
-            if (code := seen.exit_code()) != 0:
-                raise SystemExit(f"FAILED: exit {code}")
-            if "NOSE" not in seen.text() or "q quit" in seen.text():
-                raise SystemExit(f"FAILED: left on the terminal is\n{seen.text()}")
-            print("ok: q: exit 0, and what was seen last stays")
+            see_figures_and_keys(seen)
+            see_sizes(seen)
+            see_lines(ifog)
+            see_the_end(seen, daemon)
         finally:
             if daemon.poll() is None:
                 daemon.kill()

@@ -115,6 +115,12 @@ TEST_F(Ifogd, ACheckSaysThatAModelIsOfASensorWithOneAxis) {
   EXPECT_EQ(lines_with("the noise of an axis 'q'"), 1) << all_said();
 }
 
+TEST_F(Ifogd, AnOptionThatIsNearlyRightIsTold) {
+  configure(kFile);
+  EXPECT_EQ(ifogd("--chekc"), 2);
+  EXPECT_EQ(lines_with("ifogd: unknown option '--chekc', did you mean '--check'?"), 1) << all_said();
+}
+
 TEST_F(Ifogd, WhatCannotBeSaidHasFailed) {
   configure(kFile);
   const std::string daemon = IFOG_BINARY_DIR "/daemon/ifogd ";

@@ -44,10 +44,10 @@ TEST(DriverHost, FindsThePluginOfTheBuildTree) {
 }
 
 TEST(DriverHost, NamesKeyValueAndExpectation) {
-  EXPECT_EQ(
-      refusal("kvh1750", {{"formt", "a"}}),
-      "driver kvh1750: unknown option 'formt' (value 'a'), expected one of: format, angle_unit, output, "
-      "acceleration, temperature, time_stamp, rate_hz, full_scale");
+  EXPECT_EQ(refusal("kvh1750", {{"formt", "a"}}),
+            "driver kvh1750: unknown option 'formt' (value 'a'), did you mean 'format'? Known here: format, "
+            "angle_unit, output, "
+            "acceleration, temperature, time_stamp, rate_hz, full_scale");
   EXPECT_EQ(refusal("kvh1750", {{"format", "d"}}),
             "driver kvh1750: format is 'd', expected one of auto, a, b, c");
   EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "-3"}}),
@@ -79,6 +79,8 @@ TEST(DriverHost, AMissingDriverIsNamedWithThoseThereAre) {
             "driver is 'kvh', expected one of: misnamed, option_unsaid, other_version, too_many_axes, "
             "without_create, without_entry (looked in " +
                 kRefused + ")");
+  EXPECT_NE(refusal("other_verison", {}, {kRefused}).find("did you mean 'other_version'?"),
+            std::string::npos);
   EXPECT_NE(refusal("../plugins/kvh1750", {}).find("driver is '../plugins/kvh1750'"), std::string::npos);
 }
 

@@ -29,5 +29,11 @@ TEST(Nearest, TheFirstOfTheNearestAndNothingThatIsFar) {
   EXPECT_EQ(did_you_mean(std::string(1000, 'd'), names), "");
 }
 
+TEST(Nearest, WhoIsFarFromAllIsToldAll) {
+  const std::vector<std::string> names{"tune", "drivers"};
+  EXPECT_EQ(meant_or_known("tnue", names), ", did you mean 'tune'? Known here: tune, drivers");
+  EXPECT_EQ(meant_or_known("plot", names), ", expected one of: tune, drivers");
+}
+
 }  // namespace
 }  // namespace ifog

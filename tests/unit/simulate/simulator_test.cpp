@@ -176,7 +176,10 @@ TEST_F(ScenarioFile, GapsAndMissingRowsLeaveTheOthersAlone) {
 }
 
 TEST_F(ScenarioFile, RefusesInOneLine) {
-  EXPECT_EQ(refusal("duration_s = 1\nspeed = 3\n").substr(0, 23), ":2: speed is unknown, e");
+  EXPECT_EQ(refusal("duration_s = 1\nspeed = 3\n").substr(0, 44),
+            ":2: speed is unknown, did you mean 'seed'? K");
+  EXPECT_EQ(refusal("duration_s = 1\nvelocity = 3\n").substr(0, 45),
+            ":2: velocity is unknown, expected one of: nam");
   EXPECT_EQ(refusal("sample_rate_hz = 3\n"), ":1: duration_s is missing, expected seconds");
   EXPECT_EQ(refusal("duration_s = \"long\"\n"), ":1: duration_s is a string, expected a number");
   EXPECT_EQ(refusal("duration_s = 10\n[noise]\nN = -1\n"), ":3: noise.N is -1.000000, expected at least 0");
@@ -190,7 +193,8 @@ TEST_F(ScenarioFile, RefusesInOneLine) {
   EXPECT_EQ(
       refusal(
           "duration_s = 10\n[[channel]]\nname = \"t_degC\"\nshape = \"constant\"\nlevel = 1\nlevle = 2\n"),
-      ":2: [[channel]]: key 'levle' is unknown for constant, expected level, noise, resolution, every_s, "
+      ":2: [[channel]]: key 'levle' is unknown for constant, did you mean 'level'? Known here: level, noise, "
+      "resolution, every_s, "
       "missing");
   EXPECT_EQ(refusal("duration_s = 10\n[[effect]]\nform = \"magic\"\n").substr(0, 40),
             ":2: [[effect]]: 'magic' is unknown, expe");

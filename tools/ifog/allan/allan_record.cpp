@@ -162,67 +162,51 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   return rest;
 }
 
+// A rate as it was logged: its name in the file, when its rows were taken, and where the sensor rested.
 // time_s: since the origin.
-AllanRecord analyse(const std::string& name, const std::string& signal, const std::string& axis,
-                    const TimeOrigin& origin, const SeriesView& time_s, const SeriesView& rate,
-                    const SampleClock& clock, const Gaps& gaps, const Rest& rest,
-                    const AllanOptions& options) {
-  AllanRecord record;
-  record.capture = name;
-  record.axis = axis;
-  record.signal = signal;
-  record.sample_rate_hz = rounded_rate(clock.period_s);
-  record.worst_jitter_s = clock.worst_jitter_s;
-  record.gaps = clock.gaps;
-  const double period = 1.0 / record.sample_rate_hz;
-  const std::string column = signal + (axis.empty() ? "" : "_" + axis);
+struct LoggedRate {
+  const std::string& capture;
+  std::string column;
+  const TimeOrigin& origin;
+  const SeriesView& time_s;
+  const SeriesView& rate;
+  const SampleClock& clock;
+  const Gaps& gaps;
 
-  const auto told_time_s = [&](std::size_t row) { return origin.told(time_s.at(row)); };
+  [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s.at(row)); }
+};
+
+// What is said of holes and of uneven stamps. Throws std::runtime_error where holes are to be refused.
+void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
+  const SampleClock& clock = logged.clock;
+  const Gaps& gaps = logged.gaps;
+  const auto note = [&](std::size_t row, const std::string& what) {
+    if (refuse) throw std::runtime_error(gaps.place(row) + ": " + what + ", expected none");
+    record.notes.push_back(gaps.place(row) + ": " + what);
+  };
   std::size_t nans = 0, first_nan = 0;
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
+  for_each_piece(logged.rate, 0, logged.rate.size(), [&](std::span<const double> values, std::size_t first) {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (std::isnan(values[i]) && nans++ == 0) first_nan = first + i;
   });
   record.missing = nans + clock.missing;
-  if (clock.gaps > 0) {
-    const std::string what = std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
-                             " in the time column (" + std::to_string(clock.missing) +
-                             " samples missing), the first after " + told_time(told_time_s(clock.first_gap)) +
-                             " s";
-    if (options.refuse_gaps)
-      throw std::runtime_error(gaps.place(clock.first_gap) + ": " + what + ", expected none");
-    record.notes.push_back(gaps.place(clock.first_gap) + ": " + what);
-  }
-  if (nans > 0) {
-    const std::string what = missing_in_words(column, nans, rate.size(), told_time_s(first_nan));
-    if (options.refuse_gaps)
-      throw std::runtime_error(gaps.place(first_nan) + ": " + what + ", expected none");
-    record.notes.push_back(gaps.place(first_nan) + ": " + what);
-  }
+  if (clock.gaps > 0)
+    note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
+                              " in the time column (" + std::to_string(clock.missing) +
+                              " samples missing), the first after " +
+                              told_time(logged.told_time_s(clock.first_gap)) + " s");
+  if (nans > 0)
+    note(first_nan, missing_in_words(logged.column, nans, logged.rate.size(), logged.told_time_s(first_nan)));
   if (clock.worst_jitter_s > 0.1 * clock.period_s)
-    record.notes.push_back(name + ": time is uneven by up to " + number(clock.worst_jitter_s * 1e3) +
-                           " ms; taken as jitter of the stamps of an even clock of " +
-                           number(record.sample_rate_hz) + " Hz");
+    record.notes.push_back(
+        logged.capture + ": time is uneven by up to " + number(clock.worst_jitter_s * 1e3) +
+        " ms; taken as jitter of the stamps of an even clock of " + number(record.sample_rate_hz) + " Hz");
+}
 
-  const std::vector<Stretch> parts = common(stretches(time_s, rate, clock), rest.at_rest);
-  if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const AngleSum sum(rate, parts);
-  record.samples = sum.samples();
-  record.longest = sum.longest();
-  record.mean_radps = sum.mean_radps();
-  if (record.longest < 2)
-    throw std::runtime_error(name + ": " + column +
-                             " has no two samples in a row, expected a record without so many gaps");
-  if (parts.size() > 1)
-    record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(parts.size()) +
-                           " stretches; averages never reach across a hole, the longest stretch is " +
-                           number(static_cast<double>(record.longest) * period) + " s");
-
-  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
-  if (const std::string leaps = signal == "denoised" ? "" : in_words(find_glitches(rate, parts), told_time_s);
-      !leaps.empty())
-    record.notes.push_back(name + ": " + column + ": " + leaps);
-
+// The deviations with their intervals, and the noise that they show.
+void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& options, double period,
+             AllanRecord& record) {
+  const std::string& name = logged.capture;
   // A quarter of the longest stretch: beyond, a handful of differences decide.
   const std::vector<std::size_t> m =
       options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
@@ -230,7 +214,7 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
   try {
     record.fit = noise_coefficients(sum, period);
   } catch (const std::invalid_argument& error) {
-    record.notes.push_back(name + ": " + column + ": no coefficients: " + error.what());
+    record.notes.push_back(name + ": " + logged.column + ": no coefficients: " + error.what());
   }
   const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
   record.points = deviation(sum, m, options.kind);
@@ -243,12 +227,56 @@ AllanRecord analyse(const std::string& name, const std::string& signal, const st
       record.notes.push_back(name + ": --tau " + number(options.tau_s[i]) +
                              " s is no multiple of the sample time, taken at " + number(record.tau_s[i]) +
                              " s");
-  record.noise_changes = noise_changes(rate, parts, period, told_time_s);
+  record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
+}
+
+AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
+                    const Rest& rest, const AllanOptions& options) {
+  const std::string &name = logged.capture, &column = logged.column;
+  AllanRecord record;
+  record.capture = name;
+  record.axis = axis;
+  record.signal = signal;
+  record.sample_rate_hz = rounded_rate(logged.clock.period_s);
+  record.worst_jitter_s = logged.clock.worst_jitter_s;
+  record.gaps = logged.clock.gaps;
+  const double period = 1.0 / record.sample_rate_hz;
+  note_holes(logged, options.refuse_gaps, record);
+
+  const std::vector<Stretch> parts =
+      common(stretches(logged.time_s, logged.rate, logged.clock), rest.at_rest);
+  if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
+  const AngleSum sum(logged.rate, parts);
+  record.samples = sum.samples();
+  record.longest = sum.longest();
+  record.mean_radps = sum.mean_radps();
+  if (record.longest < 2)
+    throw std::runtime_error(name + ": " + column +
+                             " has no two samples in a row, expected a record without so many gaps");
+  if (parts.size() > 1)
+    record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(parts.size()) +
+                           " stretches; averages never reach across a hole, the longest stretch is " +
+                           number(static_cast<double>(record.longest) * period) + " s");
+
+  const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
+  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
+  if (const std::string leaps =
+          signal == "denoised" ? "" : in_words(find_glitches(logged.rate, parts), told_time_s);
+      !leaps.empty())
+    record.notes.push_back(name + ": " + column + ": " + leaps);
+  measure(logged, sum, options, period, record);
+  record.noise_changes = noise_changes(logged.rate, parts, period, told_time_s);
   if (const std::string change = in_words(record.noise_changes); !change.empty())
     record.notes.push_back(name + ": " + column + ": " + change);
-  record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
   if (record.fit) note_what_was_left_out(column, record);
   return record;
+}
+
+[[noreturn]] void refuse_header_of(const LongTable& table, const std::string& name) {
+  std::vector<std::string> all{"time_s"};
+  all.insert(all.end(), table.header.begin(), table.header.end());
+  refuse_header(name, table.header_line,
+                "no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`", all);
 }
 
 LongSeries less_reference(const std::string& name, const LongTable& table, const SeriesView& rate,
@@ -333,8 +361,10 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
     Rest analysed = rest;
     analysed.at_rest = common(rest.at_rest, running);
-    records.push_back(analyse(name, signal, axis, table.origin, time_s, rate.part(rows.begin, rows.end),
-                              clock, gaps, analysed, options));
+    const SeriesView part = rate.part(rows.begin, rows.end);
+    const LoggedRate logged{
+        name, signal + (axis.empty() ? "" : "_" + axis), table.origin, time_s, part, clock, gaps};
+    records.push_back(analyse(logged, signal, axis, analysed, options));
     if (later)
       records.back().notes.push_back(
           name + ": " + column.name + ": until " + told_time(told_time_s(table, started)) +
@@ -343,9 +373,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
         !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
   }
-  if (axes.empty())
-    throw std::runtime_error(
-        name + ": no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`");
+  if (axes.empty()) refuse_header_of(table, name);
   if (records.empty() && !options.axis.empty() && !has_axis)
     throw std::runtime_error(name + ": --axis is " + in_quotes(options.axis) + ", expected " +
                              expected_axes(axes));

@@ -139,6 +139,20 @@ void print_axis(const Comparison& result, int axis, bool reference) {
   }
 }
 
+void write_comparison(const Options& options, const CaptureView& capture, double period_s,
+                      const Comparison& result, const FilterSettings& settings) {
+  json rows = json::array(), raw = json::array();
+  for (const ComparisonRow& row : result.rows)
+    (row.rule == "raw" ? raw : rows)
+        .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], settings));
+  write_json(options.json_file, json{{"schema", "ifog.compare/1"},
+                                     {"capture", options.capture},
+                                     {"samples", capture.size()},
+                                     {"sample_rate_hz", 1.0 / period_s},
+                                     {"raw", raw},
+                                     {"rows", rows}});
+}
+
 void run(const Options& options) {
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);
@@ -190,18 +204,7 @@ void run(const Options& options) {
     if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
     print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());
   }
-  if (!options.json_file.empty()) {
-    json rows = json::array(), raw = json::array();
-    for (const ComparisonRow& row : result.rows)
-      (row.rule == "raw" ? raw : rows)
-          .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], s));
-    write_json(options.json_file, json{{"schema", "ifog.compare/1"},
-                                       {"capture", options.capture},
-                                       {"samples", capture.size()},
-                                       {"sample_rate_hz", 1.0 / in.period_s},
-                                       {"raw", raw},
-                                       {"rows", rows}});
-  }
+  if (!options.json_file.empty()) write_comparison(options, capture, in.period_s, result, s);
   if (!options.plot_file.empty()) {
     draw_comparison(options.plot_file, capture, result, compare.rules);
     say("picture: %s\n", options.plot_file.c_str());
@@ -212,7 +215,7 @@ void run(const Options& options) {
 
 void add_compare(CLI::App& app) {
   auto* command =
-      app.add_subcommand("compare", "every adaptation rule on one capture, with the same settings");
+      app.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
   auto options = std::make_shared<Options>();
   command->add_option("capture", options->capture, "a capture")->required();
   command->add_option("--model", options->model, "model file whose [filter] gives the settings");

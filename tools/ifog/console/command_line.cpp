@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/ifog/driver.h"
+#include "daemon/config/version_text.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/ifog/shell_word.h"
 #include "tools/ifog/commands.h"
@@ -52,8 +52,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
                "ifog"};
   app.formatter(std::make_shared<HelpFormat>());
   app.require_subcommand(1);
-  app.set_version_flag("--version",
-                       "ifog " IFOG_VERSION " (driver interface " + std::to_string(IFOG_DRIVER_ABI) + ")");
+  app.set_version_flag("--version", version_text("ifog"));
   app.add_flag_callback(
       "--describe",
       [&app] {

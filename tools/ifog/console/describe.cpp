@@ -60,9 +60,12 @@ std::string describe(const CLI::App& app) {
                         {"help", command->get_description()},
                         {"examples", command->get_footer()},
                         {"options", options_of(*command)}});
-  const Json all = {{"schema", "ifog.command_line/1"}, {"name", app.get_name()},
-                    {"version", app.version()},        {"help", app.get_description()},
-                    {"options", options_of(app)},      {"commands", commands}};
+  const Json all = {{"schema", "ifog.command_line/1"},
+                    {"name", app.get_name()},
+                    {"version", app.version().substr(0, app.version().find('\n'))},
+                    {"help", app.get_description()},
+                    {"options", options_of(app)},
+                    {"commands", commands}};
   return all.dump(2) + "\n";
 }
 

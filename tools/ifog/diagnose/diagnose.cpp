@@ -87,7 +87,7 @@ void run(const Arguments& arguments) {
 void add_diagnose(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
-      app.add_subcommand("diagnose", "trace the error to its effects, with the model that corrects them");
+      app.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
   command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")->required();
   arguments->input.add_to(*command);
   arguments->part.add_to(*command);

@@ -10,9 +10,12 @@
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "daemon/state/state_folder.h"
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/ifog/shell_word.h"
 #include "filters/model_file/toml_file.h"
@@ -71,12 +74,12 @@ const Config& Field::required_config() const {
 }
 
 const SensorConfig& Field::sensor(const std::string& name) const {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const SensorConfig& sensor : required_config().sensors) {
     if (sensor.name == name) return sensor;
-    known += (known.empty() ? "" : ", ") + sensor.name;
+    known.emplace_back(sensor.name);
   }
-  throw std::runtime_error(config_path_ + ": no sensor " + in_quotes(name) + ", expected one of " + known);
+  throw std::runtime_error(config_path_ + ": no sensor " + in_quotes(name) + meant_or_known(name, known));
 }
 
 std::string Field::model_path(const SensorConfig& sensor) const {

@@ -287,7 +287,7 @@ void run(Arguments& arguments) {
 void add_fleet(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
-      "fleet", "diagnose every gyro of a type, then the type: its effects, its spread, who stands out");
+      "fleet", "Diagnose every gyro of a type, then the type: its effects, its spread, who stands out");
   command->add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
       ->required();
   command->add_option("--results", arguments->results,

@@ -73,7 +73,7 @@ class Monitor {
   bool obey(Screen::Key key);  // false: quit
   void draw();
   [[nodiscard]] std::vector<std::string> lines(const LineStyle& style) const;
-  [[nodiscard]] std::string waiting() const;
+  [[nodiscard]] std::vector<std::string> waiting() const;
   [[nodiscard]] std::string foot() const;
   [[nodiscard]] bool all_shown() const;
   [[nodiscard]] bool heard() const;
@@ -114,11 +114,12 @@ void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
   if (content == ChannelContent::imu) take_message<imu_t>(buffer, name);
 }
 
-std::string Monitor::waiting() const {
+// For what, and since when.
+std::vector<std::string> Monitor::waiting() const {
   const std::string wanted =
       options_.sensor.empty() ? "a sensor's messages (IFOG_*)" : in_quotes(options_.sensor);
-  return "waiting for " + wanted + " on " + printable(options_.url) + ", " +
-         std::to_string(static_cast<int>(seconds_since(last_heard_))) + " s: nothing heard";
+  return {"waiting for " + wanted + " on " + printable(options_.url) + ",",
+          std::to_string(static_cast<int>(seconds_since(last_heard_))) + " s: nothing heard"};
 }
 
 std::vector<std::string> Monitor::lines(const LineStyle& style) const {
@@ -131,8 +132,9 @@ std::vector<std::string> Monitor::lines(const LineStyle& style) const {
     std::move(of_sensor.begin(), of_sensor.end(), std::back_inserter(out));
   }
   if (refused_ > 0) out.push_back(std::to_string(refused_) + " messages that are none of ours, or damaged");
-  if (screen_ && !paused_ && seconds_since(last_heard_) > kSilent_s) {
-    out.insert(out.begin(), waiting());
+  if (screen_ && !paused_ && (sensors_.empty() || seconds_since(last_heard_) > kSilent_s)) {
+    std::vector<std::string> wait = wrapped(waiting(), " ", style.width);
+    out.insert(out.begin(), std::make_move_iterator(wait.begin()), std::make_move_iterator(wait.end()));
     if (sensors_.empty()) {
       for (std::string& line :
            wrapped({"Is ifogd running, with this lcm_url? Is there a route for its multicast:",
@@ -225,7 +227,7 @@ void Monitor::say_what_is_waited_for() {
   warn(
       "%s; is ifogd running, with this lcm_url, and a route for its multicast "
       "(ip route add 224.0.0.0/4 dev lo)?\n",
-      waiting().c_str());
+      (waiting().front() + " " + waiting().back()).c_str());
 }
 
 bool Monitor::heard() const {
@@ -248,6 +250,7 @@ bool Monitor::run() {
   auto shown = start_;
   std::array<pollfd, 3> wanted{pollfd{stop, POLLIN, 0}, pollfd{listener_.descriptor(), POLLIN, 0},
                                pollfd{screen_ ? STDIN_FILENO : -1, POLLIN, 0}};
+  if (screen_) draw();
   auto drawn = start_;
   for (bool on = true; on;) {
     const int ready = poll(wanted.data(), wanted.size(), 50);

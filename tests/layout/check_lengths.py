@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""No source file is longer than a sitting, no function of a script longer than a screen. (Functions in C++: clang-tidy,
+readability-function-size.)
+
+usage: tests/layout/check_lengths.py [TREE]      the tree's root; default: this one
+
+One line a violation, FILE: what; exit 1 when there is one.
+"""
+import ast
+import pathlib
+import subprocess
+import sys
+
+MOST_OF_A_FILE = 400
+MOST_OF_A_FUNCTION = 60
+SOURCES = {".cpp", ".h", ".c", ".py", ".java", ".sh", ".cmake"}
+
+
+def sources(tree):
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=tree, capture_output=True, text=True, check=False)
+    names = listed.stdout.splitlines() if listed.returncode == 0 else [
+        str(path.relative_to(tree)) for path in tree.rglob("*") if path.is_file() and path.relative_to(tree).parts[0] not in ("build", ".git")]
+    for name in sorted(names):
+        path = tree / name
+        if not path.is_file() or path.is_symlink():
+            continue
+        if path.suffix in SOURCES or path.name == "CMakeLists.txt":
+            yield name, path.read_text()
+        elif not path.suffix and path.read_bytes()[:2] == b"#!":
+            yield name, path.read_text()
+
+
+def violations(name, text):
+    lines = text.count("\n")
+    if lines > MOST_OF_A_FILE:
+        yield f"{lines} lines, at most {MOST_OF_A_FILE}"
+    if not name.endswith(".py") and not text.startswith("#!/usr/bin/env python3"):
+        return
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.end_lineno - node.lineno >= MOST_OF_A_FUNCTION:
+            yield f"{node.name}() has {node.end_lineno - node.lineno + 1} lines, at most {MOST_OF_A_FUNCTION}"
+
+
+def main():
+    tree = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
+    wrong = [f"{name}: {what}" for name, text in sources(tree) for what in violations(name, text)]
+    print(*wrong, sep="\n", end="\n" if wrong else "")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
