@@ -16,6 +16,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/sole_reader.h"
 #include "msgs/state_name.h"
 
 namespace ifog {
@@ -99,6 +100,8 @@ bool Housekeeping::open_all() {
     try {
       sensor->parts.pipeline->open();
       any = sensor->open = true;
+    } catch (const DeviceTaken&) {
+      throw;
     } catch (const std::exception& error) {
       sensor->log->error("{}", error.what());
     }
@@ -274,7 +277,18 @@ void Housekeeping::each_second(double interval_s) {
            std::to_string(std::lround(rate)) + " samples/s published");
 }
 
+// Before anything is opened: of two daemons with one state folder, the second has touched nothing. Who finds
+// the mark may ask for a reload, which waits as a blocked signal.
+void Housekeeping::mark_as_running() {
+  const std::string folder = state_folder(config_.state_folder);
+  std::string missed = make_state_folder(folder);
+  if (missed.empty()) missed = mark_.set(folder);
+  if (mark_.is_taken()) throw std::runtime_error(missed);
+  if (!missed.empty()) log_->warn("{}", missed);
+}
+
 int Housekeeping::run() {
+  mark_as_running();
   if (!open_all()) {
     log_->error("no sensor can run");
     return 1;
@@ -283,9 +297,6 @@ int Housekeeping::run() {
     if (const std::string missed = lock_memory(); !missed.empty()) log_->warn("{}", missed);
   const Signals signals;
   start_all();
-  // Now that SIGHUP has somewhere to go: who finds the mark may ask for a reload.
-  if (const std::string missed = mark_.set(state_folder(config_.state_folder)); !missed.empty())
-    log_->warn("{}", missed);
   notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
   bool ended = false, reload_asked = false;
   std::int64_t deadline_ns = monotonic_ns();
