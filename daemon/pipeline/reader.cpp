@@ -138,7 +138,7 @@ void Reader::record(const Delivery& delivery) noexcept {
     while (!transport_->stopped() && tape_->worth_waiting(delivery)) std::this_thread::sleep_for(kPause);
   tape_->put(delivery, turn_ns_,
              std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
-             reading_.wall_shift_ns);
+             reading_.wall_shift_ns, queue_.merged());
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
