@@ -216,6 +216,7 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
                      sensor.config.driver, sensor.config.driver);
   if (const std::string wrong = sensor.report.wrong_rate(); !wrong.empty())
     sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
+  if (const std::string unseen = sensor.report.unseen_axes(); !unseen.empty()) sensor.log->info("{}", unseen);
   if (const std::string frozen = sensor.report.newly_frozen(); !frozen.empty())
     sensor.log->warn("{}", frozen);
   if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
