@@ -91,22 +91,43 @@ def synopsis(program, options):
     return [" ".join(words)]
 
 
+# Where the package has what the examples of the tree begin with.
+INSTALLED = {"build/example/": "", "tools/simulate/scenarios/": "/usr/share/ifogd/scenarios/", "drivers/dbc/examples/": "/usr/share/ifogd/dbc/"}
+
+
+def statements(lines):
+    """A line each, of a loop or a group all its lines."""
+    out, within = [], False
+    for line in lines:
+        if within:
+            out[-1].append(line)
+        else:
+            out.append([line])
+        within = (within or bool(re.match(r"(for|while) .*do$|\{$", line))) and not re.match(r"(done|\})", line)
+    return out
+
+
 def command_examples(text, name):
-    """The parts of tools/README.md that run the command, less the folders that they are tested in: (what for, lines)."""
-    out = []
+    """The parts of tools/README.md that run the command, with the files where the package has them: (what for, lines). Those
+    that are of the command itself, where there are any, else of others that run it."""
+    out, own = [], []
     for found in re.finditer(r"((?:^[^\n`#|][^\n]*\n|^`[^`]+`[^\n]*\n)+)\n^```sh\n(.*?)^```$", text, re.M | re.S):
         logical = found.group(2).replace("\\\n", "\0").splitlines()
-        wanted = [line for line in logical if re.search(rf"\$ifog {name}\b", line)]
+        wanted = [line for each in statements(logical) if any(re.search(rf"\$ifog {name}\b", line) for line in each) for line in each]
         setting = {m.group(1): m.group(2) for m in (re.match(r'(\w+)="(.*)"$', line) for line in logical) if m}
         lines = []
         for line in wanted:
             for variable, value in setting.items():
                 line = line.replace("$" + variable, value)
-            line = re.sub(r" &$", "", line).replace("$ifog", "ifog").replace("build/example/", "").replace("tools/simulate/scenarios/", "")
-            lines += line.replace("drivers/dbc/examples/", "").replace("\0", "\\\n").split("\n")
+            line = re.sub(r" &$", "", line).replace("$ifog", "ifog")
+            for folder, installed in INSTALLED.items():
+                line = line.replace(folder, installed)
+            lines += line.replace("\0", "\\\n").split("\n")
         if lines:
-            out.append((" ".join(found.group(1).split()), lines))
-    return out
+            # A place of the file that this is taken from is nowhere in a page.
+            what = re.sub(r"\s*See \[[^\]]*\]\(#[^)]*\)\.", "", " ".join(found.group(1).split()))
+            (own if what.startswith(f"`{name}`") else out).append((what, lines))
+    return own or out
 
 
 class Manual:
