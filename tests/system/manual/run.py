@@ -92,7 +92,7 @@ class Checks:
 
     def check_examples_run_as_they_are_printed(self):
         """Of ifog-simulate(1), in an empty folder; what the package installs is looked for in the sources."""
-        lines = gzip.decompress((MANUAL / "man1/ifog-simulate.1.gz").read_bytes()).decode().split(".SH EXAMPLES")[1].split(".SH")[0]
+        lines = gzip.decompress((MANUAL / "man1/ifog-simulate.1.gz").read_bytes()).decode().split('.SH "EXAMPLES"')[1].split(".SH")[0]
         printed = [re.sub(r"\\[&-]", lambda each: each.group()[1].replace("&", ""), line) for line in lines.splitlines()]
         wanted = [line for line in printed if line.startswith("ifog simulate ")]
         assert len(wanted) > 2, printed
