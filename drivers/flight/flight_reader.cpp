@@ -210,7 +210,7 @@ std::vector<std::string> losses(const FlightCounts& counts) {
       "run(s) of what wrote it were cut off (killed, or the computer was switched off): up to a second at "
       "the "
       "end of each is missing");
-  if (counts.runs > 1) {
+  if (counts.between_runs_s > 0.0) {
     std::array<char, 160> line{};
     std::snprintf(
         line.data(), line.size(),

@@ -79,6 +79,20 @@ TEST_F(RunningDaemon, AFifoThatFallsSilentHasNoData) {
   EXPECT_EQ(end(), 0);
 }
 
+// Judged by its own rate: between two samples of a slow sensor nothing is amiss.
+TEST_F(RunningDaemon, ASlowSensorIsNotWithoutData) {
+  write("ifogd.toml", kDaemon + sensor("nose", "nominal_rate_hz = 0.1\n"));
+  start();
+  send("nose", 1);
+  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].state == status_t::STATE_RUNNING; }))
+      << said();
+  const int before = listener_->heard["IFOG_NOSE_STATUS"];
+  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= before + 4; })) << said();
+  EXPECT_EQ(listener_->last["IFOG_NOSE_STATUS"].state, status_t::STATE_RUNNING);
+  EXPECT_EQ(times_said("no data"), 0) << said();
+  EXPECT_EQ(end(), 0);
+}
+
 TEST_F(RunningDaemon, ALogThatNobodyReadsOrThatIsClosedEndsNothing) {
   // A pipe without a reader: SIGPIPE at the first line.
   ASSERT_EQ(mkfifo(path("said").c_str(), 0600), 0);
