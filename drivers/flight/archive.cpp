@@ -247,9 +247,11 @@ int FlightArchive::remove_oldest() {
 int FlightArchive::tidy() {
   if (!looked_)
     if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
-  // Only for another behind it: the last file of a run is the one that close() ends.
-  if (file_is_full(now_ns_) && !waiting_.empty())
-    if (const int error = end_file(now_ns_, wall_ns_, true); error != 0 && error != ENOENT) return error;
+  // With what the next one begins with; of a sensor that has fallen silent without.
+  const bool silent = now_ns_ - file_since_ns_ >= limits_.file_ns + limits_.flush_ns;
+  if (file_is_full(now_ns_) && (!waiting_.empty() || silent))
+    if (const int error = end_file(now_ns_, wall_ns_, !waiting_.empty()); error != 0 && error != ENOENT)
+      return error;
   while (!kept_.empty() && now_ns_ - kept_.front().last_ns > limits_.age_ns)
     if (const int error = remove_oldest(); error != 0) return error;
   return 0;

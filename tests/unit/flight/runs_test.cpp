@@ -65,6 +65,22 @@ TEST_F(FlightRunsRead, OneRunHasNothingToSay) {
   EXPECT_TRUE(losses(read()).empty());
 }
 
+// Nothing more comes: its file is closed all the same, and whoever is killed then has lost nothing.
+TEST_F(FlightRunsRead, ARunThatFellSilentIsWhole) {
+  ArchiveLimits limits;
+  limits.file_ns = 10 * kSecond;
+  {
+    FlightArchive archive(std::make_unique<MemoryFolder>(disk_), limits, some_header());
+    archive.add({FlightKind::bytes, 0, 0, 0, kSecond}, numbered(1));
+    for (std::int64_t now_ns = kSecond; now_ns < 14 * kSecond; now_ns += kTenth)
+      archive.turn(now_ns, kWall + now_ns);
+    ASSERT_EQ(disk_.files.size(), 1U);
+    EXPECT_TRUE(disk_.files.begin()->first.ends_with(".ifr")) << disk_.files.begin()->first;
+  }
+  run(20, End::stopped);
+  EXPECT_EQ(read().cut_off_runs, 0U);
+}
+
 TEST_F(FlightRunsRead, RunsThatWereCutOffAreCounted) {
   run(100, End::killed);
   run(110, End::stopped);
