@@ -40,6 +40,8 @@ std::string of_lcm(const ChannelConfig& channel, const ChannelFault& fault) {
   switch (fault.kind) {
     case ChannelFault::Kind::no_message:
       return from + "what comes is no ifog.channel_t, ifog.rate_t or ifog.status_t";
+    case ChannelFault::Kind::late:
+      return from + "what comes was measured before what is held, by its utime";
     case ChannelFault::Kind::no_field:
       return from + "its messages have no " + in_quotes(field);
     case ChannelFault::Kind::impossible:

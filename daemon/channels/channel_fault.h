@@ -18,6 +18,7 @@ struct ChannelFault {
     no_number,   // file: holds something else, or more
     no_message,  // lcm: what came is no message of the types that carry values
     no_field,    // lcm: what came is one, without the field
+    late,        // lcm: older than the value that is held
     impossible,  // the value is beyond what it can be
   };
   Kind kind = Kind::silent;

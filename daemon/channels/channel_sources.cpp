@@ -40,12 +40,20 @@ class Entrance {
   [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
   [[nodiscard]] const std::shared_ptr<ChannelTable>& table() const { return wanted_.table; }
 
-  void put(double number, std::int64_t time_ns) {
+  // again: the reading that came last has come once more. It agrees with itself, which shows nothing, and is
+  // counted once.
+  void put(double number, std::int64_t time_ns, bool again = false) {
     const double value = number * wanted_.config.scale + wanted_.config.offset;
-    if (plausible_.take(value))
+    again = again && value == last_;
+    if (!again) good_ = plausible_.take(value);
+    last_ = value;
+    const ChannelFault fault{.kind = ChannelFault::Kind::impossible};
+    if (good_)
       wanted_.table->set(wanted_.index, value, time_ns);
+    else if (again)
+      wanted_.table->miss(wanted_.index, fault);
     else
-      refuse({.kind = ChannelFault::Kind::impossible});
+      refuse(fault);
   }
   // What came is no value.
   void refuse(const ChannelFault& fault) { wanted_.table->refuse(wanted_.index, fault); }
@@ -60,6 +68,8 @@ class Entrance {
  private:
   ChannelSources::Wanted wanted_;
   PlausibleValue plausible_;
+  double last_ = 0.0;
+  bool good_ = false;  // last_ is
 };
 
 class FileChannel {
@@ -69,9 +79,10 @@ class FileChannel {
   [[nodiscard]] std::int64_t due_ns() const { return due_ns_; }
   void read(std::int64_t now_ns) {
     due_ns_ = now_ns + static_cast<std::int64_t>(in_.config().period_s * 1e9);
-    const auto read = read_number_file(in_.config().path);
+    const FileWriting before = writing_;
+    const auto read = read_number_file(in_.config().path, writing_);
     if (const double* const number = std::get_if<double>(&read))
-      in_.put(*number, arrival_clock_ns());
+      in_.put(*number, arrival_clock_ns(), writing_.same(before));
     else
       in_.miss(std::get<ChannelFault>(read));
   }
@@ -79,6 +90,7 @@ class FileChannel {
  private:
   Entrance in_;
   std::int64_t due_ns_ = 0;
+  FileWriting writing_;
 };
 
 // LCM takes the name as a regular expression for whole names; a channel is called what it is called.
@@ -109,15 +121,25 @@ class LcmChannel {
         in_.refuse({.kind = ChannelFault::Kind::no_message});
       return;
     }
+    const bool dated = utime > 0 && utime < INT64_MAX / 1000;
+    const std::int64_t now_ns = realtime_ns(), measured_ns = (dated ? utime : message.recv_utime) * 1000;
+    // A date that is still to come shows that its clock, or this computer's, has been set back.
+    const bool comparable = dated && held_ns_ > 0 && held_ns_ <= now_ns;
+    if (comparable && measured_ns < held_ns_ - kSameTime_ns)
+      return in_.refuse({.kind = ChannelFault::Kind::late});
+    const bool again = comparable && measured_ns <= held_ns_ + kSameTime_ns;
+    if (dated && !again) held_ns_ = measured_ns;
     // What was measured in the future was measured now: else it would never grow old.
-    const std::int64_t measured_ns =
-        utime > 0 && utime < INT64_MAX / 1000 ? utime * 1000 : message.recv_utime * 1000;
-    in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, realtime_ns() - measured_ns));
+    in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, now_ns - measured_ns), again);
   }
 
  private:
+  // A status tells ages, from which the same time comes back to within its rounding.
+  static constexpr std::int64_t kSameTime_ns = 2'000;
+
   Entrance in_;
   LcmField field_;
+  std::int64_t held_ns_ = 0;  // by its own clock, the latest that came; 0: none that tells
 };
 
 // All signals wanted from one CAN interface.

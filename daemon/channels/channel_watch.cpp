@@ -53,6 +53,11 @@ std::vector<std::string> ChannelWatch::absent() {
   return out;
 }
 
+bool ChannelWatch::is_configured(const std::string& name) const {
+  return std::any_of(configured_.begin(), configured_.end(),
+                     [&](const ChannelConfig& channel) { return channel.name == name; });
+}
+
 std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const ChannelTable& outside) {
   std::vector<News> out;
   // Before the sensor's first sample nothing is known of any.
@@ -75,7 +80,11 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
     const double age_s = status.channel_age_s[c];
     const bool never = std::isinf(age_s);
     const bool old = !never && channel.max_age_s > 0.0 && age_s > channel.max_age_s;
-    const bool awaited = never && seen.looked_s > (channel.max_age_s > 0.0 ? channel.max_age_s : kLasting_s);
+    // What a driver's frames could bring and these do not is missed by nobody, unless a correction goes
+    // without it.
+    const bool wanted = !from_frame || is_configured(channel.name) || status.channel_stale > 0;
+    const bool awaited =
+        never && wanted && seen.looked_s > (channel.max_age_s > 0.0 ? channel.max_age_s : kLasting_s);
     const bool gone = never ? seen.faulty_s >= kFirst_s
                             : channel.source == ChannelConfig::Source::file && seen.faulty_s >= kLasting_s &&
                                   age_s > kLasting_s;

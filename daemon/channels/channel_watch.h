@@ -33,6 +33,8 @@ class ChannelWatch {
     bool told = false;
   };
 
+  [[nodiscard]] bool is_configured(const std::string& name) const;
+
   std::vector<ChannelConfig> configured_, outside_;
   std::vector<bool> absent_;  // of the outside ones, told by absent()
   std::vector<Seen> seen_;

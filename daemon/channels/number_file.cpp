@@ -2,7 +2,9 @@
 #include "daemon/channels/number_file.h"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <array>
@@ -24,7 +26,22 @@ std::variant<double, ChannelFault> number_in(std::string_view text) {
   return number;
 }
 
-std::variant<double, ChannelFault> read_number_file(const std::string& path) {
+namespace {
+
+FileWriting writing_of(int fd, const struct stat& info) {
+  struct statfs system {};
+  FileWriting out{info.st_dev, info.st_ino, info.st_mtim.tv_sec * 1'000'000'000LL + info.st_mtim.tv_nsec,
+                  true};
+  if (fstatfs(fd, &system) != 0) return out;
+  const auto type = static_cast<unsigned long>(system.f_type);
+  out.made_at_each_read = type == SYSFS_MAGIC || type == PROC_SUPER_MAGIC || type == DEBUGFS_MAGIC;
+  return out;
+}
+
+}  // namespace
+
+std::variant<double, ChannelFault> read_number_file(const std::string& path, FileWriting& writing) {
+  writing = {};
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (fd < 0) return ChannelFault{.kind = ChannelFault::Kind::unreadable, .error = errno};
   struct stat info {};
@@ -32,6 +49,7 @@ std::variant<double, ChannelFault> read_number_file(const std::string& path) {
     close(fd);
     return ChannelFault{.kind = ChannelFault::Kind::no_file};
   }
+  writing = writing_of(fd, info);
   std::array<char, 128> text{};
   const ssize_t length = ::read(fd, text.data(), text.size());
   const int error = errno;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/sensor_pairs.h"
 
+#include <netinet/in.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -34,9 +36,11 @@ std::string device_of(const TransportConfig& transport) {
   return transport.path != "-" && regular ? "" : transport.path;
 }
 
-// By whatever names: a link of udev's and the device it leads to.
-bool same_device(const std::string& a, const std::string& b) {
+// By whatever names: a link of udev's and the device it leads to, standard input and what it is.
+bool same_device(std::string a, std::string b) {
   if (a.empty() || b.empty()) return false;
+  for (std::string* const name : {&a, &b})
+    if (*name == "-") *name = "/dev/stdin";
   if (a == b) return true;
   struct stat of_a {
   }, of_b{};
@@ -64,6 +68,23 @@ std::optional<std::string> plain(const std::string& address) {
 
 bool same_address(const std::string& a, const std::string& b) {
   return a == b || (plain(a) && plain(a) == plain(b));
+}
+
+// The host that a connection goes to: an IPv4 address may be written as one of IPv6, and "any" is this host.
+std::string reached(const std::string& host) {
+  const auto parsed = IpAddress::parse(host);
+  socklen_t size = 0;
+  const auto place = parsed && parsed->interface().empty() ? parsed->at_port(1, "", size) : std::nullopt;
+  if (!place) return host;
+  if (same_address(host, "0.0.0.0")) return "127.0.0.1";
+  if (!parsed->is_v6()) return host;
+  sockaddr_in6 v6{};
+  std::memcpy(&v6, &*place, sizeof v6);
+  if (!IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr)) return same_address(host, "::") ? "::1" : host;
+  std::string v4;
+  for (int byte = 12; byte < 16; ++byte)
+    v4 += (byte > 12 ? "." : "") + std::to_string(v6.sin6_addr.s6_addr[byte]);
+  return reached(v4);
 }
 
 bool is_v6(const UdpSettings& udp) {
@@ -95,7 +116,8 @@ Shared shared(const TransportConfig& first, const TransportConfig& second) {
   if (first.kind == Kind::udp && second.kind == Kind::udp && same_port(first.udp, second.udp))
     return {"transport.port", std::to_string(second.udp.port)};
   if (first.kind == Kind::tcp && second.kind == Kind::tcp && first.tcp.port == second.tcp.port &&
-      first.tcp.port != 0 && !first.tcp.host.empty() && same_address(first.tcp.host, second.tcp.host))
+      first.tcp.port != 0 && !first.tcp.host.empty() &&
+      same_address(reached(first.tcp.host), reached(second.tcp.host)))
     return {"transport.port", host_and_port(second.tcp.host, second.tcp.port)};
   if (const std::string device = device_of(second); same_device(device_of(first), device))
     return {second.kind == Kind::serial ? "transport.device" : "transport.path", in_quotes(device)};

@@ -70,7 +70,12 @@ const toml::node* TableReader::find(std::string_view key) {
 }
 
 void TableReader::wrong(std::string_view key, const toml::node& node, const std::string& expected) {
-  complain(key, " = " + printable(as_written(node)) + ": expected " + expected);
+  std::string value = as_written(node);
+  // 50.0 is no whole number in TOML, and would look like one.
+  if (expected.starts_with("a whole number") && node.is_floating_point() &&
+      value.find_first_not_of("-0123456789") == std::string::npos)
+    value += ".0";
+  complain(key, " = " + printable(value) + ": expected " + expected);
 }
 
 std::optional<std::string> TableReader::text(std::string_view key) {

@@ -16,6 +16,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/sole_reader.h"
 #include "msgs/state_name.h"
 
 namespace ifog {
@@ -99,6 +100,8 @@ bool Housekeeping::open_all() {
     try {
       sensor->parts.pipeline->open();
       any = sensor->open = true;
+    } catch (const DeviceTaken&) {
+      throw;
     } catch (const std::exception& error) {
       sensor->log->error("{}", error.what());
     }
@@ -213,6 +216,7 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
                      sensor.config.driver, sensor.config.driver);
   if (const std::string wrong = sensor.report.wrong_rate(); !wrong.empty())
     sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
+  if (const std::string unseen = sensor.report.unseen_axes(); !unseen.empty()) sensor.log->info("{}", unseen);
   if (const std::string frozen = sensor.report.newly_frozen(); !frozen.empty())
     sensor.log->warn("{}", frozen);
   if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
@@ -274,7 +278,18 @@ void Housekeeping::each_second(double interval_s) {
            std::to_string(std::lround(rate)) + " samples/s published");
 }
 
+// Before anything is opened: of two daemons with one state folder, the second has touched nothing. Who finds
+// the mark may ask for a reload, which waits as a blocked signal.
+void Housekeeping::mark_as_running() {
+  const std::string folder = state_folder(config_.state_folder);
+  std::string missed = make_state_folder(folder);
+  if (missed.empty()) missed = mark_.set(folder);
+  if (mark_.is_taken()) throw std::runtime_error(missed);
+  if (!missed.empty()) log_->warn("{}", missed);
+}
+
 int Housekeeping::run() {
+  mark_as_running();
   if (!open_all()) {
     log_->error("no sensor can run");
     return 1;
@@ -283,9 +298,6 @@ int Housekeeping::run() {
     if (const std::string missed = lock_memory(); !missed.empty()) log_->warn("{}", missed);
   const Signals signals;
   start_all();
-  // Now that SIGHUP has somewhere to go: who finds the mark may ask for a reload.
-  if (const std::string missed = mark_.set(state_folder(config_.state_folder)); !missed.empty())
-    log_->warn("{}", missed);
   notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
   bool ended = false, reload_asked = false;
   std::int64_t deadline_ns = monotonic_ns();

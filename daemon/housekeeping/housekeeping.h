@@ -29,7 +29,8 @@ class Housekeeping {
   ~Housekeeping();
 
   // Until SIGTERM, SIGINT or the end of all files. 0, or 1 when no sensor can run or a file could not be
-  // read.
+  // read. Throws std::runtime_error with one line where another daemon works with the state folder or reads
+  // a device.
   int run();
 
  private:
@@ -63,6 +64,7 @@ class Housekeeping {
     std::vector<std::string> remarks{};   // on the model's axes beside the sensor's
   };
 
+  void mark_as_running();
   bool open_all();
   void start_all();
   void drain_events(Sensor& sensor);

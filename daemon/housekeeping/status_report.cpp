@@ -80,7 +80,7 @@ std::string fault_of(const Reader& reader) {
 
 StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels,
                            const std::vector<std::string>& axes, double sample_rate_hz)
-    : before_(), now_(), watch_(axes.size(), sample_rate_hz), nominal_rate_hz_(sample_rate_hz) {
+    : before_(), now_(), watch_(axes.size(), sample_rate_hz), axes_(axes), nominal_rate_hz_(sample_rate_hz) {
   now_.sensor = std::move(sensor);
   now_.version = IFOG_VERSION;
   now_.axes = static_cast<std::int8_t>(axes.size());
@@ -121,6 +121,9 @@ void StatusReport::look_for_samples(const ReaderCounters& reader) {
   const bool came = std::exchange(decoded_, decoded) != decoded;
   const bool news = std::exchange(taken_, taken) != taken;
   if (news) sample_ns_ = monotonic_ns();
+  seconds_of_samples_ += news ? 1 : 0;
+  axes_seen_ = reader.axes_seen.load(std::memory_order_relaxed);
+  news_ = news;
   frozen_before_ = frozen_;
   const bool long_ago = sample_ns_ != 0 &&
                         static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_);
@@ -262,6 +265,14 @@ std::string StatusReport::came() const {
 std::string StatusReport::nothing_of_it() const {
   if (in_vain_ != kInVain) return "";
   return came() + " came and no frame of the sensor was in them";
+}
+
+std::string StatusReport::unseen_axes() const {
+  if (!news_ || seconds_of_samples_ != kInVain || axes_seen_ == 0) return "";
+  std::string out;
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (((axes_seen_ >> i) & 1U) == 0) out += (out.empty() ? "" : ", ") + axes_[i];
+  return out.empty() ? "" : "no value of axis " + out + " so far: does the device have it?";
 }
 
 std::string StatusReport::newly_frozen() const { return frozen_ && !frozen_before_ ? kFrozen : ""; }

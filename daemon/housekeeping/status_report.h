@@ -30,6 +30,9 @@ class StatusReport {
   // else. So are a wrong driver, wrong options, another baud rate seen, which counters alone do not say.
   [[nodiscard]] std::string nothing_of_it() const;
 
+  // Once, some seconds after the first sample, when an axis has had no value in any; "" else.
+  [[nodiscard]] std::string unseen_axes() const;
+
   // Once, when a device is found to repeat itself; "" else.
   [[nodiscard]] std::string newly_frozen() const;
 
@@ -59,6 +62,10 @@ class StatusReport {
   ifog::status_t before_, now_;
   SensorWatch watch_;
   std::uint64_t decoded_ = 0, taken_ = 0;  // samples, at the last update()
+  std::vector<std::string> axes_;
+  std::uint32_t axes_seen_ = 0;
+  bool news_ = false;           // the last update() found new samples
+  int seconds_of_samples_ = 0;  // updates that found new samples
   double nominal_rate_hz_;
   double interval_error_ = 0.0, interval_error_before_ = 0.0;
   bool frozen_before_ = false;

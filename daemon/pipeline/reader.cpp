@@ -97,6 +97,7 @@ void Reader::publish_counters() noexcept {
   counters_.implausible.set(counts.implausible);
   counters_.device_restarts.set(counts.restarts);
   counters_.clock_steps.set(counts.clock_steps);
+  counters_.axes_seen.store(incrementer_.axes_seen(), std::memory_order_relaxed);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   counters_.interval_error.store(incrementer_.interval_error(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();
@@ -138,7 +139,7 @@ void Reader::record(const Delivery& delivery) noexcept {
     while (!transport_->stopped() && tape_->worth_waiting(delivery)) std::this_thread::sleep_for(kPause);
   tape_->put(delivery, turn_ns_,
              std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
-             reading_.wall_shift_ns);
+             reading_.wall_shift_ns, queue_.merged());
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {

@@ -31,8 +31,9 @@ struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter saturated, implausible, channel_implausible, channel_drops;
   Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
-  Counter stood_back;    // times it had used its share of a processor, see ProcessorShare
-  Counter bytes_at_end;  // of a file that ends within a frame; also in bytes_skipped
+  Counter stood_back;                       // times it had used its share of a processor, see ProcessorShare
+  Counter bytes_at_end;                     // of a file that ends within a frame; also in bytes_skipped
+  std::atomic<std::uint32_t> axes_seen{0};  // Incrementer::axes_seen()
   std::atomic<double> clock_offset_ppm{0.0};
   std::atomic<double> interval_error{0.0};  // Incrementer::interval_error()
 };

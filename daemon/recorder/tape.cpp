@@ -30,7 +30,7 @@ Tape::Tape(std::size_t bytes) : bytes_(std::max(bytes, kLeastBytes)), queue_(byt
 // All that put() may push of it.
 std::size_t Tape::room_for(const Delivery& delivery) noexcept {
   return bytes_of(delivery) + (1 + delivery.frames.size()) * kHead +
-         static_cast<std::size_t>(kMaxChannels + 1) * (kHead + 8) + kHead + (kHead + 16);
+         static_cast<std::size_t>(kMaxChannels + 2) * (kHead + 8) + kHead + (kHead + 16);
 }
 
 bool Tape::worth_waiting(const Delivery& delivery) const noexcept {
@@ -76,7 +76,7 @@ void Tape::push_frame(const ifog_can_frame& frame, std::uint8_t flags, std::int6
 }
 
 void Tape::put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
-               std::int64_t wall_shift_ns) noexcept {
+               std::int64_t wall_shift_ns, std::uint64_t merged) noexcept {
   const std::size_t bytes = bytes_of(delivery);
   counters_.deliveries.add(1);
   counters_.bytes.add(bytes);
@@ -98,6 +98,10 @@ void Tape::put(const Delivery& delivery, std::int64_t read_ns, std::span<const C
     queue_.push(reinterpret_cast<const std::uint8_t*>(&note), sizeof note);
   }
   push_state(channels, wall_shift_ns);
+  if (merged != merged_) {
+    const std::uint64_t since = merged - std::exchange(merged_, merged);
+    push({FlightKind::merged, 0, 0, 0, read_ns}, &since, sizeof since);
+  }
   auto flags = static_cast<std::uint8_t>((delivery.restarted || reopened_ ? kFlightReopened : 0) |
                                          (delivery.stamped ? kFlightStamped : 0));
   reopened_ = false;

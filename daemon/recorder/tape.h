@@ -32,10 +32,11 @@ class Tape {
   explicit Tape(std::size_t bytes);
 
   // Reader thread; allocates nothing, waits for nothing. `read_ns` is when it was read, for what came at no
-  // known time; `channels` and `wall_shift_ns` are what it was decoded with, recorded where they have
+  // known time; `channels` and `wall_shift_ns` are what it was decoded with, `merged` the samples of the run
+  // that have gone into others up to and with it (IncrementQueue::merged()): recorded where they have
   // changed.
   void put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
-           std::int64_t wall_shift_ns) noexcept;
+           std::int64_t wall_shift_ns, std::uint64_t merged = 0) noexcept;
 
   // Reader thread: what is put from now on was filtered with the settings of this number, not 0.
   void note_settings(std::uint32_t number) noexcept { settings_due_ = number; }
@@ -64,6 +65,7 @@ class Tape {
   // Reader thread.
   std::array<ChannelValue, kMaxChannels> recorded_{};  // of each channel, the last
   std::int64_t wall_shift_ns_ = 0;
+  std::uint64_t merged_ = 0;
   std::uint64_t untold_deliveries_ = 0, untold_bytes_ = 0;  // lost since the last `lost` entry
   bool reopened_ = false;                                   // with a delivery that was lost
   std::uint32_t settings_due_ = 0;

@@ -39,6 +39,7 @@ RunningMark::~RunningMark() {
 }
 
 std::string RunningMark::set(const std::string& folder) {
+  taken_ = false;
   if (folder.empty()) return "";
   const std::string path = mark_path(folder);
   // Never through a link, and no FIFO: who may write into the folder may have put one there.
@@ -60,6 +61,7 @@ std::string RunningMark::set(const std::string& folder) {
   lock = whole_file(F_WRLCK);
   const bool known = ::fcntl(fd_, F_GETLK, &lock) == 0 && lock.l_type == F_WRLCK && lock.l_pid > 0;
   ::close(std::exchange(fd_, -1));
+  taken_ = true;
   return path + ": another daemon" + (known ? ", process " + std::to_string(lock.l_pid) + "," : "") +
          " works with this state folder; expected one of its own for each";
 }

@@ -19,11 +19,13 @@ class RunningMark {
 
   [[nodiscard]] bool is_set() const { return fd_ >= 0; }
   // Of this process, until it has succeeded. folder "": none. Gives a complaint, "" for none: no right to the
-  // folder, or another daemon works with it.
+  // folder, or another daemon works with it, which is_taken() then says.
   [[nodiscard]] std::string set(const std::string& folder);
+  [[nodiscard]] bool is_taken() const { return taken_; }
 
  private:
   int fd_ = -1;
+  bool taken_ = false;
 };
 
 // The process that holds the mark; nothing: none does, or no daemon ever did. Throws std::runtime_error with

@@ -172,8 +172,9 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   return 0;
 }
 
-int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns) {
-  std::array<std::uint64_t, 2> told{file_entries_, static_cast<std::uint64_t>(wall_ns)};
+int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_goes_on) {
+  const std::array<std::uint64_t, 3> told{file_entries_, static_cast<std::uint64_t>(wall_ns),
+                                          run_goes_on ? 1U : 0U};
   std::array<std::uint8_t, sizeof told> bytes{};
   std::memcpy(bytes.data(), told.data(), sizeof told);
   // Without it the file is as one that was being written when its writer was killed: whole to its last block.
@@ -246,8 +247,11 @@ int FlightArchive::remove_oldest() {
 int FlightArchive::tidy() {
   if (!looked_)
     if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
-  if (file_is_full(now_ns_))
-    if (const int error = end_file(now_ns_, wall_ns_); error != 0 && error != ENOENT) return error;
+  // With what the next one begins with; of a sensor that has fallen silent without.
+  const bool silent = now_ns_ - file_since_ns_ >= limits_.file_ns + limits_.flush_ns;
+  if (file_is_full(now_ns_) && (!waiting_.empty() || silent))
+    if (const int error = end_file(now_ns_, wall_ns_, !waiting_.empty()); error != 0 && error != ENOENT)
+      return error;
   while (!kept_.empty() && now_ns_ - kept_.front().last_ns > limits_.age_ns)
     if (const int error = remove_oldest(); error != 0) return error;
   return 0;
@@ -271,7 +275,7 @@ std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
   // Of a full disk the end, which is small, may still be taken: the error is that of what was not.
   if (open_)
-    if (const int ended = end_file(now_ns, wall_ns); entries_waiting_ == 0) error_ = ended;
+    if (const int ended = end_file(now_ns, wall_ns, false); entries_waiting_ == 0) error_ = ended;
   waiting_.clear();
   not_taken_ += std::exchange(waiting_load_, {});
   return std::exchange(entries_waiting_, 0);

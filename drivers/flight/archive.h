@@ -81,7 +81,7 @@ class FlightArchive {
 
   int look(std::int64_t now_ns, std::int64_t wall_ns);
   int begin_file(std::int64_t now_ns, std::int64_t wall_ns);
-  int end_file(std::int64_t now_ns, std::int64_t wall_ns);
+  int end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_goes_on);
   int write(BlockType type, std::span<const std::uint8_t> content);
   int write_waiting(std::int64_t now_ns, std::int64_t wall_ns);
   void remember_state();

@@ -58,6 +58,10 @@ class Playback {
       entry.value(wall_shift_ns_);
       return;
     }
+    if (std::uint64_t samples = 0; entry.head.kind == FlightKind::merged) {
+      if (entry.value(samples) && sink_.merged) sink_.merged(samples);
+      return;
+    }
     if ((entry.head.flags & kFlightReopened) != 0) interrupt();
     const bool timed = (entry.head.flags & kFlightReadTime) == 0;
     const auto emit = [&](const ifog_sample& sample) {

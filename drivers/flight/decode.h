@@ -29,6 +29,9 @@ struct RecordedSamples {
   // A file begins behind the first, before its samples: of another run, or with other settings, perhaps. The
   // driver may be exchanged here for one with the options that the header names. May be empty.
   std::function<void(const FlightHeader&)> file{};
+  // So many of the samples that come now, or came just before, went into others before the daemon's filter.
+  // May be empty.
+  std::function<void(std::uint64_t)> merged{};
 };
 
 // The next sample onto whatever `reader` gives, to its end. Throws std::runtime_error, without the file's

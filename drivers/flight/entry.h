@@ -21,6 +21,9 @@ enum class FlightKind : std::uint8_t {
   wall = 4,     // i64: how far the wall clock has been set since the arrival clock began, ns
   lost = 5,     // u64 deliveries, u64 bytes: came before this and are not in the recording
   message = 6,  // of LCM: `index` bytes of the channel's name, then the message; time: of its arrival
+  // u64: samples of this run that were added to others since the last such entry, before any filter: the
+  // ring behind the driver was full.
+  merged = 7,
   // On the way to the recorder only, never in a file. What comes behind it was filtered with the settings of
   // number `length`: it goes into a file of its own, whose header says them.
   settings = 255,

@@ -2,6 +2,8 @@
 #include "drivers/flight/flight_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -79,8 +81,12 @@ FlightReader::Found FlightReader::next_block() {
   return ended ? Found::end : Found::gap;
 }
 
-void FlightReader::finish_file() {
-  if (in_file_ && !closed_) ++counts_.open_files;
+void FlightReader::finish_file(bool another_run) {
+  if (!in_file_) return;
+  if (another_run)
+    counts_.cut_off_runs += !closed_ || goes_on_ ? 1 : 0;
+  else
+    counts_.open_files += closed_ ? 0 : 1;
 }
 
 FlightReader::Item FlightReader::begin_file() {
@@ -93,7 +99,11 @@ FlightReader::Item FlightReader::begin_file() {
   if (same_run && fresh.number > header_.number + 1)
     counts_.missing_files += fresh.number - header_.number - 1;
   if (!first && !same_run && closed_ && fresh.opened_ns < closed_ns_) ++counts_.early_files;
-  finish_file();
+  finish_file(!first && !same_run);
+  if (!same_run) {
+    ++counts_.runs;
+    between_runs_ = !first;
+  }
   header_ = std::move(fresh);
   file_at_ = passed_;
   file_entries_ = 0;
@@ -118,6 +128,10 @@ void FlightReader::take_block() {
   std::uint64_t told = 0;
   if (content_.size() >= sizeof told) std::memcpy(&told, content_.data(), sizeof told);
   closed_ = true;
+  std::uint64_t goes_on = 0;
+  if (content_.size() >= sizeof told + sizeof closed_ns_ + sizeof goes_on)
+    std::memcpy(&goes_on, content_.data() + sizeof told + sizeof closed_ns_, sizeof goes_on);
+  goes_on_ = goes_on != 0;
   closed_ns_ = INT64_MIN;
   if (content_.size() >= sizeof told + sizeof closed_ns_)
     std::memcpy(&closed_ns_, content_.data() + sizeof told, sizeof closed_ns_);
@@ -125,6 +139,20 @@ void FlightReader::take_block() {
     counts_.missing_entries += told - file_entries_;
     whole_ = false;
   }
+}
+
+// From one run to the next; a clock that was set back says nothing.
+void FlightReader::note_arrival() {
+  const FlightEntryHead& head = entry_.head;
+  const bool came =
+      head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
+  if (!came || head.time_ns <= 0) return;
+  if (std::exchange(between_runs_, false) && arrived_ns_ > 0 && head.time_ns > arrived_ns_) {
+    const double pause_s = (static_cast<double>(head.time_ns) - static_cast<double>(arrived_ns_)) * 1e-9;
+    counts_.between_runs_s += pause_s;
+    counts_.longest_between_runs_s = std::max(counts_.longest_between_runs_s, pause_s);
+  }
+  arrived_ns_ = head.time_ns;
 }
 
 // False: it says what is missing, which is a hole.
@@ -138,6 +166,9 @@ bool FlightReader::take_entry_ahead() {
   }
   ++counts_.entries;
   ++file_entries_;
+  note_arrival();
+  if (std::uint64_t merged = 0; entry_.head.kind == FlightKind::merged && entry_.value(merged))
+    counts_.merged_samples += merged;
   if (entry_.head.kind != FlightKind::lost) return true;
   std::uint64_t deliveries = 0, bytes = 0;
   if (entry_.value(deliveries) && entry_.value(bytes, sizeof deliveries)) {
@@ -154,7 +185,7 @@ FlightReader::Item FlightReader::next() {
     if (!rest_.empty()) return take_entry_ahead() ? Item::entry : Item::hole;
     const Found found = next_block();
     if (found == Found::end) {
-      finish_file();
+      finish_file(false);
       ended_ = true;
     } else if (header_block_) {
       return begin_file();
@@ -175,6 +206,18 @@ std::vector<std::string> losses(const FlightCounts& counts) {
   say(counts.damaged_bytes, "bytes are damaged and were passed over");
   say(counts.torn_bytes, "bytes at the end of a recording are no whole block (what wrote it was killed)");
   say(counts.open_files, "recording(s) without an end: still being written, or what wrote it was killed");
+  say(counts.cut_off_runs,
+      "run(s) of what wrote it were cut off (killed, or the computer was switched off): up to a second at "
+      "the "
+      "end of each is missing");
+  if (counts.between_runs_s > 0.0) {
+    std::array<char, 160> line{};
+    std::snprintf(
+        line.data(), line.size(),
+        "runs of what wrote it, with %.6g s between them that are not recorded, %.6g s at the longest",
+        counts.between_runs_s, counts.longest_between_runs_s);
+    say(counts.runs, line.data());
+  }
   say(counts.missing_entries, "entries are missing by the recording's own count");
   say(counts.lost_deliveries, "deliveries (" + std::to_string(counts.lost_bytes) +
                                   " bytes) came and were not recorded: the disk was slow or full");

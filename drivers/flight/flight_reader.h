@@ -17,15 +17,21 @@ namespace ifog {
 
 struct FlightCounts {
   std::uint64_t files = 0, blocks = 0, entries = 0;
-  std::uint64_t damaged_bytes = 0;    // in the middle of a file
-  std::uint64_t torn_bytes = 0;       // at the end of a file: a block that was not written whole
-  std::uint64_t open_files = 0;       // without an end: still written, or what wrote it was killed
+  std::uint64_t damaged_bytes = 0;  // in the middle of a file
+  std::uint64_t torn_bytes = 0;     // at the end of a file: a block that was not written whole
+  // Without an end, and nothing of another run behind it: still written, or what wrote it was killed.
+  std::uint64_t open_files = 0;
   std::uint64_t missing_entries = 0;  // that a file's end tells of and are not there
   std::uint64_t lost_deliveries = 0,
-                lost_bytes = 0;     // that came and were not recorded: the disk was too slow
-  std::uint64_t lost_messages = 0;  // the same of a recording of messages: LCM or the disk was too slow
-  std::uint64_t missing_files = 0;  // of a run, between those that are there
-  std::uint64_t early_files = 0;    // begun before the one in front of them had ended, in another run
+                lost_bytes = 0;      // that came and were not recorded: the disk was too slow
+  std::uint64_t lost_messages = 0;   // the same of a recording of messages: LCM or the disk was too slow
+  std::uint64_t missing_files = 0;   // of a run, between those that are there
+  std::uint64_t early_files = 0;     // begun before the one in front of them had ended, in another run
+  std::uint64_t merged_samples = 0;  // before the filter, see FlightKind::merged
+  // Runs of what wrote it; those that another follows though they have no end; and from what came last in one
+  // to what came first in the next.
+  std::uint64_t runs = 0, cut_off_runs = 0;
+  double between_runs_s = 0.0, longest_between_runs_s = 0.0;
 };
 
 class FlightReader {
@@ -58,7 +64,8 @@ class FlightReader {
   Item begin_file();
   void take_block();
   bool take_entry_ahead();
-  void finish_file();
+  void finish_file(bool another_run);
+  void note_arrival();
   [[nodiscard]] std::span<const std::uint8_t> ahead() const {
     return {reinterpret_cast<const std::uint8_t*>(held_.data()) + at_, held_.size() - at_};
   }
@@ -74,6 +81,9 @@ class FlightReader {
   std::uint64_t file_at_ = 0;                             // where the file begins in the stream
   std::uint64_t file_entries_ = 0;                        // of the present file, so far
   bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
+  bool goes_on_ = false;                                  // by its end, the run of the file before does
+  bool between_runs_ = false;                             // nothing has come yet in this run
+  std::int64_t arrived_ns_ = 0;                           // what came last; 0: nothing of a known time
   std::int64_t closed_ns_ = 0;                            // wall clock, of the file before once it is closed_
   bool header_due_ = false, ended_ = false;
   BlockHead block_;

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "drivers/transport/transport.h"
+#include "drivers/transport/sole_reader.h"
 
 namespace ifog {
 namespace {
@@ -37,6 +37,14 @@ void ByteFile::open(const std::string& path) {
     if (!standard_input) ::close(fd);
     errno = error;
     fail(path);
+  }
+  if (!standard_input) {
+    try {
+      read_alone(fd, path, owned_ ? fd_ : -1);
+    } catch (...) {
+      ::close(fd);
+      throw;
+    }
   }
   gzFile_s* gz = nullptr;
   if (S_ISREG(info.st_mode) && !standard_input && is_gzip(fd)) {

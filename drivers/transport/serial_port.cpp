@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/transport/transport.h"
+#include "drivers/transport/sole_reader.h"
 
 namespace ifog {
 namespace {
@@ -81,7 +81,8 @@ LibSerialPort::LibSerialPort(const SerialSettings& settings, std::string& warnin
           "a serial device that this user may read and write");
     open_ = true;
     check(sp_get_port_handle(port_, &fd_), "cannot open", "a file descriptor");
-    // A second reader would take half of the bytes.
+    // The kernel's own refusal does not hold for root.
+    read_alone(fd_, device_);
     ioctl(fd_, TIOCEXCL);
     set_driver_options(settings, warning);
     constexpr std::array kParity{SP_PARITY_NONE, SP_PARITY_EVEN, SP_PARITY_ODD};

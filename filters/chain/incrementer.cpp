@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ifog {
 namespace {
@@ -117,13 +118,16 @@ Verdict Incrementer::turn(std::size_t axis, double value, double own_s, Turn& ou
 void Incrementer::measure(const Reading& reading, const Step& step, Increment& out) noexcept {
   const double own_s = step.dt_s / static_cast<double>(step.samples);  // a gap's time is not this sample's
   out.valid_axes = out.stuck_axes = 0;
-  bool invalid = false, saturated = false, implausible = false;
+  bool invalid = false, unseen = false, saturated = false, implausible = false;
+  if (const std::uint32_t seen = axes_seen_ | reading.valid_axes; seen != std::exchange(axes_seen_, seen))
+    counts_.invalid += std::exchange(without_unseen_, 0);
   for (int i = 0; i < facts_.axes; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     angle_[axis].pass(step.dt_s);
     Turn turned;
     if (((reading.valid_axes >> i) & 1u) == 0) {
-      invalid = true;
+      const bool known = axes_seen_ == 0 || ((axes_seen_ >> i) & 1u) != 0;
+      (known ? invalid : unseen) = true;
     } else if (const Verdict verdict = turn(axis, reading.value[axis], own_s, turned);
                verdict != Verdict::plausible) {
       turned = {};
@@ -143,9 +147,10 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
       out.rate_radps[axis] = kNaN;
     }
   }
-  if (invalid) out.flags |= kInvalid;
+  if (invalid || unseen) out.flags |= kInvalid;
   if (saturated) out.flags |= kAtFullScale;
   counts_.invalid += invalid ? 1 : 0;
+  without_unseen_ += unseen && !invalid ? 1 : 0;
   counts_.saturated += saturated ? 1 : 0;
   counts_.implausible += implausible ? 1 : 0;
 }

@@ -24,14 +24,16 @@
 namespace ifog {
 
 struct IncrementerCounts {
-  std::uint64_t samples = 0;      // increments made
-  std::uint64_t gaps = 0;         // places where samples are missing
-  std::uint64_t missing = 0;      // samples missing
-  std::uint64_t repeated = 0;     // samples left out because they came twice, or after one that follows
-  std::uint64_t restarts = 0;     // device counter or clock jumped back: it was switched off and on
-  std::uint64_t invalid = 0;      // samples with an axis that may not be used
-  std::uint64_t saturated = 0;    // of those: at or beyond full scale
-  std::uint64_t implausible = 0;  // of those: marked good, but a value that cannot be
+  std::uint64_t samples = 0;   // increments made
+  std::uint64_t gaps = 0;      // places where samples are missing
+  std::uint64_t missing = 0;   // samples missing
+  std::uint64_t repeated = 0;  // samples left out because they came twice, or after one that follows
+  std::uint64_t restarts = 0;  // device counter or clock jumped back: it was switched off and on
+  // Samples with an axis that may not be used; one that the device has never marked good it may not have at
+  // all: what is missing of that counts from when it comes.
+  std::uint64_t invalid = 0;
+  std::uint64_t saturated = 0;            // of those: at or beyond full scale
+  std::uint64_t implausible = 0;          // of those: marked good, but a value that cannot be
   std::uint64_t channel_implausible = 0;  // values of channels that cannot be; the one before is held
   std::uint64_t clock_steps = 0;          // times the clock of the labels was set: they moved, nothing else
   std::uint64_t pauses = 0;  // times they moved because the device had not counted on for a while
@@ -48,6 +50,8 @@ class Incrementer {
   void discontinuity() noexcept { reopened_ = true; }
 
   [[nodiscard]] const IncrementerCounts& counts() const noexcept { return counts_; }
+  // Bits of the axes that the device has marked good at least once.
+  [[nodiscard]] std::uint32_t axes_seen() const noexcept { return axes_seen_; }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
   // By which part of it the true interval is longer than the one that is used: of a device that counts and
@@ -82,6 +86,8 @@ class Incrementer {
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle
   SensorCheck check_;
+  std::uint32_t axes_seen_ = 0;
+  std::uint64_t without_unseen_ = 0;  // samples that lack nothing but axes that have never been there
   std::array<PlausibleValue, kMaxChannels> frame_channel_;
   std::array<double, kMaxChannels> channel_{};
   std::array<float, kMaxChannels> channel_age_s_{};

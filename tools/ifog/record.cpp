@@ -4,22 +4,18 @@
 #include <poll.h>
 #include <CLI/CLI.hpp>
 
-#include <ifog/decode.h>
-#include <cerrno>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
-#include "drivers/flight/archive.h"
+#include "drivers/flight/folder.h"
+#include "drivers/flight/header.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
-#include "msgs/channel_name.h"
 #include "tools/ifog/captures/lcm_listener.h"
-#include "tools/ifog/captures/lcm_loss.h"
+#include "tools/ifog/captures/message_archive.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"
@@ -42,7 +38,9 @@ class LcmRecorder {
       : options_(options),
         listener_(options.url, [this](const lcm_recv_buf_t& message,
                                       const std::string& channel) { take(message, channel); }),
-        archive_(make_flight_folder(options.folder), limits(options), header(options)) {
+        messages_(make_flight_folder(options.folder), limits(options), header(options)) {
+    // Before anything is listened to: what came meanwhile would be another recorder's.
+    messages_.open(arrival_clock_ns(), realtime_ns());
     listener_.listen_to_sensor(options.sensor);
     for (const std::string& channel : options.channels) listener_.listen_to(channel);
   }
@@ -65,59 +63,42 @@ class LcmRecorder {
     out.source = options.url;
     return out;
   }
-  void take(const lcm_recv_buf_t& buffer, const std::string& channel);
-  void add_lost(std::uint64_t messages, std::uint64_t bytes);
+  void take(const lcm_recv_buf_t& buffer, const std::string& channel) {
+    messages_.take(channel, {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size},
+                   buffer.recv_utime, arrival_clock_ns(), realtime_ns());
+  }
   void tell_trouble();
+  void tell_books() const;
 
   const Options& options_;
   LcmListener listener_;
-  FlightArchive archive_;
-  std::map<std::string, LcmLoss> ways_;
-  std::vector<std::uint8_t> payload_;
-  std::uint64_t messages_ = 0, lost_here_ = 0, lost_here_bytes_ = 0, lost_total_ = 0;
+  MessageArchive messages_;
   bool troubled_ = false;
 };
 
-void LcmRecorder::add_lost(std::uint64_t messages, std::uint64_t bytes) {
-  const std::uint64_t lost[2] = {messages, bytes};
-  archive_.add({FlightKind::lost, 0, 0, 0, realtime_ns()},
-               {reinterpret_cast<const std::uint8_t*>(lost), sizeof lost});
-}
-
-void LcmRecorder::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
-  ++messages_;
-  payload_.assign(channel.begin(), channel.end());
-  const auto* const data = static_cast<const std::uint8_t*>(buffer.data);
-  payload_.insert(payload_.end(), data, data + buffer.data_size);
-  if (archive_.full()) archive_.turn(arrival_clock_ns(), realtime_ns());
-  if (archive_.full() || payload_.size() > kMostFlightPayload) {
-    ++lost_here_;
-    ++lost_total_;
-    lost_here_bytes_ += buffer.data_size;
-    return;
-  }
-  if (lost_here_ > 0) add_lost(std::exchange(lost_here_, 0), std::exchange(lost_here_bytes_, 0));
-  rate_t rate{};
-  if (channel_name(channel).content == ChannelContent::rate &&
-      decode_message(buffer.data, buffer.data_size, rate))
-    if (const std::int64_t missing = ways_[channel].take(rate); missing > 0)
-      add_lost(static_cast<std::uint64_t>(missing), 0);
-  archive_.add(
-      {FlightKind::message, 0, static_cast<std::uint16_t>(channel.size()), 0, buffer.recv_utime * 1000},
-      payload_);
-}
-
 // Once when it begins, once when it is over.
 void LcmRecorder::tell_trouble() {
-  const int error = archive_.error();
+  const int error = messages_.archive().error();
   if ((error != 0) == troubled_) return;
   troubled_ = error != 0;
   if (troubled_)
     warn("%s: %s; nothing is recorded until it takes more\n", options_.folder.c_str(),
-         archive_.complaint().c_str());
+         messages_.archive().complaint().c_str());
   else
     warn("%s: all is recorded again, %llu messages were lost\n", options_.folder.c_str(),
-         static_cast<unsigned long long>(lost_total_));
+         static_cast<unsigned long long>(messages_.books().lost_here));
+}
+
+void LcmRecorder::tell_books() const {
+  const MessageArchive::Books books = messages_.books();
+  say("%s: %llu messages, %llu bytes written, %llu lost here, %llu lost on LCM\n", options_.folder.c_str(),
+      static_cast<unsigned long long>(books.heard),
+      static_cast<unsigned long long>(messages_.archive().bytes_written()),
+      static_cast<unsigned long long>(books.lost_here), static_cast<unsigned long long>(books.lost_on_way));
+  if (books.began_anew > 0)
+    warn(
+        "%s: %llu times a message's seq was beyond what its sensor can have counted: taken for a new count\n",
+        options_.folder.c_str(), static_cast<unsigned long long>(books.began_anew));
 }
 
 void LcmRecorder::run() {
@@ -127,28 +108,17 @@ void LcmRecorder::run() {
   pollfd wanted{listener_.descriptor(), POLLIN, 0};
   while (!interrupted() && (options_.seconds <= 0.0 || monotonic_ns() < end_ns)) {
     if (poll(&wanted, 1, kTurn_ms) > 0) listener_.take();
-    archive_.turn(arrival_clock_ns(), realtime_ns());
+    messages_.turn(arrival_clock_ns(), realtime_ns());
     tell_trouble();
   }
-  if (lost_here_ > 0) add_lost(lost_here_, lost_here_bytes_);
-  const std::uint64_t unwritten = archive_.close(arrival_clock_ns(), realtime_ns());
-  std::int64_t on_the_way = 0, anew = 0;
-  for (const auto& [channel, way] : ways_) {
-    on_the_way += way.lost();
-    anew += way.began_anew();
-  }
-  say("%s: %llu messages, %llu bytes written, %llu lost here, %lld lost on LCM\n", options_.folder.c_str(),
-      static_cast<unsigned long long>(messages_), static_cast<unsigned long long>(archive_.bytes_written()),
-      static_cast<unsigned long long>(lost_total_) + unwritten, static_cast<long long>(on_the_way));
-  if (anew > 0)
-    warn(
-        "%s: %lld times a message's seq was beyond what its sensor can have counted: taken for a new count\n",
-        options_.folder.c_str(), static_cast<long long>(anew));
-  if (messages_ == 0) {
+  messages_.close(arrival_clock_ns(), realtime_ns());
+  tell_books();
+  if (messages_.books().heard == 0) {
     warn("ifog record: nothing heard on %s\n", printable(options_.url).c_str());
     throw Failed("nothing heard");
   }
-  if (archive_.error() != 0) throw std::runtime_error(options_.folder + ": " + archive_.complaint());
+  if (messages_.archive().error() != 0)
+    throw std::runtime_error(options_.folder + ": " + messages_.archive().complaint());
 }
 
 }  // namespace

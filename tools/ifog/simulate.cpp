@@ -78,7 +78,9 @@ void add_simulate(CLI::App& app) {
   state->encoding.add_driver_to(*command);
   command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
       ->type_name("NAME");
-  command->footer("Example:\n  ifog simulate rest.toml --output rest.csv.gz --truth rest.truth.json");
+  command->footer(
+      "Examples:\n  ifog simulate /usr/share/ifogd/scenarios/rest.toml --output rest.csv.gz --truth "
+      "rest.truth.json");
   command->callback([state, seed] {
     state->seed_given = seed->count() > 0;
     state->run();

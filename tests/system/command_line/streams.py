@@ -192,6 +192,9 @@ class Checks:
                 result = shell(f'"$ifog" {command} {where}', capture=self.capture)
                 assert result.returncode == 1, f"{command} {where}: exit {result.returncode}"
                 one_line(result.stderr, "standard output: cannot write")
+        for command in ('allan "$capture"', "drivers", 'compare "$capture"'):
+            result = shell(f'set -o pipefail; "$ifog" {command} | true', capture=self.capture)
+            assert result.returncode == 141 and not result.stderr, f"{command} | true: exit {result.returncode}: {result.stderr}"
         folder = self.fresh("limit")
         result = shell('ulimit -f 8; cd "$folder" && "$ifog" denoise "$capture" --output out.csv', folder=folder, capture=self.capture)
         assert result.returncode == 1 and not os.listdir(folder), f"exit {result.returncode}: {os.listdir(folder)}"

@@ -14,6 +14,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 IFOG, IFOGD = map(os.path.abspath, sys.argv[1:3])
 SOURCE, MANUAL = (pathlib.Path(argument).resolve() for argument in sys.argv[3:])
@@ -101,6 +102,21 @@ class Checks:
                 assert "$" not in line, f"ifog-{command}(1): {line}"
                 for kind, name in re.findall(r"/usr/share/ifogd/(scenarios|dbc)/(\S+)", line.replace("\\", "")):
                     assert (SOURCE / {"scenarios": "tools/simulate/scenarios", "dbc": "drivers/dbc/examples"}[kind] / name).exists(), line
+
+    def check_examples_run_as_they_are_printed(self):
+        """Of ifog-simulate(1), in an empty folder; what the package installs is looked for in the sources."""
+        lines = gzip.decompress((MANUAL / "man1/ifog-simulate.1.gz").read_bytes()).decode().split('.SH "EXAMPLES"')[1].split(".SH")[0]
+        printed = [re.sub(r"\\[&-]", lambda each: each.group()[1].replace("&", ""), line) for line in lines.splitlines()]
+        wanted = [line for line in printed if line.startswith("ifog simulate ")]
+        assert len(wanted) > 2, printed
+        with tempfile.TemporaryDirectory() as folder:
+            for line in wanted:
+                here = line.replace("/usr/share/ifogd/scenarios/", f"{SOURCE}/tools/simulate/scenarios/").replace("ifog ", IFOG + " ", 1)
+                assert here != line and "$" not in line, line
+                result = subprocess.run(["sh", "-c", here], cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+                assert result.returncode == 0, f"{line}: {result.stderr}"
+        for path in MANUAL.glob("man1/*.gz"):
+            assert "thousand nodes." not in gzip.decompress(path.read_bytes()).decode(), path
 
     def check_the_daemon(self):
         holds(page("ifogd.8"), options_of_help(IFOGD), "ifogd(8)")

@@ -141,5 +141,41 @@ TEST(SignalChain, AStuckAxisMakesTheOthersNoQuieter) {
   EXPECT_NEAR(chain.parts().filter().measurement_noise, 1e-8, 0.1e-8);
 }
 
+// A gyro of one axis in a format of three lacks nothing; one whose axis comes later did, from the beginning.
+TEST(Incrementer, AnAxisThatHasNeverBeenThereIsNoInvalidSample) {
+  SensorFacts facts;
+  facts.axes = 3;
+  facts.sequence_modulus = 128;
+  facts.nominal_rate_hz = 100.0;
+  Incrementer incrementer(facts);
+  std::uint64_t n = 0;
+  const auto feed = [&](std::uint32_t valid_axes, int samples) {
+    Increment out;
+    for (int i = 0; i < samples; ++i, ++n) {
+      Reading reading;
+      reading.has_sequence = true;
+      reading.sequence = static_cast<std::uint32_t>(n % 128);
+      reading.arrival_ns = 1'000'000'000 + static_cast<std::int64_t>(n) * 10'000'000;
+      reading.valid_axes = valid_axes;
+      reading.value = {0.01 + 1e-6 * static_cast<double>(n % 7), 0.02, 0.03};
+      ASSERT_TRUE(incrementer.next(reading, out));
+      EXPECT_EQ((out.flags & kInvalid) != 0, valid_axes != 7) << n;
+    }
+  };
+  feed(0, 5);  // nothing at all
+  EXPECT_EQ(incrementer.counts().invalid, 5U);
+  feed(1, 100);
+  EXPECT_EQ(incrementer.counts().invalid, 5U);
+  EXPECT_EQ(incrementer.axes_seen(), 1U);
+  feed(0, 3);  // the axis that it has
+  EXPECT_EQ(incrementer.counts().invalid, 8U);
+  feed(3, 10);  // a second one: it was missing in those hundred
+  EXPECT_EQ(incrementer.counts().invalid, 108U);
+  feed(7, 10);  // and the third in these ten
+  EXPECT_EQ(incrementer.counts().invalid, 118U);
+  feed(5, 4);
+  EXPECT_EQ(incrementer.counts().invalid, 122U);
+}
+
 }  // namespace
 }  // namespace ifog

@@ -35,6 +35,8 @@ class Watched {
       out += (news.good ? "good: " : "bad: ") + news.words + "\n";
     return out;
   }
+  // A correction goes without a channel.
+  void go_stale() { status_.channel_stale = 7; }
   void silence() { status_.state = status_t::STATE_NO_DATA; }
 
   ChannelTable table;
@@ -82,6 +84,19 @@ TEST(ChannelWatch, AChannelThatNeverComesIsToldOnce) {
       "bad: channel 'coil_degC': /run/coil: is no regular file, expected a file that holds one number; the "
       "channel has no value yet\n"
       "bad: channel 'hull_degC': LCM channel 'HULL': nothing comes; the channel has no value yet\n");
+}
+
+// A driver's frames could bring more than those of this format do.
+TEST(ChannelWatch, AFramesChannelThatNobodyMissesIsNotTold) {
+  Watched all;
+  all.table.set(0, 20.0, 1);
+  for (int second = 0; second < 100; ++second) EXPECT_EQ(all.look({kNever, 0.5, 0.5}), "") << second;
+  all.go_stale();
+  EXPECT_EQ(
+      all.look({kNever, 0.5, 0.5}),
+      "bad: channel 'temperature_degC': the sensor's frames bring none; the channel has no value yet\n");
+  EXPECT_EQ(all.look({kNever, 0.5, 0.5}), "");
+  EXPECT_EQ(all.look({0.0, 0.5, 0.5}), "good: channel 'temperature_degC' has new values\n");
 }
 
 TEST(ChannelWatch, WhatComesAndIsNoValueIsSaid) {

@@ -180,6 +180,41 @@ TEST(ChannelSources, AValueThatCannotBeIsLeftOutAndCounted) {
   std::filesystem::remove(path);
 }
 
+// A wrong number that stands in the file for several reads is one reading, and agrees with nobody.
+TEST(ChannelSources, TheSameWritingOfAFileIsOneReading) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("ifog-step-" + std::to_string(getpid()));
+  const auto put = [&](const char* text) {
+    std::ofstream(path.string() + ".new") << text << "\n";
+    std::filesystem::rename(path.string() + ".new", path);
+  };
+  put("20");
+  ChannelConfig one = config(ChannelConfig::Source::file);
+  one.path = path;
+  one.period_s = 0.01;
+  one.limits.max_step = 5.0;
+  const auto table = std::make_shared<ChannelTable>(1);
+  ChannelSources sources({{one, table, 0}}, kUrl);
+  sources.start();
+  EXPECT_EQ(await(*table, 20.0).value, 20.0);
+  put("60");
+  for (int n = 0; n < 500 && table->refused() == 0; ++n) std::this_thread::sleep_for(10ms);
+  std::this_thread::sleep_for(100ms);  // ten more reads of it
+  EXPECT_EQ(look(*table).value, 20.0);
+  EXPECT_EQ(table->refused(), 1U);
+  EXPECT_EQ(table->fault(0).kind, ChannelFault::Kind::impossible);
+  // Written once more it is a second reading.
+  put("61");
+  EXPECT_EQ(await(*table, 61.0).value, 61.0);
+  EXPECT_EQ(table->refused(), 1U);
+  // A good one goes on being now, however often it is read.
+  const std::int64_t time_ns = table->latest(0).time_ns;
+  std::this_thread::sleep_for(50ms);
+  EXPECT_GT(table->latest(0).time_ns, time_ns);
+  sources.stop();
+  std::filesystem::remove(path);
+}
+
 TEST(ChannelSources, ASignalOfAnotherCanFrame) {
   ChannelConfig one = config(ChannelConfig::Source::can);
   one.interface = "fake0";
@@ -271,6 +306,50 @@ TEST(ChannelSources, AnLcmMessageOfEitherType) {
   EXPECT_EQ(seen.value, 41.5);
   EXPECT_GE(seen.age_s, 2.0F);
   EXPECT_LT(seen.age_s, 60.0F);
+  lcm_destroy(lcm);
+}
+
+// By the sender's own dates, unless its clock was set back from a time that is still to come.
+TEST(ChannelSources, ALateMessageNeverReplacesANewerOne) {
+  if (const std::string why = enter_private_network(); !why.empty())
+    GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
+  ChannelConfig one = config(ChannelConfig::Source::lcm);
+  one.lcm_channel = "HULL";
+  const auto hull = std::make_shared<ChannelTable>(1);
+  ChannelSources sources({{one, hull, 0}}, kUrl);
+  sources.start();
+  lcm_t* const lcm = lcm_create(kUrl);
+  ASSERT_NE(lcm, nullptr);
+  const std::int64_t now_us = realtime_ns() / 1000, hour_us = 3'600'000'000;
+  const auto send = [&](double value, std::int64_t utime) {
+    channel_t message{};
+    message.utime = utime;
+    message.name = "coil_degC";
+    message.value = value;
+    const std::vector<std::uint8_t> bytes = encoded(message);
+    lcm_publish(lcm, "HULL", bytes.data(), static_cast<unsigned>(bytes.size()));
+  };
+  send(22.0, now_us - 100'000);
+  EXPECT_EQ(await(*hull, 22.0).value, 22.0);
+  send(30.0, now_us - hour_us);
+  for (int n = 0; n < 500 && hull->refused() == 0; ++n) std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(hull->refused(), 1U);
+  EXPECT_EQ(look(*hull).value, 22.0);
+  EXPECT_LT(look(*hull).age_s, 60.0F);
+  EXPECT_EQ(
+      describe(one, hull->fault(0)),
+      "channel 'coil_degC': LCM channel 'HULL': what comes was measured before what is held, by its utime");
+  send(23.0, now_us - 50'000);
+  EXPECT_EQ(await(*hull, 23.0).value, 23.0);
+  // A sender from next year, which is then set right.
+  send(24.0, now_us + 8760 * hour_us);
+  EXPECT_EQ(await(*hull, 24.0).value, 24.0);
+  send(25.0, now_us);
+  EXPECT_EQ(await(*hull, 25.0).value, 25.0);
+  // Without a date it is from now.
+  send(26.0, 0);
+  EXPECT_EQ(await(*hull, 26.0).value, 26.0);
+  EXPECT_EQ(hull->refused(), 1U);
   lcm_destroy(lcm);
 }
 

@@ -157,10 +157,8 @@ class RecordedFlight : public testing::Test {
           "[daemon]\nlock_memory = false\nstate_folder = \"state\"\n[[sensor]]\nname = \"nose\"\ndriver = "
           "\"kvh1750\"\n"
           "nominal_rate_hz = " +
-              rate_hz_ + "\n" + model_line_ +
-              "[sensor.options]\nformat = \"a\"\n[sensor.transport]\ntype = \"file\"\npath = "
-              "\"line\"\n" +
-              filter_lines_ +
+              rate_hz_ + "\n" + model_line_ + "[sensor.options]\nformat = \"a\"\n[sensor.transport]\n" +
+              transport_lines_ + filter_lines_ + realtime_lines_ +
               "[sensor.record]\nfolder = \"record\"\nfile_bytes = 100_000\nbytes = 1_000_000\n"
               "[[sensor.channel]]\nname = \"supply_V\"\nsource = \"file\"\npath = \"supply\"\nscale = 1e-3\n"
               "period_s = 0.01\nmax_age_s = 0.5\n");
@@ -173,6 +171,8 @@ class RecordedFlight : public testing::Test {
   std::string model_line_ = "model = \"model.toml\"\n";
   std::string rate_hz_ = "1000";
   std::string filter_lines_ = "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n";
+  std::string transport_lines_ = "type = \"file\"\npath = \"line\"\n";
+  std::string realtime_lines_;
   std::vector<rate_t> published_;
   std::uint32_t samples_ = 0;
   std::string sent_, complaint_;

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The daemon as it runs, its flight recorder on: what the command line makes of the recording is what the
 // daemon published and what the device sent.
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <utility>
+
 #include "tests/unit/daemon/recorded_flight.h"
 
 namespace ifog {
@@ -116,7 +122,8 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   EXPECT_EQ(models.size(), 2U);
   fs::remove(path("model.toml"));
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
-  EXPECT_EQ(complaint_, stale_in_words("record/nose"));
+  EXPECT_TRUE(complaint_.starts_with(path("record/nose") + ": 2 runs of what wrote it, with ")) << complaint_;
+  EXPECT_EQ(complaint_.substr(complaint_.find('\n') + 1), stale_in_words("record/nose"));
   const auto rows = rows_of("denoised.csv");
   ASSERT_EQ(rows.size(), published_.size());
   for (std::size_t n = 0; n < rows.size(); ++n)
@@ -208,8 +215,66 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   ASSERT_EQ(end(SIGTERM), 0);
   for (const auto& entry : fs::directory_iterator(path("record/nose")))
     EXPECT_EQ(entry.path().extension(), ".ifr") << entry.path();
+  // Every reader names the run that was killed, and for how long nothing was recorded.
+  for (const std::string& command :
+       {"denoise " + path("record/nose") + " --output " + path("denoised.csv"),
+        "convert " + path("record/nose") + " " + path("capture.csv"), "allan " + path("record/nose")}) {
+    EXPECT_EQ(ifog(command), 0) << complaint_;
+    EXPECT_NE(complaint_.find("1 run(s) of what wrote it were cut off"), std::string::npos) << complaint_;
+    EXPECT_NE(complaint_.find("2 runs of what wrote it, with "), std::string::npos) << complaint_;
+  }
+  EXPECT_NE(rows_of("denoised.csv").size(), 0U);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
   EXPECT_EQ(text_of(path("again")), sent_);
+}
+
+// Bursts that the ring has no room for: as many rows more than were published are told, and where.
+TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
+  realtime_lines_ = "[sensor.realtime]\nring_slots = 2\ndirect = false\n";
+  // A source that does not wait until it is read.
+  transport_lines_ = "type = \"udp\"\nbind = \"127.0.0.1\"\nport = 45671\n";
+  close(std::exchange(line_, socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)));
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(45671);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(connect(line_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+  configure();
+  start();
+  for (int n = 0; n < 600 && text_of(path("said")).find("reading udp") == std::string::npos; ++n) listen(50);
+  for (int n = 0; n < 200; ++n) {
+    send(1);
+    ASSERT_TRUE(await(samples_)) << text_of(path("said"));
+  }
+  const auto came = [&] {
+    std::uint64_t out = 0;
+    for (const rate_t& message : published_)
+      out += static_cast<std::uint64_t>(std::max<std::int32_t>(message.merged, 1));
+    return out;
+  };
+  for (int burst = 0; burst < 100 && published_.size() == came(); ++burst) {
+    send(50);
+    for (int n = 0; n < 600 && came() < samples_; ++n) listen(50);
+    ASSERT_EQ(came(), samples_) << text_of(path("said"));
+  }
+  const std::size_t merged = static_cast<std::size_t>(samples_) - published_.size();
+  ASSERT_GT(merged, 0U);
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv") + " --json " +
+                 path("denoised.json")),
+            0)
+      << complaint_;
+  EXPECT_EQ(rows_of("denoised.csv").size(), published_.size() + merged);
+  EXPECT_NE(complaint_.find(": " + std::to_string(merged) + " samples, the first about 0."),
+            std::string::npos)
+      << complaint_;
+  EXPECT_NE(complaint_.find("were published as one with others (the ring was full)"), std::string::npos)
+      << complaint_;
+  EXPECT_NE(text_of(path("denoised.json")).find("\"merged\": " + std::to_string(merged) + ","),
+            std::string::npos);
+  // Until the first of them, every row is what was published.
+  const auto rows = rows_of("denoised.csv");
+  for (std::size_t n = 0; n < 200; ++n) ASSERT_EQ(rows[n][3], published_[n].denoised[0]) << n;
 }
 
 TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {

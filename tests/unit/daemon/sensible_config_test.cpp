@@ -155,6 +155,11 @@ TEST(SensibleConfig, TwoSensorsDoNotReadOneSource) {
            {tcp("10.0.0.1"), tcp("10.0.0.1"), shared("port", "10.0.0.1:4001")},
            {tcp("fd00::1"), tcp("fd00:0::1"), shared("port", "[fd00:0::1]:4001")},
            {tcp("10.0.0.1"), tcp("10.0.0.2"), ""},
+           {tcp("127.0.0.1"), tcp("::ffff:127.0.0.1"), shared("port", "[::ffff:127.0.0.1]:4001")},
+           {tcp("127.0.0.1"), tcp("0.0.0.0"), shared("port", "0.0.0.0:4001")},
+           {tcp("127.0.0.1"), tcp("::ffff:0.0.0.0"), shared("port", "[::ffff:0.0.0.0]:4001")},
+           {tcp("::1"), tcp("::"), shared("port", "[::]:4001")},
+           {tcp("127.0.0.1"), tcp("127.0.0.2"), ""},
            {path("-"), path("-"), shared("path", "'-'")},
            {path(fifo), path(fifo), shared("path", "'" + fifo + "'")},
            {path(fifo), path(link), shared("path", "'" + link + "'")},
@@ -167,6 +172,28 @@ TEST(SensibleConfig, TwoSensorsDoNotReadOneSource) {
   }
   EXPECT_EQ(complaint(sensor("a", udp("")) + sensor("b", udp(""))), "f.toml:12" + shared("port", "5000"));
   std::filesystem::remove_all(folder);
+}
+
+// Whatever it is called; the test's own is a pipe while it is asked.
+TEST(SensibleConfig, StandardInputIsOneSource) {
+  const int before = dup(STDIN_FILENO);
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  dup2(ends[0], STDIN_FILENO);
+  const auto path = [](const std::string& name) { return "type = \"file\"\npath = \"" + name + "\"\n"; };
+  for (const char* const name : {"/dev/stdin", "/proc/self/fd/0", "-"})
+    EXPECT_NE(complaint(sensor("a", path("-")) + sensor("b", path(name)))
+                  .find(shared("path", "'" + std::string(name) + "'")),
+              std::string::npos)
+        << name;
+  dup2(before, STDIN_FILENO);
+  for (const int end : {before, ends[0], ends[1]}) close(end);
+}
+
+TEST(SensibleConfig, AWholeNumberWithAPointIsShownAsItStands) {
+  EXPECT_NE(complaint(sensor("nose", kFile, "[sensor.filter]\nwindow = 50.0\n"))
+                .find("sensor.filter.window = 50.0: expected a whole number"),
+            std::string::npos);
 }
 
 TEST(SensibleConfig, ARateDoesNotComeBackAsAChannelOfItsOwn) {

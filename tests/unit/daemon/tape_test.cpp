@@ -57,6 +57,23 @@ TEST(Tape, ChannelsAndTheWallClockAreRecordedWhenTheyChange) {
   EXPECT_EQ(taken.heads[7].time_ns, 51);
 }
 
+TEST(Tape, WhatWasMergedIsSaidBeforeTheDeliveryItWasSeenAt) {
+  Tape tape(Tape::kLeastBytes);
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  std::uint64_t total = 0;
+  for (const std::uint64_t more : {0, 3, 0, 4}) {
+    total += more;
+    tape.put(delivery(bytes, 10), 11, {}, 0, total);
+  }
+  const Taken taken = all_of(tape);
+  std::vector<FlightKind> kinds;
+  for (const FlightEntryHead& head : taken.heads) kinds.push_back(head.kind);
+  using K = FlightKind;
+  ASSERT_EQ(kinds, (std::vector<K>{K::bytes, K::merged, K::bytes, K::bytes, K::merged, K::bytes}));
+  EXPECT_EQ(taken.payloads[1], (std::vector<std::uint8_t>{3, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(taken.payloads[4], (std::vector<std::uint8_t>{4, 0, 0, 0, 0, 0, 0, 0}));
+}
+
 TEST(Tape, WhatFindsNoRoomIsLeftOutCountedAndTold) {
   Tape tape(Tape::kLeastBytes);
   const std::vector<std::uint8_t> bytes(1000, 7);

@@ -126,6 +126,25 @@ TEST_F(StateFolder, ANewProposalTakesTheOldOnesPlaceAndRemovalLeavesNothing) {
   EXPECT_EQ(files(), 0U);
 }
 
+// A night whose disk is full, at whichever of the three files: the proposal that waited stands, and nothing
+// of the new one is left.
+TEST_F(StateFolder, AProposalThatCouldNotBeWrittenLeavesNothing) {
+  const Model first = model_with(4e-8), second = model_with(5e-8);
+  const Proposal wanted = proposal_of(second, {});
+  for (const std::string& refuses : {wanted.report_file, std::string("nose.proposal.json")}) {
+    fs::create_directory(fs::path(state()) / refuses);
+    EXPECT_THROW(write_proposal(state(), wanted, second, "2"), std::runtime_error);
+    fs::remove(fs::path(state()) / refuses);
+    EXPECT_EQ(files(), 0U) << refuses;
+  }
+  write_proposal(state(), proposal_of(first, {}), first, "1");
+  fs::create_directory(fs::path(state()) / wanted.report_file);
+  EXPECT_THROW(write_proposal(state(), wanted, second, "2"), std::runtime_error);
+  fs::remove(fs::path(state()) / wanted.report_file);
+  EXPECT_EQ(files(), 3U);
+  EXPECT_EQ(read_proposal(state(), "nose")->model, name_of(first));
+}
+
 TEST_F(StateFolder, ADamagedProposalIsOneLine) {
   const Model model = model_with(4e-8);
   write_proposal(state(), proposal_of(model, {}), model, "");

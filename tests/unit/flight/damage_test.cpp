@@ -159,7 +159,8 @@ TEST(FlightDamage, RecordingsBehindOneAnotherAreReadAsOne) {
   EXPECT_EQ(read.payloads.size(), 20U + 8U + 8U);  // a block of four is torn
   // Of other runs: what is begun at the end of one does not go on in the next.
   EXPECT_EQ(read.holes, (std::vector<std::size_t>{20, 28}));
-  EXPECT_EQ(read.counts.open_files, 1U);
+  EXPECT_EQ(read.counts.cut_off_runs, 1U);
+  EXPECT_EQ(read.counts.open_files, 0U);
   EXPECT_GT(read.counts.torn_bytes, 0U);
   EXPECT_EQ(read.counts.damaged_bytes, 0U);
 }

@@ -148,10 +148,32 @@ TEST_F(LcmLog, RefusesMessagesThatCannotBe) {
   EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE is no ifog.rate_t of this version");
 }
 
-TEST_F(LcmLog, RefusesTimeThatStandsStill) {
-  add("IFOG_NOSE", sample(1, 1));
-  add("IFOG_NOSE", sample(1, 1));
-  EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE is not later than the one before");
+// Two recorders in one folder: the second one's file begins before the first one's has ended. By the fitted
+// times, and by a device's own clock.
+TEST_F(LcmLog, WhatCameTwiceIsLeftOutAndSaid) {
+  for (const std::int64_t clock_ns : {std::int64_t{-1}, std::int64_t{5'000'000'000}}) {
+    TearDown();
+    SetUp();
+    const auto put = [&](int n) {
+      rate_t message = sample(n, 1, clock_ns < 0 ? -1 : clock_ns + n * 1'000'000LL);
+      message.seq = n;
+      add("IFOG_NOSE", message);
+    };
+    for (int n = 0; n < 7; ++n) put(n);
+    for (int n = 4; n < 10; ++n) put(n);
+    finish();
+    testing::internal::CaptureStderr();
+    const Capture capture = read("");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              path_ +
+                  ": 3 messages on IFOG_NOSE came twice or after one that follows, and are left out (two "
+                  "recorders wrote at once, or a clock was set back)\n");
+    ASSERT_EQ(capture.time_s.size(), 10U) << clock_ns;
+    for (std::size_t n = 0; n < 10; ++n) {
+      EXPECT_NEAR(capture.time_s[n], 1e-3 * static_cast<double>(n), 1e-9);
+      EXPECT_EQ(capture.rate_radps[0][n], 100.0 * static_cast<double>(n));
+    }
+  }
 }
 
 TEST_F(LcmLog, RefusesAnotherNumberOfAxes) {

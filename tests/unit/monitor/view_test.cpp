@@ -94,6 +94,27 @@ TEST(MonitorView, FlagsAndLossesInWords) {
   EXPECT_NE(text.find("frames with a wrong checksum 2"), std::string::npos) << text;
 }
 
+// Before the first second is over nothing is said of a second; and of two counts of one kind each says when.
+TEST(MonitorView, EachCountSaysOfWhen) {
+  SensorView view;
+  rate_t message = rate(10, {0.0});
+  message.flags = 32;  // invalid
+  view.take(message);
+  status_t health = status();
+  health.invalid_samples = 400;
+  view.take(health);
+  std::string text = joined(view_lines("NOSE", view, {}));
+  EXPECT_EQ(text.find("Hz"), std::string::npos) << text;
+  EXPECT_EQ(text.find("no samples"), std::string::npos) << text;
+  EXPECT_NE(text.find("its first second is not over"), std::string::npos) << text;
+  view.end_interval(1.0);
+  text = joined(view_lines("NOSE", view, {}));
+  EXPECT_NE(text.find("1.0 Hz  1 messages"), std::string::npos) << text;
+  EXPECT_NE(text.find("  in the last second: invalid 1\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  so far: "), std::string::npos) << text;
+  EXPECT_NE(text.find("invalid 400"), std::string::npos) << text;
+}
+
 TEST(MonitorView, NoLineIsWiderThanTheScreen) {
   SensorView view;
   for (int i = 0; i < 200; ++i) {

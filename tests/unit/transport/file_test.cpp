@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/transport/sole_reader.h"
 
 namespace {
 
@@ -279,6 +280,28 @@ TEST_F(FileTransport, AFifoWhoseWriterReturnsStartsAnew) {
     EXPECT_EQ(transport->state(), TransportState::gone);
   }
   EXPECT_EQ(transport->counters().reopened, 19U);
+}
+
+TEST_F(FileTransport, AFifoIsOneReaders) {
+  fifo();
+  auto first = opened();
+  // Also after its writer has gone and it is open anew.
+  for (int round = 0; round < 2; ++round) {
+    EXPECT_THROW(opened(), ifog::DeviceTaken) << round;
+    { std::ofstream(settings_.path) << "abc"; }
+    EXPECT_EQ(first->read(kForever).bytes.size(), 3U) << round;
+    while (first->state() == TransportState::open) first->read(kForever);
+    EXPECT_EQ(first->state(), TransportState::gone) << round;
+  }
+  EXPECT_EQ(refusal(),
+            "source: another process reads it: Device or resource busy, expected a device or FIFO of this "
+            "daemon's own");
+  first.reset();
+  EXPECT_EQ(refusal(), "accepted");
+  // What many may read is not asked for.
+  settings_.path = "/dev/null";
+  const auto second = opened();
+  EXPECT_EQ(refusal(), "accepted");
 }
 
 TEST_F(FileTransport, AFileThatIsMissingIsAwaited) {

@@ -3,6 +3,7 @@
 // modem lines), it is tried in tests/system on an emulated UART and a USB adapter that is pulled out.
 #include "drivers/transport/serial.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/sole_reader.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -271,6 +272,22 @@ TEST(SerialTransport, LibserialportRefusesAPseudoTerminal) {
   const std::string path = ptsname(fd);
   EXPECT_EQ(refusal({.device = path, .baud = 9600}).substr(0, path.size() + 15), path + ": cannot open: ");
   close(fd);
+}
+
+// What the port asks for on whatever line it has opened.
+TEST(SerialTransport, ALineIsOneReaders) {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(master, 0);
+  ASSERT_EQ(grantpt(master), 0);
+  ASSERT_EQ(unlockpt(master), 0);
+  const auto line = [&] { return open(ptsname(master), O_RDWR | O_NOCTTY | O_CLOEXEC); };
+  const int first = line(), second = line();
+  ifog::read_alone(first, "gyro");
+  EXPECT_THROW(ifog::read_alone(second, "gyro"), ifog::DeviceTaken);
+  close(first);
+  EXPECT_NO_THROW(ifog::read_alone(second, "gyro"));
+  close(second);
+  close(master);
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
                                      ++counts.samples;
                                      sink.sample(sample);
                                    },
-                                   sink.discontinuity, sink.missing, file};
+                                   sink.discontinuity, sink.missing, file, sink.merged};
     decode_flight(reader_, driver, counting);
     const std::uint64_t before = driver.counters().bytes_skipped;
     driver.reset();

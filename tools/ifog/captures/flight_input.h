@@ -26,6 +26,8 @@ class FlightInput {
   explicit FlightInput(InputFile& file);
 
   [[nodiscard]] const FlightHeader& header() const { return reader_.header(); }
+  // Of what has been read of it.
+  [[nodiscard]] const FlightCounts& counts() const { return reader_.counts(); }
   [[nodiscard]] const std::string& path() const { return file_.path(); }
 
   // The driver of the recording with its options, those of `options` over them; another one, which then has

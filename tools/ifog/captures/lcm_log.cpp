@@ -160,11 +160,11 @@ using RateSink = std::function<void(const rate_t&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
 // Hands each message of the channel to `sink` with its time in s from the first, later than the one before,
-// and those of all others to `others`, which may be empty.
+// and those of all others to `others`, which may be empty. What is not later is left out, and said.
 void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
   const std::string &path = chosen.path, &wanted = chosen.rates;
   lcm::LogFile log(chosen.source.name(), "r");
-  std::size_t number = 0, axes = 0;
+  std::size_t number = 0, axes = 0, left_out = 0;
   SensorSeconds seconds;
   Progress progress("reading " + std::filesystem::path(path).filename().string(), bytes_of(log));
   long end = 0;  // of the last whole message
@@ -187,10 +187,18 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
     if (message.raw.size() != axes) refuse("has another number of axes");
     const double time_s = seconds.of(message);
-    if (time_s < 0.0) refuse("is not later than the one before");
-    sink(message, time_s);
+    if (time_s < 0.0)
+      ++left_out;
+    else
+      sink(message, time_s);
   }
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  if (left_out > 0)
+    warn(
+        "%s: %zu messages on %s came twice or after one that follows, and are left out (two recorders wrote "
+        "at "
+        "once, or a clock was set back)\n",
+        path.c_str(), left_out, printable(wanted).c_str());
   // LCM's reader does not tell the end of the file from a message that is cut off.
   std::fseek(log.getFilePtr(), 0, SEEK_END);
   if (const long left = std::ftell(log.getFilePtr()) - end; left > 0)

@@ -28,6 +28,9 @@ namespace {
 std::string typed;
 std::vector<std::string> words;
 
+// What a shell says of a program that this signal has ended, as it does others.
+constexpr int kEndedBySigpipe = 128 + 13;
+
 class HelpFormat final : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
@@ -87,6 +90,8 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
     return parse_and_run(argc, argv, commands);
   } catch (const std::bad_alloc&) {
     std::fputs("ifog: not enough memory\n", stderr);
+  } catch (const ReaderGone&) {
+    return kEndedBySigpipe;
   } catch (const std::exception& error) {
     warn("ifog: %s\n", printable(error.what(), kLongestMessage).c_str());
   } catch (...) {

@@ -89,6 +89,7 @@ void redraw(std::size_t before, const std::vector<std::string>& lines) {
 
 void finish_saying() {
   if (std::fflush(stdout) != 0 && failure == 0) failure = errno;
+  if (failure == EPIPE) throw ReaderGone();
   if (std::ferror(stdout) != 0 || failure != 0)
     throw std::runtime_error("standard output: cannot write: " + std::generic_category().message(failure));
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,12 @@ void data_to_standard_output(const std::string& option);
 // follow. Throws as finish_saying() does: nobody reads any more.
 void redraw(std::size_t before, const std::vector<std::string>& lines);
 
-// Of the whole run: what was said has arrived. Throws std::runtime_error with one line: full, closed, …
+// People have read enough, as `head` has: the end of the work, and nothing to complain of. No runtime_error,
+// so that nobody makes a complaint of it on the way.
+struct ReaderGone : std::exception {};
+
+// Of the whole run: what was said has arrived. Throws std::runtime_error with one line: full, closed, …, or
+// ReaderGone.
 void finish_saying();
 
 // Before anything else in main: descriptors 0, 1 and 2 are open (a file opened later must not become standard

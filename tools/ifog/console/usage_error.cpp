@@ -2,6 +2,7 @@
 #include "tools/ifog/console/usage_error.h"
 
 #include <algorithm>
+#include <cctype>
 #include <string_view>
 #include <vector>
 
@@ -33,6 +34,9 @@ std::string unknown_option(const CLI::App& command, int argc, const char* const*
   for (int i = 2; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--") break;
+    if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0 &&
+        command.get_option_no_throw(std::string(word.substr(0, 2))) == nullptr)
+      return "unknown option " + in_quotes(word) + "; a name or file that begins with - stands behind --";
     if (!word.starts_with("--") || word.size() < 4) continue;
     const std::string name(word.substr(0, word.find('=')));
     if (command.get_option_no_throw(name) != nullptr) continue;

@@ -2,6 +2,7 @@
 // ifog denoise: the daemon's signal chain over a capture or a recording.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -63,6 +64,9 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
           {"model", result.model},
           {"gaps", result.counts.gaps},
           {"missing", result.counts.missing},
+          {"runs", result.runs},
+          {"between_runs_s", result.between_runs_s},
+          {"merged", result.merged},
           {"invalid", result.counts.invalid},
           {"gated", rows.counts().gated},
           {"stale_channel", rows.counts().stale},
@@ -155,10 +159,38 @@ void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments
 }
 
 // Samples that nobody has a row of; a row without a value is another thing, and is said by axis.
-std::string gaps_in_words(const IncrementerCounts& counts) {
-  if (counts.gaps == 0) return "no gap between them";
-  return std::to_string(counts.missing) + " more lost in " + std::to_string(counts.gaps) +
-         (counts.gaps == 1 ? " gap" : " gaps");
+std::string gaps_in_words(const OfflineResult& result) {
+  const IncrementerCounts& counts = result.counts;
+  const bool one_run = result.runs == 1;
+  std::string out = one_run ? "no gap between them" : "no gap within a run";
+  if (counts.gaps > 0)
+    out = std::to_string(counts.missing) + " more lost in " + std::to_string(counts.gaps) +
+          (counts.gaps == 1 ? " gap" : " gaps");
+  if (!one_run) {
+    std::array<char, 80> pauses{};
+    std::snprintf(pauses.data(), pauses.size(), ", %.6g s between %zu runs not recorded",
+                  result.between_runs_s, result.runs);
+    out += pauses.data();
+  }
+  return out;
+}
+
+// Where the rows need not be what the daemon published.
+void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& rows,
+                           const OfflineResult& result) {
+  if (!options.config.empty()) return;
+  if (result.not_as_published_from_s)
+    warn(
+        "%s: from %s s on, until the filter has settled, this need not be what was published: the "
+        "recording "
+        "lacks something there\n",
+        options.capture.c_str(), told_time(rows.origin().told(*result.not_as_published_from_s)).c_str());
+  if (result.merged > 0)
+    warn(
+        "%s: %llu samples, the first about %s s, were published as one with others (the ring was full): so "
+        "many rows more than messages, and until the filter has settled behind each not what was published\n",
+        options.capture.c_str(), static_cast<unsigned long long>(result.merged),
+        told_time(rows.origin().told(result.merged_from_s.value_or(0.0))).c_str());
 }
 
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
@@ -172,14 +204,9 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
         result.noise_known ? "what is wanted of it lies within the start-up that shows its noise"
                            : "no longer than the start-up that shows its noise");
   tell_unusable(options.capture, rows, result);
-  if (result.not_as_published_from_s && options.config.empty())
-    warn(
-        "%s: from %s s on, until the filter has settled, this need not be what was published: the "
-        "recording "
-        "lacks something there\n",
-        options.capture.c_str(), told_time(rows.origin().told(*result.not_as_published_from_s)).c_str());
+  tell_not_as_published(options, rows, result);
   say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
-      gaps_in_words(result.counts).c_str());
+      gaps_in_words(result).c_str());
   if (result.runs > 1 || result.exchanges > 0)
     say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): %s; at the end\n", result.runs,
         result.exchanges,

@@ -49,11 +49,13 @@ class FlightChain {
     between_runs_ = false;
     came_ns_ = recorded.came_ns;
     if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = time_s_;
+    if (std::exchange(merged_, false) && !merged_at_s_) merged_at_s_ = time_s_;
     chain_.count(sink_.sample(time_s_, *increment, out_));
   }
 
   void discontinuity() { chain_.discontinuity(); }
   void missing() { missed_ = true; }
+  void merged() { merged_ = true; }
 
   void file(const FlightHeader& header) {
     const bool another_run = header.run != run_;
@@ -83,6 +85,9 @@ class FlightChain {
     out.runs = runs_;
     out.exchanges = exchanges_;
     out.not_as_published_from_s = missed_at_s_;
+    out.between_runs_s = flight_.counts().between_runs_s;
+    out.merged = flight_.counts().merged_samples;
+    out.merged_from_s = merged_at_s_;
     return out;
   }
 
@@ -128,6 +133,8 @@ class FlightChain {
   bool between_runs_ = false;
   bool missed_;                        // something, before the next sample
   std::optional<double> missed_at_s_;  // the first time
+  bool merged_ = false;                // samples, about where the next one is
+  std::optional<double> merged_at_s_;  // the first time
 };
 
 }  // namespace
@@ -138,7 +145,8 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
   FlightChain chain(flight, driver, settings, fixed, sink);
   const RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
                                 [&] { chain.discontinuity(); }, [&] { chain.missing(); },
-                                [&](const FlightHeader& header) { chain.file(header); }};
+                                [&](const FlightHeader& header) { chain.file(header); },
+                                [&](std::uint64_t) { chain.merged(); }};
   const RecordingCounts counts = flight.for_each_sample(driver, samples);
   for (const std::string& loss : losses(counts))
     warn("%s: %s\n", flight.header().sensor.c_str(), loss.c_str());

@@ -49,8 +49,13 @@ struct OfflineResult {
   // Of a flight recording: something is missing there, or its run's beginning, and the filter of the daemon
   // may have stood otherwise.
   std::optional<double> not_as_published_from_s;
-  std::size_t runs = 1;       // of the daemon, in a flight recording
-  std::size_t exchanges = 0;  // of model or filter settings within them
+  // Samples that the daemon's filter had as one with others, so that these rows are more than it published,
+  // and about where the first was.
+  std::uint64_t merged = 0;
+  std::optional<double> merged_from_s;
+  std::size_t runs = 1;         // of the daemon, in a flight recording
+  double between_runs_s = 0.0;  // not recorded
+  std::size_t exchanges = 0;    // of model or filter settings within them
 };
 
 // All throw std::runtime_error or std::invalid_argument with one line.

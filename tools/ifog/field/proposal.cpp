@@ -45,14 +45,13 @@ std::string plain_name(const json& from, const std::string& path) {
 }
 
 // Models and pages of proposals that are no longer waiting.
-void remove_others(const std::string& state, const std::string& sensor, const Proposal* kept) {
+void remove_others(const std::string& state, const std::string& sensor, const std::optional<Proposal>& kept) {
   std::error_code none;
   const std::string prefix = sensor + ".proposal-";
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(state, none)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix) &&
-        (kept == nullptr || (name != kept->model_file && name != kept->report_file)))
+    if (name.starts_with(prefix) && (!kept || (name != kept->model_file && name != kept->report_file)))
       old.push_back(entry.path());
   }
   for (const fs::path& path : old) fs::remove(path, none);
@@ -135,10 +134,21 @@ std::string gain_text(const std::vector<AxisGain>& gain) {
   return out;
 }
 
+namespace {
+
+// The proposal that the index names; one that cannot be read names nothing.
+std::optional<Proposal> waiting(const std::string& state, const std::string& sensor) {
+  try {
+    return read_proposal(state, sensor);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
 void write_proposal(const std::string& state, const Proposal& proposal, const Model& model,
                     const std::string& report) {
-  write_state_file(inside(state, proposal.model_file), model_text(model));
-  write_state_file(inside(state, proposal.report_file), report);
   const ordered_json index = {{"schema", kSchema},
                               {"sensor", proposal.sensor},
                               {"made", proposal.made},
@@ -148,9 +158,17 @@ void write_proposal(const std::string& state, const Proposal& proposal, const Mo
                               {"model_file", proposal.model_file},
                               {"report_file", proposal.report_file},
                               {"gain", gain_json(proposal.gain)}};
-  write_state_file(index_path(state, proposal.sensor),
-                   index.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
-  remove_others(state, proposal.sensor, &proposal);
+  try {
+    write_state_file(inside(state, proposal.model_file), model_text(model));
+    write_state_file(inside(state, proposal.report_file), report);
+    write_state_file(index_path(state, proposal.sensor),
+                     index.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  } catch (...) {
+    // What no index names would lie there for ever.
+    remove_others(state, proposal.sensor, waiting(state, proposal.sensor));
+    throw;
+  }
+  remove_others(state, proposal.sensor, proposal);
 }
 
 std::optional<Proposal> read_proposal(const std::string& state, const std::string& sensor) {
@@ -185,7 +203,7 @@ void remove_proposal(const std::string& state, const std::string& sensor) {
   std::error_code error;
   fs::remove(index_path(state, sensor), error);
   if (error) throw std::runtime_error(index_path(state, sensor) + ": cannot remove: " + error.message());
-  remove_others(state, sensor, nullptr);
+  remove_others(state, sensor, std::nullopt);
 }
 
 std::vector<std::string> sensors_with_proposal(const std::string& state) {

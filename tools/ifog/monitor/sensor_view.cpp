@@ -44,6 +44,7 @@ void SensorView::take(status_t message) { status_ = std::move(message); }
 
 void SensorView::end_interval(double seconds) {
   rate_hz_ = static_cast<double>(in_interval_) / seconds;
+  judged_ = true;
   shown_ = shown_ || in_interval_ > 0;
   flagged_before_ = std::exchange(flagged_, {});
   axes_.clear();
@@ -85,7 +86,7 @@ std::vector<SensorView::Count> SensorView::all_losses() const {
           {"device reopened", s.reopened},
           {"log faults", s.log_faults},
           {"invalid", s.invalid_samples},
-          {"channel values that cannot be", s.channel_implausible},
+          {"channel values refused", s.channel_implausible},
           {"samples with a stale channel", s.channel_stale},
           {"corrections refused", s.corrections_refused},
           {"not recorded", s.record_lost},

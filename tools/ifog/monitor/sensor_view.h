@@ -35,7 +35,8 @@ class SensorView {
   void forget_losses();
 
   [[nodiscard]] std::int64_t messages() const { return messages_; }
-  [[nodiscard]] bool shown() const { return shown_; }  // an interval with messages has ended
+  [[nodiscard]] bool judged() const { return judged_; }  // an interval has ended
+  [[nodiscard]] bool shown() const { return shown_; }    // an interval with messages has ended
   [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
   [[nodiscard]] const std::string& model() const { return model_; }
   [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
@@ -59,7 +60,7 @@ class SensorView {
   [[nodiscard]] std::vector<Count> all_losses() const;
 
   std::int64_t messages_ = 0, in_interval_ = 0;
-  bool shown_ = false;
+  bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;
   LcmLoss way_;
   std::string model_;

@@ -84,8 +84,8 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
 std::string head_line(std::string_view name, const SensorView& sensor) {
   std::string out = printable(name);
   if (sensor.status()) out += std::string("  ") + state_name(sensor.status()->state);
-  out +=
-      text("  %.1f Hz  %lld messages", sensor.message_rate_hz(), static_cast<long long>(sensor.messages()));
+  if (sensor.judged()) out += text("  %.1f Hz", sensor.message_rate_hz());
+  out += text("  %lld messages", static_cast<long long>(sensor.messages()));
   if (!sensor.model().empty()) out += "  model " + printable(sensor.model());
   return out;
 }
@@ -114,9 +114,11 @@ std::vector<std::string> health(const status_t& status) {
   return out;
 }
 
-std::vector<std::string> counted(const std::vector<SensorView::Count>& counts) {
+// Empty without any.
+std::vector<std::string> counted(const std::string& when, const std::vector<SensorView::Count>& counts) {
   std::vector<std::string> out;
-  for (const SensorView::Count& each : counts) out.push_back(std::string(each.name) + " " + n(each.count));
+  for (const SensorView::Count& each : counts)
+    out.push_back((out.empty() ? when + " " : "") + std::string(each.name) + " " + n(each.count));
   return out;
 }
 
@@ -147,12 +149,15 @@ std::vector<std::string> view_lines(std::string_view name, const SensorView& sen
   const auto add = [&](const std::vector<std::string>& parts, std::string_view separator = "  ") {
     for (std::string& line : wrapped(parts, separator, width)) out.push_back(std::move(line));
   };
-  if (sensor.axes().empty())
+  if (!sensor.judged())
+    out.push_back("  its first second is not over");
+  else if (sensor.axes().empty())
     out.push_back("  no samples in the last second" +
                   (sensor.status() ? std::string(": ") + state_name(sensor.status()->state) : ""));
   for (std::size_t a = 0; a < sensor.axes().size(); ++a) out.push_back(axis_line(sensor, a, style));
-  add(counted(sensor.flags()));
-  const auto losses = counted(sensor.losses());
+  // Each line says of when its counts are: a kind of fault may stand in both.
+  add(counted("in the last second:", sensor.flags()));
+  const auto losses = counted("so far:", sensor.losses());
   add(losses.empty() ? std::vector<std::string>{"nothing lost"} : losses);
   if (sensor.status()) {
     const status_t& status = *sensor.status();

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages into recordings: what is lost is lost in one place, and a folder is one recorder's.
+#include "tools/ifog/captures/message_archive.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+
+#include "tests/unit/flight/recordings.h"
+
+namespace ifog::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kSecond = 1'000'000'000, kWall = 1'700'000'000 * kSecond;
+
+FlightHeader of_messages() {
+  FlightHeader out = some_header();
+  out.carries = FlightHeader::Carries::messages;
+  return out;
+}
+
+std::vector<std::uint8_t> rate(std::int64_t seq) {
+  rate_t message{};
+  message.axes = 1;
+  message.raw = message.compensated = message.denoised = message.variance = message.delta_theta =
+      message.covered = message.angle = message.innovation = message.innovation_variance =
+          message.gain = {0.0};
+  message.seq = seq;
+  message.utime = kWall / 1000 + seq * 1000;
+  message.sensor_time_ns = -1;
+  message.dt = 1e-3;
+  std::vector<std::uint8_t> out(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(out.data(), 0, static_cast<int>(out.size()));
+  return out;
+}
+
+// A disk that takes nothing for a while, and messages that LCM lost before and after, while the disk was
+// well.
+TEST(MessageArchive, WhatIsLostHereIsNotLostOnTheWayAsWell) {
+  MemoryDisk disk;
+  MessageArchive archive(std::make_unique<MemoryFolder>(disk), {}, of_messages());
+  std::int64_t now_ns = 0;
+  archive.open(now_ns, kWall);
+  std::uint64_t heard = 0;
+  for (std::int64_t seq = 0; seq < 20'000; ++seq) {
+    disk.refuses = seq >= 5000 && seq < 12'000 ? ENOSPC : 0;
+    now_ns += kSecond / 1000;
+    if ((seq >= 1000 && seq < 1100) || (seq >= 15'000 && seq < 15'007)) continue;
+    archive.take("IFOG_NOSE", rate(seq), (kWall + now_ns) / 1000, now_ns, kWall + now_ns);
+    archive.turn(now_ns, kWall + now_ns);
+    ++heard;
+  }
+  archive.close(now_ns, kWall + now_ns);
+  const MessageArchive::Books books = archive.books();
+  EXPECT_EQ(books.heard, heard);
+  EXPECT_EQ(books.lost_on_way, 107U);
+  EXPECT_GT(books.lost_here, 1000U);
+  // What the recording holds and what it says is lost is all there was.
+  const std::vector<std::uint8_t> all = all_of(disk);
+  FlightReader reader(all);
+  std::uint64_t held = 0;
+  for (auto item = reader.next(); item != FlightReader::Item::end; item = reader.next())
+    if (item == FlightReader::Item::entry && reader.entry().head.kind == FlightKind::message) ++held;
+  EXPECT_EQ(held, heard - books.lost_here);
+  EXPECT_EQ(reader.counts().lost_messages, books.lost_here + books.lost_on_way);
+  EXPECT_EQ(held + reader.counts().lost_messages, 20'000U);
+}
+
+TEST(MessageArchive, ASecondRecorderOfAFolderIsRefusedAndWritesNothing) {
+  const std::string folder = fs::temp_directory_path() / ("message_archive." + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  {
+    MessageArchive first(make_flight_folder(folder), {}, of_messages());
+    first.open(0, kWall);
+    first.take("IFOG_NOSE", rate(0), kWall / 1000, 0, kWall);
+    first.turn(0, kWall);
+    first.turn(2 * kSecond, kWall);
+    MessageArchive second(make_flight_folder(folder), {}, of_messages());
+    try {
+      second.open(0, kWall);
+      ADD_FAILURE() << "accepted";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(error.what(), folder + ": another recorder writes into it (expected a folder of its own)");
+    }
+    second.close(0, kWall);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  }
+  // With its recorder the lock has gone.
+  MessageArchive third(make_flight_folder(folder), {}, of_messages());
+  EXPECT_NO_THROW(third.open(0, kWall));
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace ifog::tools

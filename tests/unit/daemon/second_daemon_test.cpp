@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two daemons at one thing: the second is refused before it has touched anything.
+#include <sys/file.h>
+
+#include "tests/unit/daemon/running_daemon.h"
+
+namespace ifog {
+namespace {
+
+class SecondDaemon : public RunningDaemon {
+ protected:
+  // Exit status of another daemon; what it says goes to `second`.
+  int run_second(const std::string& configuration) const {
+    const std::string command = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --config " +
+                                path(configuration) + " >" + path("second") + " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+  std::string second_said() const {
+    std::ifstream in(path("second"));
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+TEST_F(SecondDaemon, OneFifoIsOneDaemons) {
+  write("ifogd.toml", kDaemon + sensor("nose"));
+  write("other.toml", kDaemon + sensor("nose") + sensor("tail"));
+  start();
+  send("nose", 100);
+  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 100; })) << said();
+  EXPECT_EQ(run_second("other.toml"), 1);
+  EXPECT_EQ(second_said(), "ifogd: " + path("nose") +
+                               ": another process reads it: Device or resource busy, expected a device or "
+                               "FIFO of this daemon's own\n");
+  send("nose", 100);
+  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 200; })) << said();
+  EXPECT_EQ(end(), 0) << said();
+  // With the first one's end, however that came, the FIFO is free.
+  start();
+  ASSERT_TRUE(await([&] { return times_said("nose: reading") >= 1; })) << said();
+  kill(child_, SIGKILL);
+  waitpid(child_, nullptr, 0);
+  start();
+  send("nose", 100);
+  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 100; })) << said();
+  EXPECT_EQ(end(), 0) << said();
+}
+
+TEST_F(SecondDaemon, OneStateFolderIsOneDaemons) {
+  const std::string daemon = std::string(kDaemon) + "state_folder = \"state\"\n";
+  write("ifogd.toml", daemon + sensor("nose"));
+  write("other.toml", daemon + sensor("tail"));
+  start();
+  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; })) << said();
+  EXPECT_EQ(run_second("other.toml"), 1);
+  EXPECT_EQ(second_said(), "ifogd: " + path("state/ifogd.lock") + ": another daemon, process " +
+                               std::to_string(child_) +
+                               ", works with this state folder; expected one of its own for each\n");
+  EXPECT_EQ(listener_->heard["IFOG_TAIL_STATUS"], 0);
+  EXPECT_EQ(end(), 0) << said();
+}
+
+TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
+  write("ifogd.toml", kDaemon + sensor("nose") + "[sensor.record]\nfolder = \"rec\"\n");
+  const std::string record = "timeout 60 " IFOG_BINARY_DIR "/tools/ifog/ifog record --seconds 1 --output " +
+                             path("rec/nose") + " >" + path("second") + " 2>&1";
+  // The daemon's own.
+  start();
+  send("nose", 100);
+  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].record_file_bytes > 0; })) << said();
+  EXPECT_EQ(WEXITSTATUS(std::system(record.c_str())), 1);
+  EXPECT_EQ(second_said(), "ifog: " + path("rec/nose") +
+                               ": another recorder writes into it (expected a folder of its own)\n");
+  EXPECT_EQ(end(), 0) << said();
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("rec/nose")), fs::directory_iterator()), 1);
+  // And one that the daemon finds taken: it goes on without it, and says so.
+  const int held = open(path("rec/nose").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX | LOCK_NB), 0);
+  start();
+  send("nose", 100);
+  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 100; })) << said();
+  EXPECT_TRUE(await([&] {
+    return times_said("recorder: " + path("rec/nose") +
+                      ": another recorder writes into it (expected a folder of its own)") == 1;
+  })) << said();
+  close(held);
+  EXPECT_TRUE(await([&] { return times_said("all is recorded again, nothing is lost") == 1; })) << said();
+  EXPECT_EQ(end(), 0) << said();
+}
+
+// The folder need not be there; who checks is told where it could not be made, and nothing is.
+TEST_F(SecondDaemon, AStateFolderThatCannotBeMadeIsSaidByTheCheck) {
+  write("file", "");
+  write("ifogd.toml", std::string(kDaemon) + "state_folder = \"file/state\"\n" + sensor("nose"));
+  const std::string check = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --check --config " +
+                            path("ifogd.toml") + " >" + path("said") + " 2>&1";
+  EXPECT_EQ(WEXITSTATUS(std::system(check.c_str())), 0) << said();
+  EXPECT_EQ(times_said("daemon.state_folder = \"" + path("file/state") +
+                       "\": cannot be made: Not a directory, expected a folder that the daemon may write"),
+            1)
+      << said();
+  write("ifogd.toml", std::string(kDaemon) + "state_folder = \"new/state\"\n" + sensor("nose"));
+  EXPECT_EQ(WEXITSTATUS(std::system(check.c_str())), 0) << said();
+  EXPECT_EQ(times_said("state_folder"), 0) << said();
+  EXPECT_FALSE(fs::exists(path("new")));
+}
+
+}  // namespace
+}  // namespace ifog

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/message_archive.h"
+
+#include <ifog/decode.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "msgs/channel_name.h"
+
+namespace ifog::tools {
+
+void MessageArchive::open(std::int64_t now_ns, std::int64_t wall_ns) {
+  archive_.turn(now_ns, wall_ns);
+  if (archive_.error() != 0) throw std::runtime_error(archive_.path() + ": " + archive_.complaint());
+}
+
+void MessageArchive::tell_lost(std::int64_t wall_ns) {
+  if (untold_ == 0) return;
+  const std::uint64_t lost[2] = {std::exchange(untold_, 0), std::exchange(untold_bytes_, 0)};
+  archive_.add({FlightKind::lost, 0, 0, 0, wall_ns},
+               {reinterpret_cast<const std::uint8_t*>(lost), sizeof lost});
+}
+
+void MessageArchive::take(const std::string& channel, std::span<const std::uint8_t> message,
+                          std::int64_t came_utime, std::int64_t now_ns, std::int64_t wall_ns) {
+  ++books_.heard;
+  // Whether or not there is room for it: what is lost here was not lost on the way as well.
+  rate_t rate{};
+  if (channel_name(channel).content == ChannelContent::rate &&
+      decode_message(message.data(), message.size(), rate))
+    untold_ += static_cast<std::uint64_t>(ways_[channel].take(rate));
+  payload_.assign(channel.begin(), channel.end());
+  payload_.insert(payload_.end(), message.begin(), message.end());
+  if (archive_.full()) archive_.turn(now_ns, wall_ns);
+  if (archive_.full() || payload_.size() > kMostFlightPayload) {
+    ++books_.lost_here;
+    ++untold_;
+    untold_bytes_ += message.size();
+    return;
+  }
+  tell_lost(wall_ns);
+  archive_.add({FlightKind::message, 0, static_cast<std::uint16_t>(channel.size()), 0, came_utime * 1000},
+               payload_);
+}
+
+void MessageArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
+  if (!archive_.full()) tell_lost(wall_ns);
+  archive_.close(now_ns, wall_ns);
+  books_.lost_here += archive_.not_taken().deliveries;
+}
+
+MessageArchive::Books MessageArchive::books() const {
+  Books out = books_;
+  for (const auto& [channel, way] : ways_) {
+    out.lost_on_way += static_cast<std::uint64_t>(way.lost());
+    out.began_anew += static_cast<std::uint64_t>(way.began_anew());
+  }
+  return out;
+}
+
+}  // namespace ifog::tools
