@@ -232,7 +232,7 @@ class Checks:
         for command in ("allan", "compare", "status"):
             result = ran("help", command)
             assert result.returncode == 0 and result.stdout == ran(command, "--help").stdout, command
-        refused(2, "help", "alan", says=['unknown command "alan"', "allan"])
+        refused(2, "help", "alan", says=["unknown command 'alan'", "'allan'"])
 
     def check_help_is_laid_out(self):
         """No line that a terminal would break within a word, no hole of two empty lines."""
