@@ -11,8 +11,8 @@
 namespace ifog {
 namespace {
 
-// Half of a chi square of one degree is beyond these in 0.4 and 2.3 % of records of a true walk.
-constexpr double kPresent = 7.0;
+// Half of a chi square of one degree is beyond these in 0.2 and 2.3 % of records of a true walk.
+constexpr double kPresent = 8.0;
 constexpr double kWeighed = 4.0;
 constexpr double kWeighedUpTo = 0.25;   // of the record: what is longer is a walk in it
 constexpr double kInterval = 3.841459;  // of a chi square of one degree, 95 %

@@ -64,9 +64,7 @@ double foretold(const Case& c, const ifog::NoiseCoefficients& found) {
          ifog::heading_variance(seen, kAligned_s, kAfter_s);
 }
 
-double walk_of(const Case& c) {
-  return c.sigma > 0.0 ? c.sigma * std::sqrt(2.0 / c.correlation) : std::max(c.terms.K, 1e-300);
-}
+double walk_of(const Case& c) { return c.sigma > 0.0 ? c.sigma * std::sqrt(2.0 / c.correlation) : c.terms.K; }
 
 }  // namespace
 
@@ -122,12 +120,13 @@ int main(int argc, char** argv) {
     }
     const double of = static_cast<double>(std::max<std::size_t>(1, found)),
                  all = static_cast<double>(records);
-    std::printf("| %s | %.3f | %.2f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.2f |\n", c.name.c_str(),
-                static_cast<double>(found) / all, score / of, static_cast<double>(inside) / of,
-                c.correlation > 0 ? std::exp(time / of) / c.correlation : 0.0,
-                c.sigma > 0 ? std::exp(sigma / of) / c.sigma : 0.0,
-                walk / std::max<double>(1.0, static_cast<double>(present)) / walk_of(c),
-                static_cast<double>(present) / all, static_cast<double>(weighed) / all, ratio / all);
+    std::printf(
+        "| %s | %.3f | %.2f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.2f |\n", c.name.c_str(),
+        static_cast<double>(found) / all, score / of, static_cast<double>(inside) / of,
+        c.correlation > 0 ? std::exp(time / of) / c.correlation : 0.0,
+        c.sigma > 0 ? std::exp(sigma / of) / c.sigma : 0.0,
+        walk_of(c) > 0.0 ? walk / std::max<double>(1.0, static_cast<double>(present)) / walk_of(c) : 0.0,
+        static_cast<double>(present) / all, static_cast<double>(weighed) / all, ratio / all);
     std::fflush(stdout);
   }
   return 0;
