@@ -200,9 +200,8 @@ std::int64_t CandumpClock::time_ns(const CandumpEntry& entry) noexcept {
   if (entry.stamp != CandumpStamp::since) return stamp;
   if (stamp < last_stamp_ns_) differences_ = true;
   last_stamp_ns_ = stamp;
-  // A second on, because 0 means no time.
   now_ns_ = differences_ ? now_ns_ + stamp : stamp;
-  return now_ns_ + 1'000'000'000;
+  return now_ns_ + kShortStampsFrom_ns;
 }
 
 std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view interface, char* out) noexcept {

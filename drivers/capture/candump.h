@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,8 @@ inline constexpr const char* kCandumpExpected =
 // candump -t d (since the frame before) and -t z (since the first) look alike: short, of 3 digits for the
 // seconds.
 enum class CandumpStamp { none, since, absolute };
+// Arrival of a short stamp of zero, as 0 means no time.
+inline constexpr std::int64_t kShortStampsFrom_ns = 1'000'000'000;
 
 struct CandumpEntry {
   ifog_can_frame frame{};  // arrival_ns is the line's time, 0 without one
@@ -110,6 +113,10 @@ using CandumpSink = std::function<void(const ifog_can_frame&, std::string_view)>
 // The same of a log of any length, frame by frame, none of it kept; a log with short times is read twice, or
 // held in memory where it cannot be opened again. What is thrown may come behind frames that were handed on.
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink);
+
+// The arrival time, ns, that frames of a log that begins so have at a stamp of zero; nothing where its lines
+// have no times.
+std::optional<std::int64_t> zero_of_stamps(std::string_view beginning);
 
 // The interface of the first frame that is wanted, of a log's beginning; "" where none is in it.
 std::string first_interface(std::string_view beginning,

@@ -156,6 +156,18 @@ std::string_view CandumpBuses::other(const ifog_can_frame& frame, std::string_vi
   return {};
 }
 
+std::optional<std::int64_t> zero_of_stamps(std::string_view beginning) {
+  std::string_view line;
+  for (bool ended = false; next_line(beginning, line, ended);) {
+    CandumpEntry entry;
+    const CandumpLine kind = parse_candump_line(line, entry);
+    if (kind == CandumpLine::blank || kind == CandumpLine::malformed) continue;
+    if (entry.stamp == CandumpStamp::none) return std::nullopt;
+    return entry.stamp == CandumpStamp::since ? kShortStampsFrom_ns : 0;
+  }
+  return std::nullopt;
+}
+
 std::string first_interface(std::string_view beginning,
                             const std::function<bool(const ifog_can_frame&)>& wanted) {
   std::string_view line;

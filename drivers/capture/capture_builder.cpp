@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "drivers/capture/time_stamps.h"
-#include "drivers/host/timeline_frame.h"
 #include "drivers/ifog/turn.h"
 
 namespace ifog {
@@ -22,10 +21,6 @@ bool never_known(const std::vector<double>& values) {
 double period_of(const ifog_description& description) {
   return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
 }
-DeviceTimeline timeline_of(const ifog_description& description) {
-  return {description.sequence_modulus, description.nominal_rate_hz};
-}
-
 // Of the frames: axes, then channels.
 std::vector<std::string> columns_of(const ifog_description& description) {
   std::vector<std::string> out;
@@ -43,17 +38,10 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
          std::equal(a.full_scale, a.full_scale + a.axes, b.full_scale);
 }
 
-// Whatever a device says: what has no room wraps, and is a clock that jumps.
-std::int64_t ns_since(const TimeOrigin& origin, std::int64_t time_ns) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
-                                   static_cast<std::uint64_t>(origin.s) * 1'000'000'000U -
-                                   static_cast<std::uint64_t>(origin.ns));
-}
-
 }  // namespace
 
 CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
-    : description_(description), timeline_(timeline_of(description)) {
+    : description_(description), times_(description) {
   for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
   capture_.rate_radps.resize(description.axes);
   capture_.reference_rate_radps.resize(description.axes);
@@ -69,74 +57,8 @@ void CaptureBuilder::go_on_as(const ifog_description& description) {
         "goes on with other axes or channels, as the driver's options changed; expected recordings of one");
   if (same_samples(description, description_)) return;
   description_ = description;
-  timeline_ = timeline_of(description);
-  clock_ = Clock::undecided;
-  broken_ = true;
-}
-
-void CaptureBuilder::choose_clock(const ifog_sample& sample) {
-  first_arrival_ns_ = sample.arrival_ns;
-  const bool rate_known = description_.nominal_rate_hz > 0.0;
-  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) {
-    clock_ = Clock::device;
-    device_from_ = TimeOrigin::of(sample.device_time_ns);
-    if (taken_ + capture_.size() == 0) capture_.origin = device_from_;
-  } else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known) {
-    clock_ = Clock::counter;
-  } else if (sample.arrival_ns != 0) {
-    clock_ = Clock::arrival;
-  } else if (rate_known) {
-    clock_ = Clock::number;
-  } else {
-    throw std::runtime_error(
-        "the samples carry no time: expected the option rate_hz with the samples a second of the device");
-  }
-}
-
-DeviceTimeline::Step CaptureBuilder::step_to(const ifog_sample& sample) {
-  const DeviceTimeline::Frame frame = timeline_frame(sample, description_.axes);
-  if (timeline_.tells(frame)) return timeline_.next(frame);
-  DeviceTimeline::Step step;
-  step.time_ns = timeline_.first(frame);
-  return step;
-}
-
-double CaptureBuilder::seconds(const ifog_sample& sample) const {
-  constexpr double kNsPerSecond =
-      1e9;  // divided by, so that the result is the double nearest to the decimal time
-  switch (clock_) {
-    case Clock::device:
-      return static_cast<double>(ns_since(device_from_, device_ns_)) / kNsPerSecond + offset_s_;
-    case Clock::arrival:
-      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
-    default:
-      return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
-  }
-}
-
-// The sample's clock is set so that it comes as much later than the one before as it arrived later.
-void CaptureBuilder::begin_anew(const ifog_sample& sample) {
-  broken_ = false;
-  const double later_s = static_cast<double>(sample.arrival_ns - last_.arrival_ns) * 1e-9;
-  const double rate_hz = description_.nominal_rate_hz;
-  const double least_s = rate_hz > 0.0 ? 1.0 / rate_hz : 1e-6;
-  const bool known = sample.arrival_ns != 0 && last_.arrival_ns != 0;
-  offset_s_ += last_s_ + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
   last_.valid_axes = 0;  // no difference of angles over it
-}
-
-void CaptureBuilder::refuse(double now) const {
-  const auto told = [this](double time_s) {
-    std::string text;
-    append_time(text, capture_.origin, time_s);
-    return text;
-  };
-  throw std::runtime_error("sample " + std::to_string(taken_ + capture_.size() + 1) + ": its time is " +
-                           told(now) + " s by " +
-                           (clock_ == Clock::device    ? "the device's clock"
-                            : clock_ == Clock::counter ? "its counter"
-                                                       : "its arrival") +
-                           ", expected more than the " + told(last_s_) + " s of the sample before");
+  times_.go_on_as(description);
 }
 
 void CaptureBuilder::add_rates(const ifog_sample& sample, double elapsed, double period) {
@@ -185,49 +107,12 @@ void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
 }
 
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
-  const bool first = taken_ + capture_.size() == 0;
-  if (clock_ == Clock::undecided) choose_clock(sample);
-  bool anew = broken_ && !first;
-  DeviceTimeline::Step step;
-  if (first || anew)
-    step.time_ns = timeline_.first(timeline_frame(sample, description_.axes));
-  else
-    step = step_to(sample);
-  if (step.out_of_turn) {
-    ++repeated_;
-    return;
-  }
-  const std::uint64_t steps = first || anew ? 0 : step.samples;
-  const bool timed_anew =
-      step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
-  count_ += steps;
-  if (steps > 1) missing_ += steps - 1;
-  if (timed_anew) ++restarted_;
-  device_ns_ = step.time_ns;
-  anew = anew || (timed_anew && clock_ == Clock::device);
-  if (anew) begin_anew(sample);
-  broken_ = false;
-  // Where the device's clock has stood still while it measured: by the sum of its steps.
-  if (!first && !anew && clock_ == Clock::device && timeline_.clock_stood())
-    offset_s_ += last_s_ + step.dt_s - seconds(sample);
-  double now = seconds(sample);
-  if (!first && now <= last_s_) {
-    if (!restarts_) refuse(now);
-    if (now == last_s_) {
-      ++repeated_;
-      return;
-    }
-    anew = true;
-    begin_anew(sample);
-    now = seconds(sample);
-  }
-  const double elapsed = first ? kMissing : now - last_s_;
-  double period = elapsed / static_cast<double>(std::max<std::uint64_t>(steps, 1));
-  if ((first || anew) && description_.nominal_rate_hz > 0.0) period = 1.0 / description_.nominal_rate_hz;
-
-  capture_.time_s.push_back(now);
-  last_s_ = now;
-  add_rates(sample, elapsed, period);
+  const std::optional<SampleTimes::Taken> taken = times_.next(sample);
+  if (!taken) return;
+  capture_.origin = times_.origin();
+  capture_.time_s.push_back(taken->since_s);
+  if (taken->anew) last_.valid_axes = 0;  // no difference of angles over it
+  add_rates(sample, taken->elapsed_s, taken->period_s);
   for (std::uint32_t i = 0; i < description_.environments; ++i)
     capture_.channels[i].values.push_back(
         believable(i, (sample.environment_fresh & 1U << i) != 0 ? sample.environment[i] : kMissing));
@@ -258,7 +143,6 @@ std::vector<std::string> CaptureBuilder::names() const {
 }
 
 void CaptureBuilder::next_rows(RowBlock& rows) {
-  taken_ += capture_.size();
   rows.columns.clear();
   rows.origin = capture_.origin;
   rows.time_s = std::exchange(capture_.time_s, {});

@@ -20,6 +20,11 @@ void append(std::string& out, double value) {
   out.append(text.data(), end);
 }
 
+bool is_large_time(double time_s) {
+  constexpr double kMost = 9e18;  // whole seconds of 64 bits
+  return std::abs(time_s) >= kFineTimes_s && std::abs(time_s) < kMost;
+}
+
 }  // namespace
 
 CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
@@ -40,7 +45,8 @@ void CsvWriter::rows(std::span<const std::span<const double>> columns, const Tim
   for (std::size_t row = 0; row < columns.front().size(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c != 0) text_ += ',';
-      if (c == 0 && origin != TimeOrigin{})
+      // Large times keep their digits however they came: 1763000000, never 1.763e+09.
+      if (c == 0 && (origin != TimeOrigin{} || is_large_time(columns[c][row])))
         append_time(text_, origin, columns[c][row]);
       else
         append(text_, columns[c][row]);

@@ -2,7 +2,9 @@
 #include "filters/allan/noise_coefficients.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -11,6 +13,7 @@
 
 #include "filters/allan/described_bands.h"
 #include "filters/allan/noise_likelihood.h"
+#include "filters/units/field_units.h"
 
 namespace ifog {
 namespace {
@@ -183,6 +186,68 @@ void fit_ramp(const NoiseSpectrum& spectrum, const TermVariances& variances, dou
   R.std_error = R.present ? error : R.upper / kOneSided;
 }
 
+// Up to which time the walk's deviation is the returning one's within a tenth.
+double walk_until(double correlation) {
+  constexpr double kTenth = 1.1 * 1.1;
+  double low = 1e-6 * correlation, high = 100.0 * correlation;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(low * high);
+    (middle / 3.0 > kTenth * returning_variance(correlation, middle) ? high : low) = middle;
+  }
+  return low;
+}
+
+// Largest relative departure of the terms' deviation from the returning one's, up to a quarter of the record.
+double departure(const NoiseCoefficients& found, const MarkovNoise& markov, std::size_t longest,
+                 double period_s) {
+  double most = 0.0;
+  for (double m = 1.0; m <= 0.25 * static_cast<double>(longest); m *= 2.0) {
+    TermVariances rest = markov.fit.variances;
+    rest[kK] = 0.0;
+    const double variance = expected_variance(Deviation::kAllan, rest, static_cast<std::size_t>(m)) +
+                            markov.fit.variances[kK] * returning_variance(markov.fit.correlation, m);
+    most = std::max(most, std::abs(modelled_deviation(found, m * period_s) / std::sqrt(variance) - 1.0));
+  }
+  return most;
+}
+
+// Bands that no sum of the terms comes near may be those of a bias that returns: then it describes all of the
+// spectrum, and its fit is of that. Else it is of what the terms describe.
+std::optional<GaussMarkovFit> return_of(const NoiseSpectrum& measured, const Described& record, Ramp ramp,
+                                        std::size_t longest, const NoiseSpectrum*& of) {
+  if (record.misfit > 0.0 || !record.left_out.empty()) {
+    const auto whole = fit_gauss_markov(measured, ramp, longest, record.terms);
+    if (whole && whole->present) {
+      const Described returning = described(with_return(measured, whole->correlation));
+      of = &measured;
+      if (returning.misfit == 0.0 && returning.left_out.empty()) return whole;
+    }
+  }
+  of = &record.spectrum;
+  return fit_gauss_markov(record.spectrum, ramp, longest, record.terms);
+}
+
+void find_return(const NoiseSpectrum& measured, const Described& record, std::size_t longest, double period_s,
+                 NoiseCoefficients& found) {
+  const NoiseSpectrum* of = nullptr;
+  const std::optional<GaussMarkovFit> fit =
+      return_of(measured, record, found.R.present ? Ramp::kProjected : Ramp::kNone, longest, of);
+  if (!fit || !fit->weighed) return;
+  MarkovNoise markov;
+  markov.fit = *fit;
+  markov.chances = gauss_markov_chances(*of, *fit);
+  markov.correlation_s = fit->correlation * period_s;
+  markov.lower_s = fit->lower * period_s;
+  markov.upper_s = fit->upper * period_s;
+  markov.sigma_radps = std::sqrt(0.5 * fit->variances[kK] * fit->correlation);
+  markov.walk = std::sqrt(fit->variances[kK] / period_s);
+  markov.walk_until_s = walk_until(fit->correlation) * period_s;
+  markov.score = std::sqrt(fit->gain);
+  markov.present = fit->present;
+  if (fit->present) found.misfit = std::max(found.misfit, departure(found, markov, longest, period_s));
+  found.markov = std::move(markov);
+}
+
 FrequencyRange in_hz(const FrequencyRange& range, double period_s) {
   return {range.low / period_s, range.high / period_s};
 }
@@ -195,7 +260,7 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
     throw std::invalid_argument("the longest stretch without gaps has " + std::to_string(longest) +
                                 " samples, expected at least " + std::to_string(kShortestStretch) +
                                 " for a noise fit");
-  NoiseSpectrum measured = noise_spectrum(sum);
+  const NoiseSpectrum measured = noise_spectrum(sum);
   if (std::all_of(measured.bins.begin(), measured.bins.end(), [](const auto& b) { return !(b.power > 0.0); }))
     throw std::invalid_argument("the rate never changes; there is no noise to fit");
   if (std::all_of(measured.bins.begin(), measured.bins.end(),
@@ -203,7 +268,7 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
     throw std::invalid_argument("the rate changes by less than 1e-60 rad/s: no sensor's noise");
   NoiseCoefficients found;
   for (const FrequencyRange& line : measured.lines) found.lines_hz.push_back(in_hz(line, period_s));
-  const Described record = described(std::move(measured));
+  const Described record = described(measured);
   found.misfit = record.misfit;
   for (const FrequencyRange& range : record.left_out) found.left_out_hz.push_back(in_hz(range, period_s));
 
@@ -229,7 +294,21 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
     }
   }
   fit_ramp(record.spectrum, sets.all().variances, period_s, found);
+  find_return(measured, record, longest, period_s, found);
   return found;
+}
+
+std::string markov_in_words(const NoiseCoefficients& found) {
+  if (!found.markov || !found.markov->present) return "";
+  const MarkovNoise& markov = *found.markov;
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(),
+                "the bias is correlated (first-order Gauss-Markov noise): %.3g °/h, correlation time %.3g s "
+                "(95 %%: %.3g … %.3g s); it is a random walk, of K %.3g °/h/√h, up to %.2g s only: at longer "
+                "times the deviation is below the walk's",
+                markov.sigma_radps / kDegreePerHour, markov.correlation_s, markov.lower_s, markov.upper_s,
+                markov.walk / kDegreePerHourPerRootHour, markov.walk_until_s);
+  return text.data();
 }
 
 double modelled_deviation(const NoiseCoefficients& found, double tau_s) {

@@ -12,8 +12,11 @@
 // `diagnose` all report what it finds.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "filters/allan/gauss_markov.h"
 #include "filters/allan/noise_spectrum.h"
 
 namespace ifog {
@@ -26,12 +29,27 @@ struct NoiseCoefficient {
   double score = 0.0;      // how many standard deviations the record asks for it
 };
 
+// A bias that wanders and comes back (gauss_markov.h), where the record shows that it does.
+struct MarkovNoise {
+  bool present = false;        // else a forecast weighs it, and nobody is told
+  double sigma_radps = 0.0;    // of the bias
+  double correlation_s = 0.0;  // and how long it remembers, with its 95 % interval
+  double lower_s = 0.0, upper_s = 0.0;
+  double walk = 0.0;                       // K of the walk that it is at short times, rad/s²/√Hz
+  double walk_until_s = 0.0;               // up to here the walk's deviation is its own within a tenth
+  double score = 0.0;                      // how many standard deviations the record asks for the return
+  std::vector<GaussMarkovChance> chances;  // what the record allows it to be; for averages at these samples
+  GaussMarkovFit fit;                      // likewise
+};
+
 struct NoiseCoefficients {
   NoiseCoefficient Q, N, B, K, R;  // rad, rad/s/√Hz, rad/s, rad/s²/√Hz, rad/s²
   double ramp_radps2 = 0.0;        // R with its sign
   // Relative departure of the measured deviation from the sum of terms that chance does not explain; 0 when
-  // the terms describe the record. It is part of the error bars.
+  // the terms describe the record. It is part of the error bars, but for what a correlated bias departs by at
+  // long τ.
   double misfit = 0.0;
+  std::optional<MarkovNoise> markov;     // where K is no law of long τ
   std::vector<FrequencyRange> lines_hz;  // stood out of the spectrum
   std::vector<FrequencyRange>
       left_out_hz;  // where no sum of the terms comes near: resonances, vibration, filters
@@ -45,5 +63,8 @@ struct NoiseCoefficients {
 
 // Allan deviation at τ of the terms that are present, rad/s.
 [[nodiscard]] double modelled_deviation(const NoiseCoefficients& found, double tau_s);
+
+// "the bias is correlated: …", "": it is not.
+[[nodiscard]] std::string markov_in_words(const NoiseCoefficients& found);
 
 }  // namespace ifog

@@ -190,7 +190,9 @@ std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples)
   std::array<SlowPart, 2> parts;
   for (std::size_t first = 0; first < parts.size(); ++first) {
     SlowPart& part = parts[first];
-    const Eigen::MatrixXd w = cosines(count, slow_count(count), first);
+    part.cosines = std::make_shared<const Eigen::MatrixXd>(cosines(count, slow_count(count), first));
+    part.level = level;
+    const Eigen::MatrixXd& w = *part.cosines;
     part.value = w.transpose() * rate;
     part.ramp = w.transpose() * ramp;
     // A ramp is opposite.

@@ -15,6 +15,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "filters/allan/power_law.h"
@@ -34,6 +35,9 @@ struct SlowPart {
   Eigen::VectorXd value;                           // rad/s
   std::array<Eigen::MatrixXd, kTerms> covariance;  // for one unit of each term's variance
   Eigen::VectorXd ramp;  // what a rate that grows by one a sample makes of it; may be zero
+  // The cosines that the means of this level were taken of, a column each: for terms of other covariance.
+  std::shared_ptr<const Eigen::MatrixXd> cosines;
+  int level = 0;
 };
 
 struct FrequencyRange {

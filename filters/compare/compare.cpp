@@ -9,6 +9,7 @@
 
 #include "filters/allan/deviation.h"
 #include "filters/compare/figures.h"
+#include "filters/rest/rest.h"
 
 namespace ifog {
 namespace {
@@ -117,19 +118,28 @@ StepResponse step_response(const ComparisonInput& in, const Steps& steps, const 
   return response;
 }
 
+double spread_at_rest(std::span<const double> output, const std::vector<Stretch>& at_rest) {
+  Samples resting;
+  for (const Stretch& part : at_rest)
+    resting.insert(resting.end(), output.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                   output.begin() + static_cast<std::ptrdiff_t>(part.end));
+  return spread(resting);
+}
+
 void add_series_figures(ComparisonRow& row, const ComparisonInput& in, std::span<const double> output) {
   const auto axis = static_cast<std::size_t>(row.axis);
-  row.std_radps = spread(output);
+  const SampleClock clock = sample_clock(in.time_s);
+  const std::vector<Stretch> whole = stretches(in.time_s, output, clock);
+  const std::vector<Stretch> parts = in.at_rest.empty() ? whole : common(whole, in.at_rest);
+  row.std_radps = in.at_rest.empty() ? spread(output) : spread_at_rest(output, in.at_rest);
   if (!in.reference.empty() && !in.reference[axis].empty()) {
     const AgainstReference against = against_reference(output, in.reference[axis], in.period_s, kLongestLag);
     row.rmse_radps = against.rmse;
     row.bias_radps = against.bias;
     row.lag_s = against.lag_s;
   }
-  const SampleClock clock = sample_clock(in.time_s);
-  const std::vector<Stretch> whole = stretches(in.time_s, output, clock);
-  if (whole.empty()) return;
-  const AngleSum sum(output, whole);
+  if (parts.empty()) return;
+  const AngleSum sum(output, parts);
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i) {
     const double samples = std::round(kComparedTaus[i] / clock.period_s);
     if (samples < 1.0 || std::abs(samples * clock.period_s / kComparedTaus[i] - 1.0) > 0.1) continue;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/allan/stretches.h"
 #include "filters/estimator/estimator.h"
 #include "filters/series/samples.h"
 #include "filters/settings/filter_settings.h"
@@ -23,6 +24,7 @@ struct ComparisonInput {
   std::vector<std::span<const double>> rate;       // by axis, as long as time_s
   std::vector<std::span<const double>> reference;  // by axis; empty where there is none
   double period_s = 0.0;                           // nominal, > 0
+  std::vector<Stretch> at_rest;                    // std_radps and adev_radps are of these; none: of all
 };
 
 // The averaging times at which the Allan deviation is compared, s.
@@ -39,7 +41,7 @@ struct ComparisonRow {
   std::string rule;  // "raw" for the record itself
   int axis = 0;
   std::optional<double> rmse_radps, bias_radps, lag_s;  // against the reference, where there is one
-  double std_radps = 0.0;
+  double std_radps = 0.0;                               // at rest, as the deviations
   std::array<std::optional<double>, kComparedTaus.size()>
       adev_radps;                // nothing: the record is too short or too coarse
   double heading_end_rad = 0.0;  // ∫(denoised − compensated)dt over the record

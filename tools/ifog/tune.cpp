@@ -204,6 +204,7 @@ json noise_json(const NoiseByAxis& noise) {
   for (const auto& [axis, found] : noise)
     axes.push_back({{"axis", axis},
                     {"coefficients", report::coefficients_json(found.terms)},
+                    {"gauss_markov", report::markov_json(found.terms)},
                     {"noise_changes", report::noise_changes_json(found.changes)}});
   return axes;
 }
@@ -219,6 +220,8 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
       AxisNoise found{
           noise_coefficients(AngleSum(rate, parts), clock.period_s),
           noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.told_time_s(i); })};
+      if (const std::string markov = markov_in_words(found.terms); !markov.empty())
+        notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + markov);
       if (const std::string change = in_words(found.changes); !change.empty())
         notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + change);
       noise[capture.axes[a]] = std::move(found);

@@ -91,6 +91,18 @@ nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
   return out;
 }
 
+nlohmann::ordered_json markov_json(const NoiseCoefficients& found) {
+  if (!found.markov || !found.markov->present) return nullptr;
+  const MarkovNoise& markov = *found.markov;
+  return {{"sigma_radps", markov.sigma_radps},
+          {"correlation_s", markov.correlation_s},
+          {"lower_s", markov.lower_s},
+          {"upper_s", std::isfinite(markov.upper_s) ? nlohmann::ordered_json(markov.upper_s)
+                                                    : nlohmann::ordered_json(nullptr)},
+          {"K", markov.walk},
+          {"K_until_s", markov.walk_until_s}};
+}
+
 nlohmann::ordered_json noise_changes_json(std::span<const NoiseChange> changes) {
   auto out = nlohmann::ordered_json::array();
   for (const NoiseChange& change : changes)

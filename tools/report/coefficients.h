@@ -33,6 +33,9 @@ std::string coefficient_lines(const NoiseCoefficients& found);
 // {Q|N|B|K|R: {value, std_error, upper, unit, present}}, SI.
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found);
 
+// {sigma_radps, correlation_s, lower_s, upper_s, K, K_until_s} of a correlated bias; null where none is seen.
+nlohmann::ordered_json markov_json(const NoiseCoefficients& found);
+
 // [{from_s, to_s, times, low_hz, high_hz}], empty where the noise is the same all along.
 nlohmann::ordered_json noise_changes_json(std::span<const NoiseChange> changes);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 
@@ -70,6 +71,21 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
   }
 }
 
+// A bias that comes back is foretold by what the record allows it to be, where the regression took it for a
+// walk.
+void weigh_return(const NoiseCoefficients& found, double sample_s, NoisePosterior& posterior) {
+  if (!found.markov || std::any_of(posterior.parts.begin(), posterior.parts.end(),
+                                   [](const auto& p) { return p.markov > 0.0; }))
+    return;
+  posterior.parts.clear();
+  for (const GaussMarkovChance& chance : found.markov->chances) {
+    const double flicker = chance.variances[kB] * std::log(kFlickerSpacing) / std::numbers::pi;
+    posterior.parts.push_back({chance.weight, chance.variances[kN] * sample_s, 0.0, flicker,
+                               0.5 * chance.variances[kK] * chance.correlation,
+                               chance.correlation * sample_s});
+  }
+}
+
 }  // namespace
 
 void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
@@ -93,6 +109,9 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
     put(found.B, value.B, error.B);
     put(found.K, value.K, error.K);
     put(found.R, value.R, error.R);
+    if (const std::string markov = markov_in_words(found); !markov.empty())
+      diagnosis.remarks.push_back(markov);
+    weigh_return(found, grid.sample_s, diagnosis.noise_posterior);
   } catch (const std::invalid_argument& reason) {
     diagnosis.remarks.push_back(std::string("no noise terms: ") + reason.what());
   }

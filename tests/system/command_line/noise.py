@@ -112,6 +112,17 @@ class Noise:
             refused(1, command, path, says=[str(path), "turned", "mostly at rest"])
         assert self.json("allan", path, "--moving", "keep")["axes"][0]["samples"] == SECONDS * RATE_HZ
 
+    def check_compare_says_what_moved_and_leaves_it_out_as_allan_does(self):
+        """A turn in the middle: which part it was is said, and std and deviation are those of allan's rest."""
+        path = self.turned("turned.csv", 100, 148)
+        found, allan = self.json("compare", path), self.json("allan", path, "--tau", "0.1,1,10")["axes"][0]
+        assert "moving in" in found["motion"] and "of the rest alone" in found["motion"], found["motion"]
+        assert found["samples_at_rest"] == allan["samples"] < found["samples"]
+        for tau, value in zip(("0.1", "1", "10"), allan["adev_radps"]):
+            assert abs(found["raw"][0]["adev_radps"][tau] / value - 1) < 1e-9, (tau, value, found["raw"][0])
+        still = self.json("compare", path, "--to", "90")
+        assert still["motion"] == "" and still["samples"] == still["samples_at_rest"] == 90 * RATE_HZ
+
     def check_several_captures_in_one_table(self):
         other = self.turned("other.csv", 0, 0)
         said = ifog("allan", self.capture, other, "--plot", self.folder / "both.svg")

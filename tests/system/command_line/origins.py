@@ -19,7 +19,7 @@ try:
 except ImportError:
     h5py = None
 
-from run import ifog, main_of, ran, refused
+from run import SOURCE, ifog, main_of, ran, refused
 
 S = 10**9  # ns
 STARTS = {"1970": 1_700_000_000_123_456_789, "GPS": 345_678_250_000_000, "before": -1_700_000_000_500_000_000}
@@ -128,7 +128,8 @@ class Checks:
         """To the digit, as the column says them."""
         lines = [line for line in path.read_text().splitlines() if not line.startswith("#")][1:]
         found = [Decimal(line.partition(",")[0]) for line in lines]
-        assert found == [Decimal(t).scaleb(-9) for t in times], (path.name, found[:3], times[:3])
+        wrong = [i for i, (a, b) in enumerate(zip(found, times)) if a != Decimal(b).scaleb(-9)]
+        assert not wrong and len(found) == len(times), (path.name, len(found), len(times), [(str(found[i]), times[i]) for i in wrong[:3]])
 
     def check_every_start_and_unit_gives_the_same(self):
         for kind in KINDS:
@@ -205,6 +206,66 @@ class Checks:
             ifog("convert", self.folder / "sent.kvh", back, *driver)
             found = [Decimal(line.partition(",")[0]) for line in back.read_text().splitlines()[1:]]
             assert found == expected, (command[0], found[:3], expected[:3])
+
+    def check_one_part_of_every_source_has_the_same_samples(self):
+        """--from and --to mean the times that the command prints for the source, the first included, the last not."""
+        kvh, still = ["--driver", "kvh1750", "--option", "rate_hz=100"], ["--driver", "dsp3000", "--option", "output=rate"]
+        can = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x"]
+        counted = [*can, "--option", "counter=Counter", "--option", "rate_hz=100"]
+        # What the source makes of a series that begins then: 32 bits of µs, a counter or nothing from 0, a log's own stamps.
+        us = 2**32 * 1000
+        sources = (("clock.kvh", [*kvh, "--option", "format=b"], lambda t: t % us), ("count.kvh", [*kvh, "--option", "format=a"], lambda t: t - start),
+                   ("none.bin", [*still, "--option", "rate_hz=100"], lambda t: t - start), ("stamps.log", can, lambda t: t), ("counter.log", counted, lambda t: t))
+        for start in (0, 50 * S, 1_763_000_000 * S):
+            times = [start + i * S // RATE_HZ for i in range(ROWS)]
+            csv, _ = self.csv("source.csv", times)
+            for name, options, made in (("same.csv", [], lambda t: t), ("same.h5", [], lambda t: t), *sources):
+                path, back, out = (self.folder / each for each in (name, "back.csv", "part.csv"))
+                ifog("convert", csv, path, *(["--axis", "x"] if name.endswith("kvh") else []), *options)
+                ifog("convert", path, back, *options)
+                self.require_times(back, [made(t) for t in times])
+                part = ["--from", stamp(made(times[500])), "--to", stamp(made(times[2700]))]
+                rate = ["--rate", "100"] if name == "stamps.log" else []
+                ifog("denoise", path, "--output", out, *options, *rate, *part)
+                self.require_times(out, [made(t) for t in times[500:2700]])
+                for command, samples in (("allan", lambda found: found["axes"][0]["samples"]), ("tune", lambda found: found["samples"]),
+                                         ("compare", lambda found: found["samples"]), ("diagnose", lambda found: found["samples"])):
+                    answer = self.folder / "answer.json"
+                    ifog(command, path, *options, *part, "--moving", "keep", "--json", answer) if command == "allan" else ifog(
+                        command, path, *options, *part, "--json", answer)
+                    found = samples(json.loads(answer.read_text()))
+                    assert found == 2200, (command, name, start, found)
+
+    def check_logs_with_short_times_and_without(self):
+        """candump -t z, -t d, and no times at all."""
+        dbc = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x"]
+        times = [i * S // RATE_HZ for i in range(200)]
+        def line(front, i):
+            return f" {front} vcan0  100   [8]  {i % 200:02X} 00 80 35 {i % 256:02X} 00 00 00\n"
+        def short(ns):
+            return f"({ns // S:03d}.{ns % S // 1000:06d})"
+        lines = {"z": "".join(line(short(t), i) for i, t in enumerate(times)),
+                 "d": "".join(line(short(t - times[max(i - 1, 0)]), i) for i, t in enumerate(times)),
+                 "none": "".join(line("", i) for i in range(200))}
+        for kind, text in lines.items():
+            path, out = self.folder / f"{kind}.log", self.folder / "out.csv"
+            path.write_text(text)
+            more = ["--option", "rate_hz=100"] if kind == "none" else []
+            ifog("convert", path, out, *dbc, *more)
+            self.require_times(out, times)
+            ifog("denoise", path, "--output", out, *dbc, *more, *([] if more else ["--rate", "100"]), "--from", "0.5", "--to", "1")
+            self.require_times(out, times[50:100])
+
+    def check_doubles_of_hdf5_are_written_in_plain_digits(self):
+        if h5py is None:
+            return
+        with h5py.File(self.folder / "doubles.h5", "w") as file:
+            file["time_s"], file["rate_radps"] = 1_763_000_000 + numpy.arange(ROWS) / RATE_HZ, numpy.full(ROWS, 1e-6)
+        out, again = self.folder / "doubles.csv", self.folder / "again.csv"
+        ifog("convert", self.folder / "doubles.h5", out)
+        assert out.read_text().splitlines()[1].startswith("1763000000,"), out.read_text()[:60]
+        ifog("convert", out, again)
+        assert again.read_bytes() == out.read_bytes()
 
     def check_hdf5_has_all_the_digits(self):
         if h5py is None:

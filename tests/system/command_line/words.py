@@ -227,6 +227,13 @@ class Checks:
             refused(1, "allan", self.one, "--plot", place / "made.svg", "--json", second, says=[str(second)])
         assert [each.name for each in place.iterdir()] == ["folder.json"]
 
+    def check_help_is_a_command_too(self):
+        assert ran("help").stdout == ran("--help").stdout
+        for command in ("allan", "compare", "status"):
+            result = ran("help", command)
+            assert result.returncode == 0 and result.stdout == ran(command, "--help").stdout, command
+        refused(2, "help", "alan", says=["unknown command 'alan'", "'allan'"])
+
     def check_help_is_laid_out(self):
         """No line that a terminal would break within a word, no hole of two empty lines."""
         for command in ["", *re.findall(r"^  ([a-z]+) ", ifog("--help").split("Subcommands:")[1], re.M)]:

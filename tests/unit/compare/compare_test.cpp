@@ -158,4 +158,30 @@ TEST(Compare, InnovationsAreJudgedOutsideManoeuvres) {
   }
 }
 
+// A record of which the second third is a turn: its spread and its deviation are those of the two others.
+TEST(Compare, WhatIsSaidAtRestIsOfTheRest) {
+  constexpr double kPeriod = 0.01;
+  const std::size_t n = 30000;
+  auto rate = noise(6, n);
+  std::vector<double> time(n);
+  for (std::size_t k = 0; k < n; ++k) time[k] = static_cast<double>(k) * kPeriod;
+  ifog::ComparisonInput in;
+  in.time_s = time;
+  in.period_s = kPeriod;
+  in.at_rest = {{0, n / 3}, {2 * n / 3, n}};
+  ifog::ComparisonOptions options;
+  options.settings.process_noise = 1e-3 / kPeriod;
+  options.settings.measurement_noise = 1.0;
+  in.rate = {rate};
+  const auto still = ifog::compare_rules(in, options);
+  for (std::size_t k = n / 3; k < 2 * n / 3; ++k) rate[k] += 500.0;
+  in.rate = {rate};
+  const auto turned = ifog::compare_rules(in, options);
+  EXPECT_EQ(turned.rows[0].std_radps, still.rows[0].std_radps);
+  EXPECT_EQ(turned.rows[0].adev_radps, still.rows[0].adev_radps);
+  // White noise of one unit.
+  EXPECT_NEAR(turned.rows[0].std_radps, 1.0, 0.03);
+  EXPECT_NEAR(*turned.rows[0].adev_radps[1], 0.1, 0.01);
+}
+
 }  // namespace

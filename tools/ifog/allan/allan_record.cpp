@@ -97,7 +97,9 @@ void note_what_was_left_out(const std::string& column, AllanRecord& record) {
                            "left out of the noise terms, because no sum of them comes near (resonance, "
                            "vibration, a filter): " +
                            in_words(record.fit->left_out_hz));
-  if (record.fit->misfit > 0.0)
+  const std::string markov = markov_in_words(*record.fit);
+  if (!markov.empty()) record.notes.push_back(start + markov);
+  if (record.fit->misfit > 0.0 && markov.empty())
     record.notes.push_back(start + "the terms miss the curve by " + number(100.0 * record.fit->misfit) +
                            " % beyond chance; the error bars allow for it");
 }
@@ -219,6 +221,14 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
   const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
   record.points = deviation(sum, m, options.kind);
   record.intervals = allan_intervals(sum, options.kind, record.points, noise, options.confidence);
+  // What a bias that comes back is at each τ.
+  if (record.fit && record.fit->markov && record.fit->markov->present)
+    for (std::size_t i = 0; i < m.size(); ++i)
+      record.intervals[i] =
+          allan_intervals(sum, options.kind, std::span(record.points).subspan(i, 1),
+                          equivalent_terms(record.fit->markov->fit, static_cast<double>(m[i])),
+                          options.confidence)
+              .front();
   if (options.long_tau) record.longer = theo1(sum, noise, options.confidence, options.per_decade);
   for (LongPoint& point : record.longer) point.tau *= period;
   for (const std::size_t k : m) record.tau_s.push_back(static_cast<double>(k) / record.sample_rate_hz);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/capture/candump.h"
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/csv_rows.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
@@ -221,6 +222,7 @@ RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   }
   DriverInstance instance = make_driver();
   CaptureBuilder builder(instance.description());
+  if (instance.takes_can()) builder.keep_stamps(zero_of_stamps(file.head()));
   BuiltRows rows(builder, sink);
   build(file, instance, builder, [&rows] { rows.added(); });
   rows.finish();

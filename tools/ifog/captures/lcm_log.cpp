@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "drivers/capture/recording.h"
+#include "drivers/capture/time_stamps.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/ifog/unnamed_file.h"
 #include "msgs/channel_name.h"
@@ -276,6 +277,15 @@ class LcmRows {
   RowBlock rows_;
 };
 
+// Times count from 0, by the sensor's own clock where it has one: which moment that was would be lost.
+void tell_start(const std::string& path, const rate_t& first) {
+  const TimeOrigin origin = TimeOrigin::of(first.utime * 1000);
+  if (origin == TimeOrigin{}) return;
+  std::string at;
+  append_time(at, origin, 0.0);
+  warn("%s: times count from the first message, which is of %s s since 1970\n", path.c_str(), at.c_str());
+}
+
 }  // namespace
 
 bool recorded_messages(const InputFile& file) {
@@ -287,8 +297,13 @@ bool recorded_messages(const InputFile& file) {
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   const ChosenLog chosen(file, channel);
   LcmRows rows({chosen.rates, look_through(chosen)}, sink);
+  bool told = false;
   for_each_rate(
-      chosen, [&](const rate_t& message, double time_s) { rows.add(message, time_s); },
+      chosen,
+      [&](const rate_t& message, double time_s) {
+        if (!std::exchange(told, true)) tell_start(chosen.path, message);
+        rows.add(message, time_s);
+      },
       [&](const std::string& name, std::span<const std::uint8_t> message) { rows.take(name, message); });
   rows.finish();
 }

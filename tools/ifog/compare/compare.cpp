@@ -15,10 +15,12 @@
 #include "filters/allan/stretches.h"
 #include "filters/estimator/start_up.h"
 #include "filters/model_file/model.h"
+#include "filters/rest/rest.h"
 #include "filters/rules/rule.h"
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/compare_picture.h"
@@ -36,19 +38,57 @@ using nlohmann::json;
 
 struct Options {
   CaptureInput input;
+  TimePart part;
   std::string capture, model, json_file, plot_file;
   FilterChoice choice;
 };
 
-// Q and R when nobody says them: from the record, all axes together; from the first hours of one that is
-// longer than memory is for.
-void fill_noise(FilterSettings& settings, const CaptureView& capture, double period_s) {
+// What the figures at rest are of: as `allan` leaves motion out, but that a record which mostly moved is
+// compared, too.
+struct Motion {
+  Rest rest;
+  bool left_out = false;
+  std::string words;  // "": the sensor was at rest
+};
+
+Motion motion_of(const CaptureView& capture, double period_s) {
+  const std::vector<SeriesView> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  std::vector<SeriesView> references;
+  for (const std::span<const double> reference : capture.reference_rate_radps)
+    if (!reference.empty()) references.emplace_back(reference);
+  Motion motion;
+  motion.rest = find_rest(axes, references, period_s);
+  motion.words = in_words(motion.rest, period_s, capture.told_time_s(0));
+  if (motion.words.empty()) return motion;
+  try {
+    require_rest(motion.rest, period_s, capture.told_time_s(0));
+    motion.left_out = motion.rest.resting() > 0;
+  } catch (const std::invalid_argument&) {
+  }
+  motion.words += motion.left_out
+                      ? "; std and Allan deviation are of the rest alone, RMSE, bias, lag and heading of all"
+                      : "; too little rest: std and Allan deviation have the motion in them";
+  return motion;
+}
+
+// Q and R when nobody says them: from the record at rest, all axes together; from the first hours of one that
+// is longer than memory is for.
+void fill_noise(FilterSettings& settings, const CaptureView& capture, const std::vector<Stretch>& at_rest,
+                double period_s) {
   if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
   constexpr std::size_t kMost = std::size_t{1} << 23U;  // rows
   std::vector<double> all;
   for (const auto& axis : capture.rate_radps) {
     const auto some = axis.first(std::min(axis.size(), kMost));
-    all.insert(all.end(), some.begin(), some.end());
+    const auto begin = all.insert(all.end(), some.begin(), some.end());
+    std::size_t from = 0;
+    for (const Stretch& part : at_rest) {
+      std::fill(begin + static_cast<std::ptrdiff_t>(std::min(from, some.size())),
+                begin + static_cast<std::ptrdiff_t>(std::min(part.begin, some.size())), std::nan(""));
+      from = part.end;
+    }
+    if (!at_rest.empty())
+      std::fill(begin + static_cast<std::ptrdiff_t>(std::min(from, some.size())), all.end(), std::nan(""));
   }
   const NoiseEstimate noise = estimate_noise(all, static_cast<int>(capture.axes.size()), period_s);
   if (settings.process_noise <= 0.0) settings.process_noise = noise.process_noise;
@@ -140,7 +180,7 @@ void print_axis(const Comparison& result, int axis, bool reference) {
 }
 
 void write_comparison(const Options& options, const CaptureView& capture, double period_s,
-                      const Comparison& result, const FilterSettings& settings) {
+                      const Motion& motion, const Comparison& result, const FilterSettings& settings) {
   json rows = json::array(), raw = json::array();
   for (const ComparisonRow& row : result.rows)
     (row.rule == "raw" ? raw : rows)
@@ -148,6 +188,8 @@ void write_comparison(const Options& options, const CaptureView& capture, double
   write_json(options.json_file, json{{"schema", "ifog.compare/1"},
                                      {"capture", options.capture},
                                      {"samples", capture.size()},
+                                     {"samples_at_rest", motion.rest.resting()},
+                                     {"motion", motion.words},
                                      {"sample_rate_hz", 1.0 / period_s},
                                      {"raw", raw},
                                      {"rows", rows}});
@@ -158,11 +200,11 @@ void run(const Options& options) {
   will_read("--model", options.model);
   will_write("--json", options.json_file, kJsonEndings);
   will_write("--plot", options.plot_file);
-  const LongCapture read =
-      options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
-        std::string axis;
-        return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
-      });
+  LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
+    std::string axis;
+    return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
+  });
+  read.cut(options.part, options.capture);
   CaptureView capture = read.view();
   keep_usable_axes(capture, options.capture);
   ComparisonInput in;
@@ -171,6 +213,8 @@ void run(const Options& options) {
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
                              " rows, expected at least 16");
   in.period_s = sample_clock(capture.time_s).period_s;
+  const Motion motion = motion_of(capture, in.period_s);
+  if (motion.left_out) in.at_rest = motion.rest.at_rest;
   bool reference = false;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     in.rate.emplace_back(capture.rate_radps[a]);
@@ -186,7 +230,7 @@ void run(const Options& options) {
   compare.progress = progress.teller();
   compare.keep_denoised = !options.plot_file.empty();
   try {
-    fill_noise(compare.settings, capture, in.period_s);
+    fill_noise(compare.settings, capture, in.at_rest, in.period_s);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.capture + ": " + error.what());
   }
@@ -196,6 +240,7 @@ void run(const Options& options) {
   say("%s: %zu samples at %.6g Hz; state %s, Q %.4g (rad/s)^2/s, R %.4g (rad/s)^2, window %d\n",
       options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
       s.measurement_noise, s.window);
+  if (!motion.words.empty()) say("note: %s\n", motion.words.c_str());
   say("rates in deg/h; heading: integral of denoised - compensated; at rest: share of samples outside\n"
       "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
       "over\n"
@@ -204,7 +249,7 @@ void run(const Options& options) {
     if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
     print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());
   }
-  if (!options.json_file.empty()) write_comparison(options, capture, in.period_s, result, s);
+  if (!options.json_file.empty()) write_comparison(options, capture, in.period_s, motion, result, s);
   if (!options.plot_file.empty()) {
     draw_comparison(options.plot_file, capture, result, compare.rules);
     say("picture: %s\n", options.plot_file.c_str());
@@ -224,6 +269,7 @@ void add_compare(CLI::App& app) {
       ->check(report::wrong_picture_name, "")
       ->type_name("FILE");
   options->input.add_to(*command);
+  options->part.add_to(*command);
   add_filter_options(*command, options->choice, false);
   command->callback([options] { run(*options); });
 }

@@ -46,6 +46,19 @@ std::vector<std::string> typed_words() { return words; }
 
 namespace {
 
+// `ifog help [command]` is `ifog [command] --help`; of what is no command the parser says so.
+std::vector<std::string> with_help_as_option(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> all(argv, argv + argc);
+  if (all.size() < 2 || all[1] != "help") return all;
+  all.erase(all.begin() + 1);
+  all.resize(std::min<std::size_t>(all.size(), 2));
+  const auto commands = app.get_subcommands({});
+  if (all.size() == 1 || std::any_of(commands.begin(), commands.end(),
+                                     [&](const CLI::App* command) { return command->get_name() == all[1]; }))
+    all.emplace_back("--help");
+  return all;
+}
+
 // Exit status; what goes wrong is thrown on.
 int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   typed = "ifog";
@@ -66,14 +79,18 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   for (const AddCommand add : commands) add(app);
   in_plain_words(app);
 
+  const std::vector<std::string> asked = with_help_as_option(app, argc, argv);
+  std::vector<const char*> arguments;
+  for (const std::string& word : asked) arguments.push_back(word.c_str());
+  const auto count = static_cast<int>(arguments.size());
   int status = 0;
   try {
-    app.parse(argc, argv);
+    app.parse(count, arguments.data());
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
     status = app.exit(error, out, complaint) == 0 ? 0 : 2;
     say("%s", out.str().c_str());
-    if (status != 0) warn("%s", usage_error(app, argc, argv, error).c_str());
+    if (status != 0) warn("%s", usage_error(app, count, arguments.data(), error).c_str());
   } catch (const Failed&) {
     status = 1;
   }

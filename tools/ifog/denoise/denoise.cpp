@@ -280,6 +280,7 @@ void run(DenoiseOptions options) {
                            if (of.model) tell_model_of_one_axis(*of.model, of.sensor.model, axes);
                            rows.begin(axes);
                          },
+                         [&](const TimeOrigin& origin) { rows.count_from(origin); },
                          [&](double time_s, const Increment& increment, const ChainOutput& out) {
                            return rows.add(time_s, increment, out);
                          }};

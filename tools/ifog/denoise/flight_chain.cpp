@@ -26,6 +26,7 @@ class FlightChain {
         now_(chain_settings(first_)),
         axes_(now_.axes),
         chain_(now_, first_),
+        times_(driver_.description(), sink_),
         run_(flight.header().run),
         number_(flight.header().settings),
         missed_(!begins_a_run(flight.header())) {
@@ -43,21 +44,23 @@ class FlightChain {
       reading_.channel[c] = value.value;
       reading_.channel_age_s[c] = value.age_s(recorded.came_ns);
     }
+    times_.come(recorded.sample);
     const Increment* const increment = chain_.run(reading_, out_);
     if (increment == nullptr) return;
-    if (came_ns_) time_s_ += between_runs_ ? pause_s(recorded.came_ns, *increment) : increment->dt_s;
-    between_runs_ = false;
-    came_ns_ = recorded.came_ns;
-    if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = time_s_;
-    if (std::exchange(merged_, false) && !merged_at_s_) merged_at_s_ = time_s_;
-    chain_.count(sink_.sample(time_s_, *increment, out_));
+    if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = times_.now_s();
+    if (std::exchange(merged_, false) && !merged_at_s_) merged_at_s_ = times_.now_s();
+    chain_.count(sink_.sample(times_.now_s(), *increment, out_));
   }
 
-  void discontinuity() { chain_.discontinuity(); }
+  void discontinuity() {
+    chain_.discontinuity();
+    times_.times().discontinuity();
+  }
   void missing() { missed_ = true; }
   void merged() { merged_ = true; }
 
   void file(const FlightHeader& header) {
+    times_.times().go_on_as(driver_.description());
     const bool another_run = header.run != run_;
     if (!another_run && (fixed_ || header.settings == number_)) return;
     run_ = header.run;
@@ -71,7 +74,6 @@ class FlightChain {
           "goes on with other axes, as the driver's options changed; expected recordings of one");
     if (another_run) {
       ++runs_;
-      between_runs_ = true;
       missed_ = !begins_a_run(header);
       chain_.begin(now_);
     } else {
@@ -108,11 +110,6 @@ class FlightChain {
     return out;
   }
 
-  // From one run to the next by when their samples came; a clock that was set back says nothing.
-  [[nodiscard]] double pause_s(std::int64_t came_ns, const Increment& increment) const {
-    return came_ns > *came_ns_ ? static_cast<double>(came_ns - *came_ns_) * 1e-9 : increment.dt_s;
-  }
-
   FlightInput& flight_;
   DriverInstance& driver_;
   const std::function<OfflineSettings()>& settings_;
@@ -123,14 +120,12 @@ class FlightChain {
   ChainSettings now_;
   std::vector<std::string> axes_;
   ChainRun chain_;
+  OfflineTimes times_;
   std::uint64_t run_;
   std::uint32_t number_;
   std::size_t runs_ = 1, exchanges_ = 0;
   Reading reading_;
   ChainOutput out_;
-  double time_s_ = 0.0;
-  std::optional<std::int64_t> came_ns_;  // of the sample before
-  bool between_runs_ = false;
   bool missed_;                        // something, before the next sample
   std::optional<double> missed_at_s_;  // the first time
   bool merged_ = false;                // samples, about where the next one is

@@ -10,6 +10,7 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "drivers/capture/candump.h"
 #include "drivers/capture/capture.h"
 #include "filters/allan/row_times.h"
 #include "filters/model_file/channel_names.h"
@@ -84,6 +85,16 @@ ChainSettings chain_settings_of(const LongTable& capture, const std::string& pat
 
 }  // namespace
 
+OfflineTimes::OfflineTimes(const ifog_description& description, const OfflineSink& sink)
+    : times_(description), sink_(sink) {
+  times_.allow_restarts();
+}
+
+void OfflineTimes::come(const ifog_sample& sample) {
+  if (const std::optional<SampleTimes::Taken> taken = times_.next(sample)) now_s_ = taken->since_s;
+  if (!std::exchange(begun_, true)) sink_.count_from(times_.origin());
+}
+
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink) {
   const CaptureShape shape = capture_shape(capture.names(), name, capture);
@@ -141,14 +152,13 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
   reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
   ChainOutput out;
-  double time_s = 0.0;
-  bool first = true;
+  OfflineTimes times(driver.description(), sink);
+  if (driver.takes_can()) times.times().keep_stamps(zero_of_stamps(file.head()));
   const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
+    times.come(sample);
     read_sample(sample, facts.frame_channels, reading);
-    const Increment* const increment = chain.run(reading, out);
-    if (increment == nullptr) return;
-    if (!std::exchange(first, false)) time_s += increment->dt_s;
-    chain.count(sink.sample(time_s, *increment, out));
+    if (const Increment* const increment = chain.run(reading, out))
+      chain.count(sink.sample(times.now_s(), *increment, out));
   });
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
   return chain.finish();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "drivers/capture/sample_times.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"
@@ -31,9 +32,28 @@ struct OfflineSettings {
 struct OfflineSink {
   // Once, before the first sample: the sensor's axes.
   std::function<void(const std::vector<std::string>& axes)> begin;
-  // One sample. time_s: a capture's own, from its table's origin; of a recording the time since its first
-  // sample, by the step times. Whether it counts in the result: it is of the part that is wanted.
+  // Before the first sample of a recording: what its times are counted from.
+  std::function<void(const TimeOrigin&)> count_from;
+  // One sample. time_s: as the capture or recording has it (sample_times.h), from its origin. Whether it
+  // counts in the result: it is of the part that is wanted.
   std::function<bool(double time_s, const Increment&, const ChainOutput&)> sample;
+};
+
+// Hands a recording's samples on with the times that every command has for them. Of a device whose clock
+// jumps back the daemon goes on, and so does this.
+class OfflineTimes {
+ public:
+  OfflineTimes(const ifog_description& description, const OfflineSink& sink);
+  // Before what the chain makes of the sample is asked for.
+  void come(const ifog_sample& sample);
+  [[nodiscard]] double now_s() const { return now_s_; }
+  [[nodiscard]] SampleTimes& times() { return times_; }
+
+ private:
+  SampleTimes times_;
+  const OfflineSink& sink_;
+  double now_s_ = 0.0;
+  bool begun_ = false;
 };
 
 struct OfflineResult {

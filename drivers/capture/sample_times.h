@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a recording's samples were taken, on one axis of seconds: the times that every command prints for them
+// and that --from and --to mean.
+//
+// The first of these that the samples have:
+//   - the device's clock, over its wraps;
+//   - the sequence counter, unwrapped, over the nominal rate, from 0;
+//   - the arrival times, from 0;
+//   - the number of the sample over the nominal rate, from 0.
+// Where a log's own times are kept, they are what the samples are known by: arrival times stand as they are,
+// and a counter counts on from the first of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "drivers/capture/time_stamps.h"
+#include "drivers/ifog/device_timeline.h"
+#include "drivers/ifog/driver.h"
+
+namespace ifog {
+
+class SampleTimes {
+ public:
+  explicit SampleTimes(const ifog_description& description);
+
+  struct Taken {
+    double since_s = 0.0;    // since origin()
+    double elapsed_s = 0.0;  // since the sample before; NaN of the first
+    double period_s = 0.0;   // of the sample itself, also behind a gap
+    bool anew = false;       // it does not join what came before
+  };
+  // Nothing: it came twice, or after one that follows it. Throws std::runtime_error with one line when time
+  // does not go on (the sample's number, both times, the cause), or where there is none.
+  std::optional<Taken> next(const ifog_sample& sample);
+
+  // What comes next does not join what came: its clock and counter may have begun anew. The arrival times,
+  // which must be known, say how much later it is.
+  void discontinuity() { broken_ = true; }
+  // The driver's options are others from the next sample on; where they make other clocks it does not join
+  // what came.
+  void go_on_as(const ifog_description& description);
+  // From here on a device whose clock jumps back has begun anew, also where that clock does not go round:
+  // else that cannot be told from a wrong driver, and is refused.
+  void allow_restarts() { restarts_ = true; }
+  // The arrival times are the stamps of a log whose lines all have one, that of a stamp of zero being
+  // zero_ns. Nothing: they have none. Before the first sample.
+  void keep_stamps(std::optional<std::int64_t> zero_ns) { zero_of_stamps_ns_ = zero_ns; }
+
+  // What times are counted from; known from the first sample on.
+  [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
+  // Samples that were not there by the device's counter, or by its clock where it has none.
+  [[nodiscard]] std::size_t missing() const { return missing_; }
+  // Times the counter or the clock jumped back, without a discontinuity: the device was switched off and on.
+  [[nodiscard]] std::size_t restarts() const { return restarted_; }
+  // Samples left out because they came twice, or after one that follows.
+  [[nodiscard]] std::size_t repeated() const { return repeated_; }
+
+ private:
+  enum class Clock { undecided, device, counter, arrival, number };
+  void choose_clock(const ifog_sample& sample);
+  void count_from(const ifog_sample& sample);
+  DeviceTimeline::Step step_to(const ifog_sample& sample);
+  [[nodiscard]] double seconds(const ifog_sample& sample) const;
+  void begin_anew(const ifog_sample& sample);
+  void refuse(double now) const;
+
+  ifog_description description_;
+  Clock clock_ = Clock::undecided;
+  DeviceTimeline timeline_;
+  TimeOrigin origin_;
+  TimeOrigin device_from_;      // of the device's clock, that its times are counted from
+  std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
+  std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
+  std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
+  std::size_t taken_ = 0, missing_ = 0, repeated_ = 0, restarted_ = 0;
+  double last_s_ = 0.0;
+  double offset_s_ = 0.0;  // of the clock since the last discontinuity
+  bool broken_ = false, restarts_ = false;
+  std::optional<std::int64_t> zero_of_stamps_ns_;
+};
+
+}  // namespace ifog
