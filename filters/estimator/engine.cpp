@@ -117,9 +117,7 @@ Axes Engine::owed() const noexcept {
   Axes angle{};
   if (!conserve_angle_) return angle;
   for (std::size_t a = 0; a < axes_; ++a) {
-    angle[a] = ledger_.owed(a);
-    // Outliers or a jump: nobody will tell any more, and measured they were.
-    if (!in_manoeuvre() && (waiting_ || !outliers_.run().empty())) angle[a] += kept_out_[a];
+    angle[a] = ledger_.owed(a) + kept_out(a);
   }
   return angle;
 }
@@ -182,7 +180,8 @@ double Engine::lag_samples() const noexcept {
 
 Surprise Engine::surprise(const Measurement& m) const noexcept {
   Surprise now;
-  now.rate = m.in.rate_radps;
+  for (std::size_t a = 0; a < axes_; ++a)
+    now.rate[a] = has(m.valid, a) ? m.in.rate_radps[a] : published_.rate[a];
   now.innovation = m.innovation;
   // Of R nothing: it is in the scale, and what both say of it must not differ.
   const double usual = rest_variance_ + rest_->rule().measurement_noise();
@@ -227,14 +226,14 @@ void Engine::hear(const Measurement& m) noexcept {
   }
 }
 
-void Engine::learn_noise(const Measurement& m) noexcept {
-  bool newly = false, all = m.valid != 0;
+void Engine::learn_noise(const Measurement& m, std::uint32_t of) noexcept {
+  bool all = m.valid != 0;
   double rest = 0.0, greatest = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
-    newly = noise_[a].learn(m.innovation[a] * std::sqrt(1.0 / m.noise_scale), lag_samples(),
-                            noise_[a].known() ? 0.0 : foresight_[a].least()) ||
-            newly;
+    if (has(of, a))
+      noise_[a].learn(m.innovation[a] * std::sqrt(1.0 / m.noise_scale), lag_samples(),
+                      noise_[a].known() ? 0.0 : foresight_[a].least());
     all = all && noise_[a].known();
     rest += noise_[a].rest();
     greatest += noise_[a].greatest_noise();
@@ -258,7 +257,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     return;
   }
   hear(m);
-  if (outliers_.run().size() <= 1) kept_out_ = {};
+  if (now.valid != 0 && outliers_.run().size() <= 1) kept_out_ = {};
   if (keep_out) {
     out.flags |= kGated;
     ++health_.gated;
@@ -286,7 +285,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     const double predicted = rest_->measurement_variance();
     const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
     update_rest(m, learns);
-    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m);
+    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m, m.valid);
     if (learns) average_rest(predicted);
   }
   publish_rest();

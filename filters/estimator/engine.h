@@ -77,9 +77,10 @@ class Engine {
   void begin_axes(const Axes& rate, std::uint32_t valid) noexcept;
   void begin() noexcept;
   void begin_after_gap(const Measurement& m) noexcept;
+  void admit_kept_out() noexcept;
   void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void take_in(const Measurement& m, const Surprise& now) noexcept;
-  void wait(const Measurement& m, EstimatorOutput& out) noexcept;
+  void wait(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept;
   void find_moving(const Measurement& m, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool heard(std::uint32_t axes) const noexcept;
@@ -94,9 +95,10 @@ class Engine {
   void know_unmeasured(const Measurement& m, double grown) noexcept;
   void forget_unmeasured(std::uint32_t valid) noexcept;
   void hear(const Measurement& m) noexcept;
-  void learn_noise(const Measurement& m) noexcept;
+  // of: axes that learn of it.
+  void learn_noise(const Measurement& m, std::uint32_t of) noexcept;
   void jump(EstimatorOutput& out) noexcept;
-  void begin_again(const Measurement& m, const Axes& least) noexcept;
+  void begin_again(const Measurement& m, const Surprise& now, const Axes& least) noexcept;
   void judge_manoeuvre() noexcept;
   void begin_manoeuvre(const Measurement& m, std::size_t tracker, EstimatorOutput& out) noexcept;
   void owe_to_manoeuvre(std::size_t axis) noexcept;
@@ -115,6 +117,10 @@ class Engine {
   // larger as its noise is louder.
   [[nodiscard]] double rest_variance(std::size_t axis) const noexcept {
     return loudness_[axis] * rest_->variance();
+  }
+  // Angle of the measurements that are kept out now, of which it is not known yet what they are.
+  [[nodiscard]] double kept_out(std::size_t axis) const noexcept {
+    return !in_manoeuvre() && (waiting_ || !outliers_.run().empty()) ? kept_out_[axis] : 0.0;
   }
   [[nodiscard]] double innovation_variance(std::size_t axis) const noexcept {
     return loudness_[axis] * rest_->covariance();
@@ -153,6 +159,7 @@ class Engine {
   Axes untested_{};                 // angle fallen short of while the noise was not known, or the test blunt
   Axes kept_out_{};                 // angle of the measurements kept out in a row
   Axes waiting_rate_{};             // that measurement
+  std::uint32_t waiting_axes_ = 0;  // that it had
   Axes surprised_{};                // running mean of the least normalised square in the manoeuvre
   double noise_of_one_;             // variance of a measurement, as set
   double rest_variance_ = 0.0;      // of the predicted rate at rest, averaged

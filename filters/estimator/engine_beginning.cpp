@@ -36,6 +36,7 @@ void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
     rest_->raise_to(rest_->rule().measurement_noise());
     since_moved_ = at_rest_for_ = 0.0;
     change_.restart();
+    admit_kept_out();
     begin();
   }
   rest_->shift_to(rate, fresh);
@@ -48,7 +49,7 @@ void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
 }
 
 // What the rate does while nobody looks is not known. The filter at rest has what it had, and earns its part
-// anew.
+// anew. A motion goes on, and its trackers know themselves how long they foresee.
 void Engine::begin_after_gap(const Measurement& m) noexcept {
   double covered_s = 0.0;
   for (std::size_t a = 0; a < axes_; ++a)
@@ -57,9 +58,17 @@ void Engine::begin_after_gap(const Measurement& m) noexcept {
   if (m.valid == 0) return;
   if (std::exchange(unmeasured_s_, 0.0) < kGap * period_s_ || knowledge_ == Knowledge::nothing) return;
   for (NoiseScale& noise : noise_) noise.break_off();
+  if (in_manoeuvre()) return;
   trackers_.begin();
+  admit_kept_out();
   outliers_.clear();
   begin();
+}
+
+// Outliers or a jump: nobody will tell any more, and measured they were.
+void Engine::admit_kept_out() noexcept {
+  for (std::size_t a = 0; a < axes_; ++a) ledger_.admit(a, kept_out(a));
+  kept_out_ = {};
 }
 
 bool Engine::heard(std::uint32_t axes) const noexcept {
@@ -74,17 +83,15 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
   const bool far = foreseen && unforeseen(m, now, least) && heard(m.valid);
   hear(m);
   if (far && !waiting_) {
-    wait(m, out);
+    wait(m, now, out);
     return;
   }
   if (far) {
     find_moving(m, out);
-    begin_again(m, least);
+    begin_again(m, now, least);
     publish_mix(now);
     return;
   }
-  waiting_ = false;
-  kept_out_ = {};
   if (m.valid == 0) {
     rest_->skip();
     if (knowledge_ == Knowledge::nothing)
@@ -93,6 +100,8 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
       publish_mix(now);
     return;
   }
+  waiting_ = false;
+  kept_out_ = {};
   if (foreseen) {
     expect_surprise(least);
     mix_.judge(trackers_, now, least);
@@ -104,11 +113,12 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
 }
 
 // Kept out until the next one says whether it was an outlier or the first of a jump.
-void Engine::wait(const Measurement& m, EstimatorOutput& out) noexcept {
+void Engine::wait(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
   out.flags |= kGated;
   ++health_.gated;
   waiting_ = published_.passed_over = true;
-  waiting_rate_ = m.in.rate_radps;
+  waiting_rate_ = now.rate;
+  waiting_axes_ = m.valid;
   rest_->skip();
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
@@ -123,12 +133,13 @@ void Engine::take_in(const Measurement& m, const Surprise& now) noexcept {
     if (has(m.valid, a) && !noise_[a].known())
       foresight_[a].take(trackers_, a, m.in.rate_radps[a], m.noise_scale);
   trackers_.correct(m.in.rate_radps, m.valid);
-  const bool first = knowledge_ == Knowledge::nothing;
+  // Of noise that was heard nothing is learned: what is left may be a motion's that is not known yet.
+  const bool first = knowledge_ == Knowledge::nothing, learns = knowledge_ != Knowledge::heard;
   const double predicted = rest_->measurement_variance();
-  update_rest(m, true);
+  update_rest(m, learns);
   if (!first) {
-    learn_noise(m);
-    average_rest(predicted);
+    learn_noise(m, learns ? m.valid : m.valid & ~m.tested);
+    if (learns) average_rest(predicted);
   }
   mix_.weigh(trackers_);
   mix_.compare(trackers_, now);

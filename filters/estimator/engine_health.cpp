@@ -23,15 +23,16 @@ constexpr double kWell = 0.1;
 // Either way it starts again from this measurement. If that does not help, the noise it was told is wrong,
 // and starting again and again would not mend it: it is then left alone until it has been well.
 void Engine::guard(const Measurement& m, EstimatorOutput& out) noexcept {
-  bool lost = false, well = true;
+  bool lost = false, well = true, sound = rest_->sound();
   for (std::size_t a = 0; a < axes_; ++a) {
+    sound = sound && std::isfinite(published_.rate[a]);
     lost = lost || grades_[a].beyond > kLost;
     well = well && grades_[a].beyond < kWell;
   }
   if (well) lost_ = false;
   const bool newly_lost = lost && !lost_;
   lost_ = lost_ || lost;
-  if (rest_->sound() && !newly_lost) return;
+  if (sound && !newly_lost) return;
   ++health_.divergences;
   ++health_.restarts;
   out.flags |= kRestarted;

@@ -90,7 +90,7 @@ bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) 
     double smallest = 1e300;
     for (std::size_t j = 0; j < trackers_.size(); ++j) {
       const double apart = m.in.rate_radps[a] - trackers_.rate(j, a);
-      smallest = std::min(smallest, apart * apart / (trackers_.factor(j) * now.scale[a]));
+      smallest = std::min(smallest, apart * apart / (trackers_.factor(j, a) * now.scale[a]));
     }
     least[a] = smallest;
     const double own = m.innovation[a] * m.innovation[a] / (now.rest_factor * now.scale[a]);
@@ -105,9 +105,16 @@ void Engine::expect_surprise(const Axes& least) noexcept {
     surprised_[a] += (std::min(least[a], kMostSurprise) - surprised_[a]) / kSurpriseMemory;
 }
 
-// A blow goes on as it began, and its next sample is no outlier for being as far off.
-void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
-  const std::array<Axes, 2> both{waiting_rate_, m.in.rate_radps};
+// A blow goes on as it began, and its next sample is no outlier for being as far off. An axis that has only
+// one of the two measurements has been there all along.
+void Engine::begin_again(const Measurement& m, const Surprise& now, const Axes& least) noexcept {
+  std::array<Axes, 2> both{waiting_rate_, now.rate};
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(m.valid, a))
+      both[1][a] = both[0][a];
+    else if (!has(waiting_axes_, a))
+      both[0][a] = both[1][a];
+  }
   trackers_.begin(both);
   forget_unmeasured(m.valid);
   double scale = 0.0;
@@ -115,7 +122,7 @@ void Engine::begin_again(const Measurement& m, const Axes& least) noexcept {
     surprised_[a] = std::max(surprised_[a], least[a]);
     scale = std::max(scale, noise_[a].now());
   }
-  move_rest(m.in.rate_radps, scale);
+  move_rest(both[1], scale);
   mix_.begin(0.0);
   motion_ = Motion::manoeuvre;
   waiting_ = false;
@@ -132,22 +139,23 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     out.flags |= kGated;
     ++health_.gated;
     waiting_ = true;
-    waiting_rate_ = m.in.rate_radps;
+    waiting_rate_ = now.rate;
+    waiting_axes_ = m.valid;
     rest_->skip();
     for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += m.innovation[a] * m.innovation[a];
     return;
   }
   if (unforeseen_now) {
-    begin_again(m, least);
+    begin_again(m, now, least);
     publish_mix(now);
     return;
   }
-  waiting_ = false;
   if (m.valid == 0) {
     rest_->skip();
     publish_mix(now);
     return;
   }
+  waiting_ = false;
   expect_surprise(least);
   mix_.judge(trackers_, now, least);
   trackers_.correct(m.in.rate_radps, m.valid);

@@ -66,8 +66,10 @@ void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Ax
     const double foreseen = unlikely(least[a], degrees);
     for (std::size_t j = 0; j < trackers.size(); ++j) {
       const double apart = now.rate[a] - trackers.rate(j, a);
-      const double square = apart * apart / (trackers.factor(j) * scale);
-      log[j] -= 0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + trackers.log_factor(j));
+      const double factor = trackers.factor(j, a);
+      const double log_factor = trackers.since(a) == 1.0 ? trackers.log_factor(j) : logarithm(factor);
+      const double square = apart * apart / (factor * scale);
+      log[j] -= 0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + log_factor);
     }
     const double square = now.innovation[a] * now.innovation[a] / (now.rest_factor * scale);
     of_rest -=
@@ -144,7 +146,10 @@ double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double longer = 1.0 - shorter;
     if (j > 0) bias += longer * longer * std::max(0.0, bias_square_[axis][j]);
-    noise += trackers.output_factor(j) * weight_[j] * (weight_[j] + 2.0 * kShared * shorter);
+    // Where the axis has no measurement of this sample: of what is foreseen.
+    const double factor =
+        trackers.since(axis) > 0.0 ? trackers.factor(j, axis) - 1.0 : trackers.output_factor(j);
+    noise += factor * weight_[j] * (weight_[j] + 2.0 * kShared * shorter);
     shorter += weight_[j];
     mean += weight_[j] * trackers.rate(j, axis);
   }

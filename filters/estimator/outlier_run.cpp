@@ -26,6 +26,18 @@ void OutlierRun::count(bool far) noexcept {
   share_ += ((far ? 1.0 : kLeastShare) - share_) / std::max(samples_, 1.0);
 }
 
+// An axis is where the run has last measured it, and before where it first did.
+void OutlierRun::fill(std::uint32_t valid) noexcept {
+  Axes& last = run_[length_ - 1];
+  for (std::size_t a = 0; a < kMaxAxes; ++a) {
+    if ((valid >> a & 1U) != 0 && (measured_ >> a & 1U) == 0)
+      for (std::size_t i = 0; i + 1 < length_; ++i) run_[i][a] = last[a];
+    else if ((valid >> a & 1U) == 0 && (measured_ >> a & 1U) != 0)
+      last[a] = run_[length_ - 2][a];
+  }
+  measured_ |= valid;
+}
+
 void OutlierRun::take(const Surprise& now, double lag) noexcept {
   keep_out_ = jump_ = false;
   double farthest = 0.0, square = 0.0, apart = 0.0;
@@ -36,7 +48,7 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
     farthest = std::max(farthest, own);
     square += own;
     ++axes;
-    if (length_ == 0) continue;
+    if (length_ == 0 || (measured_ >> a & 1U) == 0) continue;
     const double step = now.rate[a] - run_[length_ - 1][a];
     apart += step * step / now.scale[a];
   }
@@ -52,7 +64,10 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
     return;
   }
   keep_out_ = share_ <= kTails || farthest > kFarInTails * kFarInTails;
-  if (length_ == 0) apart_ = squares_ = 0.0;
+  if (length_ == 0) {
+    apart_ = squares_ = 0.0;
+    measured_ = 0;
+  }
   squares_ += square;
   if (length_ > 0)
     apart_ += 0.5 * logarithm(squares_ / static_cast<double>(length_ + 1) / std::max(apart, 2.0 * axes));
@@ -61,6 +76,7 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
     --length_;
   }
   run_[length_++] = now.rate;
+  fill(now.valid);
   const auto far = static_cast<double>(length_);
   jump_ = length_ >= 2 && -far * logarithm(share_) > ChangeTest::kEvidence &&
           apart_ > 0.5 * logarithm(std::max(lag, 1.0));

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "filters/estimator/change_test.h"
@@ -39,12 +40,14 @@ class OutlierRun {
 
  private:
   void count(bool far) noexcept;
+  void fill(std::uint32_t valid) noexcept;
 
   std::array<Axes, kMost> run_{};
   std::size_t length_ = 0;
-  double apart_ = 0.0;    // sum of the logarithms of distance from rest over distance from each other
-  double squares_ = 0.0;  // of the distances from rest, normalised
-  double share_ = 1e-8;   // of samples that are far
+  std::uint32_t measured_ = 0;  // axes that one of the run at least has
+  double apart_ = 0.0;          // sum of the logarithms of distance from rest over distance from each other
+  double squares_ = 0.0;        // of the distances from rest, normalised
+  double share_ = 1e-8;         // of samples that are far
   double samples_ = 0.0;
   double most_ = 12.5;
   bool keep_out_ = false, jump_ = false;

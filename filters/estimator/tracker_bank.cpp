@@ -16,6 +16,8 @@ const double kApart = std::sqrt(10.0);
 constexpr double kLeastReach = 48.0;
 // After more missed samples than its memory, and than these, a polynomial's prediction is worth nothing.
 constexpr double kMostSteps = 16.0;
+// Measurements, at least, that a mean of their distances is taken of.
+constexpr double kLeastMean = 2.0;
 // Innovation variance over the noise's of a tracker that has not enough measurements for a parabola.
 constexpr double kUnknown = 1e6;
 
@@ -53,6 +55,8 @@ void TrackerBank::reach(double samples) noexcept {
 
 void TrackerBank::begin() noexcept {
   for (State& state : state_) state = {};
+  steps_ = {};
+  measured_ = 0;
 }
 
 void TrackerBank::begin(std::span<const Axes> measurements) noexcept {
@@ -99,15 +103,17 @@ void TrackerBank::gains(std::size_t tracker) noexcept {
 }
 
 void TrackerBank::predict(double steps) noexcept {
-  steps_ = steps;
+  for (double& since : steps_) since += steps;
+  const double least = *std::min_element(steps_.begin(), steps_.end());
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
-    if (steps > std::max(kMostSteps, memory_[j])) {
+    const double most = std::max(kMostSteps, memory_[j]);
+    if (least > most) {
       state.age = 0.0;
       state.settled = false;
     }
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
-      if (state.age <= 0.0) state.slope[a] = state.curvature[a] = 0.0;
+      if (state.age <= 0.0 || steps_[a] > most) state.slope[a] = state.curvature[a] = 0.0;
       state.rate[a] += steps * (state.slope[a] + steps * state.curvature[a]);
       state.slope[a] += 2.0 * steps * state.curvature[a];
     }
@@ -116,18 +122,41 @@ void TrackerBank::predict(double steps) noexcept {
 }
 
 void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
+  bool whole = true;
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    whole = whole && (((measured_ & ~valid_axes) >> a & 1U) == 0 || steps_[a] > kMostSteps);
+  measured_ |= valid_axes;
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
     const Gains& g = now_[j];
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
       if ((valid_axes >> a & 1U) == 0) continue;
+      // Prolonged no further than that, what is left of its parabola is not to be corrected but begun again.
+      if (steps_[a] > std::max(kMostSteps, memory_[j])) {
+        state.rate[a] = rate[a];
+        continue;
+      }
       const double innovation = rate[a] - state.rate[a];
+      double& usual = state.usual_step[a];
+      usual += (steps_[a] - usual) / std::max(kLeastMean, memory_[j]);
+      const double step = std::max(steps_[a], usual);
       state.rate[a] += g.rate * innovation;
-      state.slope[a] += g.slope / steps_ * innovation;
-      state.curvature[a] += g.curvature / (steps_ * steps_) * innovation;
+      state.slope[a] += g.slope / step * innovation;
+      state.curvature[a] += g.curvature / (step * step) * innovation;
     }
-    state.age += 1.0;
+    if (whole) state.age += 1.0;
   }
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    if ((valid_axes >> a & 1U) != 0) steps_[a] = 0.0;
+}
+
+// That of a parabola grows with the fourth power of how far it is prolonged, in lengths of what it goes
+// through; the factor between a parabola through three measurements (1.2) and through many (0.8).
+double TrackerBank::growth(std::size_t tracker, std::size_t axis) const noexcept {
+  constexpr double kPerLength = 0.9;
+  const double n = length(tracker) / kPerLength;
+  const double more = (n + steps_[axis]) / (n + 1.0), square = more * more;
+  return square * square;
 }
 
 void TrackerBank::pass_over() noexcept {

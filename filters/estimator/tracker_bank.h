@@ -50,6 +50,14 @@ class TrackerBank {
   [[nodiscard]] double log_factor(std::size_t tracker) const noexcept { return now_[tracker].log_innovation; }
   [[nodiscard]] double output_factor(std::size_t tracker) const noexcept { return now_[tracker].output; }
   [[nodiscard]] double gain(std::size_t tracker) const noexcept { return now_[tracker].rate; }
+  // Variance of what it foresees of an axis that was last corrected `since(axis)` samples ago, over that of
+  // one sample ahead.
+  [[nodiscard]] double growth(std::size_t tracker, std::size_t axis) const noexcept;
+  [[nodiscard]] double since(std::size_t axis) const noexcept { return steps_[axis]; }
+  [[nodiscard]] double factor(std::size_t tracker, std::size_t axis) const noexcept {
+    const double one = now_[tracker].innovation;
+    return steps_[axis] == 1.0 ? one : 1.0 + (one - 1.0) * growth(tracker, axis);
+  }
   // Samples it forgets in, and what it has of them by now.
   [[nodiscard]] double memory(std::size_t tracker) const noexcept { return memory_[tracker]; }
   [[nodiscard]] double length(std::size_t tracker) const noexcept;
@@ -62,7 +70,8 @@ class TrackerBank {
   };
   struct State {
     Axes rate{}, slope{}, curvature{};  // per sample, half of it per sample squared
-    double age = 0.0;                   // measurements
+    Axes usual_step{1.0, 1.0, 1.0};     // mean distance of its measurements, nominal samples
+    double age = 0.0;                   // measurements of all axes
     bool settled = false;
   };
 
@@ -72,10 +81,15 @@ class TrackerBank {
   std::array<Gains, kMost> fading_{}, now_{};
   std::array<State, kMost> state_{};
   std::size_t size_ = 0;
-  // Of the last prediction, nominal samples. The gains are those of one step, whatever its length: in units
-  // of nominal samples those of slope and curvature fall with it. Left as they are, steps of two and more
-  // would put the poles outside the unit circle.
-  double steps_ = 1.0;
+  // Since each axis was corrected, nominal samples. The gains are those of one step, whatever its length: in
+  // units of nominal samples those of slope and curvature fall with it. Left as they are, steps of two and
+  // more would put the poles outside the unit circle; and so would those of a short step among long ones,
+  // for which the mean step counts.
+  Axes steps_{};
+  // Axes that were corrected since the trackers began. Of those that come now and then the trackers are as
+  // old as the one that has had the fewest measurements: with gains for more its parabola would be off for
+  // long.
+  std::uint32_t measured_ = 0;
 };
 
 }  // namespace ifog

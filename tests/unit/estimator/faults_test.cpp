@@ -161,6 +161,11 @@ TEST(Faults, CovarianceStaysPositiveInALargeModelOverUnevenSteps) {
     for (double& rate : in.rate_radps) rate = 1e-4 * normal(random);
     estimator.step(in, out);
     for (const double variance : out.variance_rad2ps2) ASSERT_GT(variance, 0.0) << in.sequence;
+    // Whatever the trackers make of the steps: the noise, and what is foreseen of it where nothing is
+    // measured.
+    for (std::size_t a = 0; a < 3; ++a)
+      ASSERT_LT(std::abs(out.denoised_radps[a]), 12 * std::sqrt(out.variance_rad2ps2[a])) << in.sequence;
+    for (const double rate : out.denoised_radps) ASSERT_LT(std::abs(rate), 0.05) << in.sequence;
   }
   EXPECT_EQ(estimator.health().divergences, 0U);
 }

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sensor that turns while samples are lost, or come and cannot be used: the motion is still a motion, and
+// none of its angle goes. Told by the truth of the records that are made here; 1 kHz, noise 1e-4 rad/s.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include "filters/estimator/estimator.h"
+
+namespace {
+
+constexpr double kPeriod = 1e-3, kNoise = 1e-4;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// What becomes of a sample of an axis.
+enum class Sample { good, missing, invalid };
+
+struct Seen {
+  double square = 0.0, worst = 0.0, worst_sigmas = 0.0, angle = 0.0;
+  int count = 0, at_rest = 0, not_finite = 0;
+  [[nodiscard]] double rms() const { return std::sqrt(square / count); }
+};
+
+// `axes` axes that all turn alike; the first one's samples are lost as told, those of the others come (where
+// all that there are are missing there is no step at all).
+class Turning {
+ public:
+  Turning(int axes, std::function<double(int)> motion, std::function<Sample(int)> fate)
+      : axes_(axes),
+        motion_(std::move(motion)),
+        fate_(std::move(fate)),
+        estimator_(settings(), axes, kPeriod) {}
+
+  // Of the first axis, over the samples [from, to) that come.
+  Seen go(int from, int to, int length) {
+    Seen seen;
+    int lost = 0;
+    for (int i = 0; i < length; ++i) {
+      const Sample fate = fate_(i);
+      ifog::EstimatorInput in;
+      in.sequence = static_cast<std::uint64_t>(i);
+      for (int a = 0; a < axes_; ++a)
+        measure(in, static_cast<std::size_t>(a), i, a == 0 ? fate : Sample::good);
+      if (fate == Sample::missing) {
+        ++lost;
+        continue;
+      }
+      in.dt_s = kPeriod * (std::exchange(lost, 0) + 1);
+      estimator_.step(in, out_);
+      look(in, i, i >= from && i < to, seen);
+    }
+    return seen;
+  }
+  [[nodiscard]] const ifog::EstimatorOutput& out() const { return out_; }
+
+ private:
+  static ifog::FilterSettings settings() {
+    ifog::FilterSettings settings;
+    settings.process_noise = 1e-13;
+    settings.measurement_noise = kNoise * kNoise;
+    return settings;
+  }
+  void measure(ifog::EstimatorInput& in, std::size_t axis, int i, Sample fate) {
+    in.rate_radps[axis] = motion_(i) + kNoise * normal_(random_);
+    in.covered_s[axis] = kPeriod;
+    if (fate == Sample::invalid) {
+      in.rate_radps[axis] = kNan;
+      in.covered_s[axis] = 0.0;
+    } else {
+      in.valid_axes |= 1U << axis;
+    }
+  }
+  void look(const ifog::EstimatorInput& in, int i, bool judged, Seen& seen) const {
+    const bool valid = (in.valid_axes & 1U) != 0;
+    const double error = out_.denoised_radps[0] - motion_(i);
+    if (!std::isfinite(error) || !(out_.variance_rad2ps2[0] >= 0.0)) {
+      ++seen.not_finite;
+      return;
+    }
+    if (valid) seen.angle += (out_.denoised_radps[0] - in.rate_radps[0]) * kPeriod;
+    if (!judged) return;
+    seen.worst = std::max(seen.worst, std::abs(error));
+    seen.worst_sigmas = std::max(seen.worst_sigmas, std::abs(error) / std::sqrt(out_.variance_rad2ps2[0]));
+    seen.at_rest += (out_.flags & ifog::kAtRest) != 0 ? 1 : 0;
+    if (!valid) return;
+    seen.square += error * error;
+    ++seen.count;
+  }
+
+  int axes_;
+  std::function<double(int)> motion_;
+  std::function<Sample(int)> fate_;
+  ifog::Estimator estimator_;
+  ifog::EstimatorOutput out_;
+  std::mt19937_64 random_{4};
+  std::normal_distribution<double> normal_;
+};
+
+// From 5 s to 65 s, then rest.
+std::function<double(int)> sine(double amplitude, double hertz) {
+  return [=](int i) {
+    return i < 5000 || i >= 65'000
+               ? 0.0
+               : amplitude * std::sin(2 * std::numbers::pi * hertz * (i - 5000) * kPeriod);
+  };
+}
+
+TEST(Holes, AMotionIsFollowedThroughThem) {
+  for (const double amplitude : {1e-3, 0.02, 0.2}) {
+    for (const double hertz : {0.1, 2.0}) {
+      // A slow motion begins as rest, and passes for it where it turns back.
+      const Seen whole =
+          Turning(1, sine(amplitude, hertz), [](int) { return Sample::good; }).go(7000, 65'000, 90'000);
+      for (const int every : {200, 1000, 5000}) {
+        for (const Sample how : {Sample::missing, Sample::invalid}) {
+          const auto fate = [=](int i) {
+            return i > 6000 && i < 65'000 && i % every < 20 ? how : Sample::good;
+          };
+          const Seen seen = Turning(1, sine(amplitude, hertz), fate).go(7000, 65'000, 90'000);
+          const auto which = testing::Message() << amplitude << " rad/s, " << hertz << " Hz, every " << every
+                                                << (how == Sample::missing ? " missing" : " invalid");
+          EXPECT_LT(seen.rms(), kNoise) << which;
+          EXPECT_LT(std::abs(seen.angle), 1e-4) << which;  // 0.006°
+          EXPECT_LE(seen.at_rest, whole.at_rest + 500) << which;
+          EXPECT_EQ(seen.not_finite, 0) << which;
+        }
+      }
+    }
+  }
+}
+
+// Of each n samples some cannot be used, from the first one on or in a turn, of the only axis or of one of
+// three.
+TEST(Holes, UnusableSamplesInARhythmLeaveTheTrackersStable) {
+  for (const int axes : {1, 3}) {
+    for (const double amplitude : {0.0, 1e-3, 0.05}) {
+      const auto motion = [=](int i) { return amplitude * std::sin(2 * std::numbers::pi * i * kPeriod); };
+      const Seen whole = Turning(axes, motion, [](int) { return Sample::good; }).go(1000, 10'000, 10'000);
+      for (const int begin : {0, 3000}) {
+        for (const int n : {2, 3, 5, 10, 20, 50}) {
+          for (const int k : {1, 2, 3, 4, n - 2, n - 1}) {
+            if (k < 1 || k >= n) continue;
+            const auto fate = [=](int i) {
+              return i >= begin && i < begin + 3000 && i % n < k ? Sample::invalid : Sample::good;
+            };
+            const Seen seen = Turning(axes, motion, fate).go(1000, 10'000, 10'000);
+            const auto which = testing::Message() << axes << " axes, " << amplitude << " rad/s, " << k
+                                                  << " of " << n << " from " << begin;
+            EXPECT_EQ(seen.not_finite, 0) << which;
+            EXPECT_LT(seen.worst, amplitude + 0.05) << which;  // 500 sigmas, where it ran away without end
+            if (n > 10) continue;
+            // Weights are those of all axes: one that comes more seldom than the others is followed with
+            // their memory, as far behind as its samples are apart.
+            const bool seldom = axes > 1 && 2 * k > n;
+            EXPECT_LT(seen.rms(), seldom ? 0.05 * amplitude + kNoise : 1.05 * kNoise) << which;
+            // What is foreseen where nothing was measured is as uncertain as it says.
+            EXPECT_LT(seen.worst_sigmas, axes > 1 ? 25.0 : std::max(12.0, 1.5 * whole.worst_sigmas)) << which;
+          }
+        }
+      }
+    }
+  }
+}
+
+// The first samples of a jump, when a hole comes before it is known to be one.
+TEST(Holes, NoAngleOfAJumpIsLostInThem) {
+  for (const int before : {1, 2, 3}) {
+    for (const int missing : {8, 30}) {
+      const auto motion = [](int i) { return i >= 3000 && i < 4000 ? 1.0 : 0.0; };
+      const auto fate = [=](int i) {
+        return i >= 3000 + before && i < 3000 + before + missing ? Sample::missing : Sample::good;
+      };
+      EXPECT_LT(std::abs(Turning(1, motion, fate).go(0, 1, 60'000).angle), 1e-4) << before << ", " << missing;
+    }
+  }
+  // One measurement of it, then none for a while.
+  const auto motion = [](int i) { return i >= 3000 && i < 4000 ? 1.0 : 0.0; };
+  for (const int invalid : {1, 8}) {
+    const auto fate = [=](int i) { return i > 3000 && i <= 3000 + invalid ? Sample::invalid : Sample::good; };
+    EXPECT_LT(std::abs(Turning(1, motion, fate).go(0, 1, 60'000).angle), 1e-4) << invalid;
+  }
+}
+
+// Every other sample of a step, at rest and under way: what waits for the next measurement waits until there
+// is one.
+TEST(Holes, AStepIsFollowedWithEveryOtherSample) {
+  for (const double amplitude : {0.0, 0.05}) {
+    const auto motion = [=](int i) {
+      return amplitude * std::sin(2 * std::numbers::pi * i * kPeriod) + (i >= 5000 ? 0.5 : 0.0);
+    };
+    const auto fate = [](int i) { return i >= 4000 && i % 2 == 0 ? Sample::invalid : Sample::good; };
+    const Seen seen = Turning(1, motion, fate).go(5200, 8000, 8000);
+    EXPECT_LT(seen.rms(), 1.05 * kNoise) << amplitude;
+  }
+}
+
+// One axis jumps while another that turns has no measurement.
+TEST(Holes, AnAxisThatIsNotMeasuredWhileAnotherJumpsStaysWhereItIs) {
+  for (const bool under_way : {false, true}) {
+    ifog::FilterSettings settings;
+    settings.process_noise = 1e-13;
+    settings.measurement_noise = kNoise * kNoise;
+    ifog::Estimator estimator(settings, 2, kPeriod);
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    ifog::EstimatorOutput out;
+    for (int i = 0; i < 4000; ++i) {
+      ifog::EstimatorInput in;
+      in.sequence = static_cast<std::uint64_t>(i);
+      in.dt_s = kPeriod;
+      in.covered_s = {kPeriod, kPeriod, 0.0};
+      in.valid_axes = 3;
+      const double x =
+          (under_way && i >= 2000 ? 0.05 * std::sin((i - 2000) * 3e-3) : 0.0) + (i >= 2100 ? 0.05 : 0.0);
+      in.rate_radps = {x + kNoise * normal(random), 0.5 + kNoise * normal(random), 0.0};
+      if (i >= 2095 && i < 2105) {
+        in.valid_axes = 1;
+        in.rate_radps[1] = kNan;
+        in.covered_s[1] = 0.0;
+      }
+      estimator.step(in, out);
+      ASSERT_NEAR(out.denoised_radps[1], 0.5, 20 * kNoise) << i << ", under way " << under_way;
+      if (i >= 2200) {
+        ASSERT_NEAR(out.denoised_radps[0], x, 10 * kNoise) << i << ", under way " << under_way;
+      }
+    }
+    EXPECT_EQ(estimator.health().divergences, 0U);
+  }
+}
+
+}  // namespace
