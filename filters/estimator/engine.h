@@ -38,7 +38,7 @@ class Engine {
   void retune(double process_noise) noexcept { rest_->retune(process_noise); }
   void recall_colour(const Axes& colour) noexcept;
   void expect_noise(const Axes& share) noexcept;
-  void expect_walk(const Axes& share) noexcept { walk_share_ = share; }
+  void expect_walk(const std::optional<Axes>& share) noexcept { walk_share_ = share; }
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }

@@ -83,8 +83,8 @@ class Estimator {
   void expect_noise(const Axes& share) noexcept;
   // Before the first step: each axis' own driving noise over FilterSettings::process_noise, by which its
   // variance is published until its innovations say more. Not told, it goes with the axis' noise: one gain is
-  // for all axes.
-  void expect_walk(const Axes& share) noexcept;
+  // for all axes. Under way: nothing is told any more.
+  void expect_walk(const std::optional<Axes>& share) noexcept;
   // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
   // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
   // step, so that a reload in a turn loses none.
