@@ -113,11 +113,6 @@ void Engine::recall_colour(const Axes& colour) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) noise_[a].recall(colour[a]);
 }
 
-void Engine::expect_noise(const Axes& share) noexcept {
-  loudness_ = share;
-  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = NoiseScale(noise_of_one_ * share[a]);
-}
-
 Axes Engine::owed() const noexcept {
   Axes angle{};
   if (!conserve_angle_) return angle;

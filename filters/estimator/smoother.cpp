@@ -117,15 +117,18 @@ std::vector<Smoothed> smooth(const FilterSettings& settings, const std::optional
                              double nominal_period_s) {
   // What is told is of the mean of all axes; of each it is as much more as its noise is rougher.
   std::vector<double> rough;
-  double mean = 0.0;
+  double mean = 0.0, known = 0.0;
   for (const std::vector<double>& rate : rates) {
-    rough.push_back(roughness(rate));
-    mean += rough.back() / static_cast<double>(rates.size());
+    const double own = roughness(rate);
+    rough.push_back(std::isfinite(own) ? own : 0.0);
+    if (!(rough.back() > 0.0)) continue;
+    known += 1.0;
+    mean += (rough.back() - mean) / known;
   }
   std::vector<Smoothed> all;
   for (std::size_t a = 0; a < rates.size(); ++a) {
     FilterSettings own = settings;
-    const double louder = std::isfinite(mean) && rough[a] > 0.0 ? rough[a] / mean : 1.0;
+    const double louder = rough[a] > 0.0 ? rough[a] / mean : 1.0;
     own.measurement_noise *= louder;
     own.process_noise *= walk_share ? (*walk_share)[a] : louder;
     all.push_back(smooth_axis(own, rates[a], dt_s, nominal_period_s));
