@@ -57,6 +57,7 @@ ChainParts::ChainParts(const ChainSettings& settings)
   if (settings.model) {
     identity_ = settings.model->identity();
     if (settings.model->filter) base = *settings.model->filter;
+    shares_ = axis_shares(*settings.model, settings.axes);
     use_effects(settings);
   }
   filter_ = settings_in_force(settings.filter, std::move(base));
@@ -65,6 +66,8 @@ ChainParts::ChainParts(const ChainSettings& settings)
   if (settings.learned) recall(*settings.learned);
   if (filter_.process_noise > 0.0 && filter_.measurement_noise > 0.0) {
     estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+    if (shares_.noise) estimator_->expect_noise(*shares_.noise);
+    estimator_->expect_walk(shares_.walk);
     if (settings.learned && learns_measurement_noise_) estimator_->recall_colour(settings.learned->colour);
     return;
   }
@@ -200,7 +203,8 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   }
   moved_ = noise.moved;
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
-  estimator_->expect_walk(noise.walk_share);
+  shares_.walk = noise.walk_share;
+  estimator_->expect_walk(shares_.walk);
   estimator_->owe(owed_);
 } catch (const std::exception&) {
   // Data that no noise can be learned from: the next seconds may be better. Until then it is unknown, and
@@ -233,6 +237,9 @@ void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept 
                               : found->process_noise;
   rest_measurement_noise_ = found->measurement_noise;
   estimator_->retune(filter_.process_noise);
+  // What the first seconds said of each axis' part of the walk was no better than what they said of the walk.
+  shares_.walk.reset();
+  estimator_->expect_walk(shares_.walk);
 }
 
 void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {

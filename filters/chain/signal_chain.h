@@ -23,6 +23,7 @@
 #include "filters/estimator/learned_noise.h"
 #include "filters/estimator/rest_noise.h"
 #include "filters/model_file/model.h"
+#include "filters/model_file/model_axes.h"
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
@@ -88,6 +89,8 @@ class ChainParts {
   [[nodiscard]] const std::string& model_identity() const { return identity_; }
   // The settings in use, with the noise once it is known.
   [[nodiscard]] const FilterSettings& filter() const { return filter_; }
+  // Of each axis its own driving noise over filter()'s; not known: as its noise.
+  [[nodiscard]] const std::optional<Axes>& walk_share() const { return shares_.walk; }
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
   // The start-up data were of a sensor that moved: what they say of its noise is too much.
   [[nodiscard]] bool moved_in_start_up() const { return moved_; }
@@ -111,6 +114,7 @@ class ChainParts {
 
   SensorFacts facts_;
   FilterSettings filter_;
+  AxisShares shares_;
   std::string identity_;
   double period_s_;
   std::optional<Compensator> compensator_;

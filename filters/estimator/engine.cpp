@@ -78,7 +78,7 @@ void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
   Axes variance = published_.variance;
   for (std::size_t a = 0; motion_ == Motion::at_rest && a < axes_; ++a) variance[a] = rest_variance(a);
   for (std::size_t a = 0; a < axes_; ++a) {
-    const double walked = grown * walk_share_[a];
+    const double walked = grown * walk_share(a);
     if (has(m.valid, a))
       unmeasured_.measure(a, published_.gain, variance[a]);
     else if (m.valid == 0 && motion_ == Motion::at_rest)  // the filter is not measured either
@@ -322,7 +322,7 @@ void Engine::publish_rest() noexcept {
     if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
     const double louder = std::max(1.0, noise_[a].rest() / (loudness_[a] * believed));
     const Wider wider =
-        change_.wider(trackers_, a, lag_samples(), noise_[a], {1.0 / louder, walk_share_[a] / loudness_[a]});
+        change_.wider(trackers_, a, lag_samples(), noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
     published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
     published_.variance[a] += noise_[a].rounding();
     published_.variance[a] += change_.unseen(a);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "filters/estimator/angle_ledger.h"
@@ -36,7 +37,8 @@ class Engine {
   void restart() noexcept;
   void retune(double process_noise) noexcept { rest_->retune(process_noise); }
   void recall_colour(const Axes& colour) noexcept;
-  void expect_walk(const Axes& share) noexcept { walk_share_ = share; }
+  void expect_noise(const Axes& share) noexcept;
+  void expect_walk(const std::optional<Axes>& share) noexcept { walk_share_ = share; }
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
@@ -125,6 +127,9 @@ class Engine {
   [[nodiscard]] double innovation_variance(std::size_t axis) const noexcept {
     return loudness_[axis] * rest_->covariance();
   }
+  [[nodiscard]] double walk_share(std::size_t axis) const noexcept {
+    return walk_share_ ? (*walk_share_)[axis] : loudness_[axis];
+  }
 
   bool follow_manoeuvres_, conserve_angle_, guard_;
   std::size_t axes_;
@@ -166,7 +171,7 @@ class Engine {
   double at_rest_for_ = 0.0;        // measurements since the end of the last manoeuvre
   double since_moved_ = 0.0;        // measurements since the filter at rest was last moved
   Axes loudness_{1.0, 1.0, 1.0};    // variance of an axis' noise over the mean of all
-  Axes walk_share_{1.0, 1.0, 1.0};  // its driving noise over the settings'
+  std::optional<Axes> walk_share_;  // its driving noise over the settings'; not known: as its noise
   double heard_scale_ = 1.0;        // Measurement::noise_scale of the last one
   double lag_s_ = 0.0;
   double longest_lag_ = 0.0;  // samples

@@ -28,6 +28,11 @@ void Engine::begin() noexcept {
   mix_.begin(0.0);
 }
 
+void Engine::expect_noise(const Axes& share) noexcept {
+  loudness_ = share;
+  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = NoiseScale(noise_of_one_ * share[a]);
+}
+
 void Engine::begin_axes(const Axes& rate, std::uint32_t valid) noexcept {
   const std::uint32_t fresh = valid & ~started_;
   if (fresh == 0) return;

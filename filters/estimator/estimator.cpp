@@ -70,7 +70,8 @@ void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { 
 void Estimator::restart() noexcept { impl_->engine.restart(); }
 void Estimator::retune(double process_noise) noexcept { impl_->engine.retune(process_noise); }
 void Estimator::recall_colour(const Axes& colour) noexcept { impl_->engine.recall_colour(colour); }
-void Estimator::expect_walk(const Axes& share) noexcept { impl_->engine.expect_walk(share); }
+void Estimator::expect_noise(const Axes& share) noexcept { impl_->engine.expect_noise(share); }
+void Estimator::expect_walk(const std::optional<Axes>& share) noexcept { impl_->engine.expect_walk(share); }
 Axes Estimator::owed() const noexcept { return impl_->engine.owed(); }
 void Estimator::owe(const Axes& angle_rad) noexcept { impl_->engine.owe(angle_rad); }
 const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine.health(); }

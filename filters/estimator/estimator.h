@@ -78,9 +78,13 @@ class Estimator {
   // Before the first step: the noise's colour as an earlier filter of the sensor has found it,
   // EstimatorHealth::colour; not told, it is found anew.
   void recall_colour(const Axes& colour) noexcept;
+  // Before the first step: each axis' own noise over FilterSettings::measurement_noise, by which it is judged
+  // until it is heard. Not told, it is the same for all axes.
+  void expect_noise(const Axes& share) noexcept;
   // Before the first step: each axis' own driving noise over FilterSettings::process_noise, by which its
-  // variance is published until its innovations say more. Not told, it is the same for all axes.
-  void expect_walk(const Axes& share) noexcept;
+  // variance is published until its innovations say more. Not told, it goes with the axis' noise: one gain is
+  // for all axes. Under way: nothing is told any more.
+  void expect_walk(const std::optional<Axes>& share) noexcept;
   // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
   // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
   // step, so that a reload in a turn loses none.

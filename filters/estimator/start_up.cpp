@@ -41,16 +41,6 @@ double robust_variance(std::vector<double>& squares) {
   return sum / static_cast<double>(kept);
 }
 
-// R of white noise, whatever smooth motion there is.
-double roughness(std::span<const double> rate) {
-  std::vector<double> squares;
-  for (std::size_t i = 3; i < rate.size(); ++i) {
-    const double third = rate[i] - 3.0 * rate[i - 1] + 3.0 * rate[i - 2] - rate[i - 3];
-    if (std::isfinite(third)) squares.push_back(third * third / 20.0);
-  }
-  return squares.size() >= 12 ? robust_variance(squares) : std::numeric_limits<double>::infinity();
-}
-
 // A block with a part missing stands on the other part; otherwise one lost sample in ten would leave no long
 // block.
 double present_mean(double a, double b) {
@@ -131,6 +121,15 @@ Fit fit(const std::vector<Octave>& all, double n) {
 }
 
 }  // namespace
+
+double roughness(std::span<const double> rate) {
+  std::vector<double> squares;
+  for (std::size_t i = 3; i < rate.size(); ++i) {
+    const double third = rate[i] - 3.0 * rate[i - 1] + 3.0 * rate[i - 2] - rate[i - 3];
+    if (std::isfinite(third)) squares.push_back(third * third / 20.0);
+  }
+  return squares.size() >= 12 ? robust_variance(squares) : std::numeric_limits<double>::infinity();
+}
 
 NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s) {
   const std::size_t length = rates.size() / static_cast<std::size_t>(axes);

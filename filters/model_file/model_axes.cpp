@@ -39,4 +39,23 @@ std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std
   return remarks;
 }
 
+AxisShares axis_shares(const Model& model, std::span<const std::string> axes) {
+  if (axes.size() < 2 || axes.size() > kMaxAxes) return {};
+  const auto shares = [&](std::optional<double> NoiseTerms::*term) -> std::optional<Axes> {
+    Axes of{1.0, 1.0, 1.0};
+    double mean = 0.0;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const auto found = model.noise.find(axes[a]);
+      if (found == model.noise.end() || !(found->second.*term)) return std::nullopt;
+      const double value = *(found->second.*term);
+      of[a] = value * value;
+      if (!(of[a] > 0.0)) return std::nullopt;
+      mean += of[a] / static_cast<double>(axes.size());
+    }
+    for (std::size_t a = 0; a < axes.size(); ++a) of[a] /= mean;
+    return of;
+  };
+  return {shares(&NoiseTerms::N), shares(&NoiseTerms::K)};
+}
+
 }  // namespace ifog

@@ -2,11 +2,13 @@
 // A model beside the axes of the sensor, or the capture, that it is to correct.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "filters/model_file/model.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
 
@@ -15,5 +17,12 @@ namespace ifog {
 std::string effects_of_no_axis(const Model& model, std::span<const std::string> axes);
 // That, and noise of an axis that a sensor of these has not; a line each.
 std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std::string> axes);
+
+// Of each of several axes what its noise, N squared, or its walk, K squared, is over the mean of all: a
+// filter's own noises are of that. Nothing where the model does not say it of every axis.
+struct AxisShares {
+  std::optional<Axes> noise, walk;
+};
+[[nodiscard]] AxisShares axis_shares(const Model& model, std::span<const std::string> axes);
 
 }  // namespace ifog

@@ -28,28 +28,50 @@ constexpr std::size_t kLooked = 8;
 constexpr std::size_t kFollowed = 3;
 constexpr double kFar = 30.0;
 
+// Each axis over its own scale, so that a loud one does not drown the others: one model is for all of them.
 struct Data {
   std::vector<std::vector<double>> axes;  // scaled
-  double period_s = 0.0, scale = 1.0;
+  double period_s = 0.0;
+  double scale = 1.0;       // of the mean variance of all axes
+  double log_scales = 0.0;  // sum over all samples
   std::size_t samples = 0;
 };
+
+struct Differences {
+  double squares = 0.0;
+  std::size_t count = 0;
+  [[nodiscard]] double variance() const { return squares / static_cast<double>(count); }
+};
+
+Differences differences(std::span<const double> axis) {
+  Differences all;
+  for (std::size_t k = 1; k < axis.size(); ++k) {
+    const double d = axis[k] - axis[k - 1];
+    if (!std::isfinite(d)) continue;
+    all.squares += d * d;
+    ++all.count;
+  }
+  return all;
+}
 
 Data scaled(std::span<const std::span<const double>> axes, double period_s) {
   Data data;
   data.period_s = period_s;
-  double sum = 0.0;
+  double mean = 0.0, loud = 0.0;
   std::size_t n = 0;
-  for (const auto& axis : axes)
-    for (std::size_t k = 1; k < axis.size(); ++k) {
-      const double d = axis[k] - axis[k - 1];
-      if (!std::isfinite(d)) continue;
-      sum += d * d;
-      ++n;
-    }
-  if (n < 200) throw std::invalid_argument(std::to_string(n) + " usable samples, expected at least 200");
-  if (sum <= 0.0) throw std::invalid_argument("every sample has the same value, expected a sensor's noise");
-  data.scale = std::sqrt(sum / static_cast<double>(n));
   for (const auto& axis : axes) {
+    const Differences own = differences(axis);
+    n += own.count;
+    if (!(own.squares > 0.0)) continue;
+    mean += own.variance();
+    loud += 1.0;
+  }
+  if (n < 200) throw std::invalid_argument(std::to_string(n) + " usable samples, expected at least 200");
+  if (loud <= 0.0) throw std::invalid_argument("every sample has the same value, expected a sensor's noise");
+  data.scale = std::sqrt(mean / loud);
+  for (const auto& axis : axes) {
+    const Differences of_axis = differences(axis);
+    const double own = of_axis.squares > 0.0 ? std::sqrt(of_axis.variance()) : data.scale;
     // The level is in the model; taking the first value off only keeps digits.
     double level = 0.0;
     for (const double v : axis)
@@ -58,8 +80,13 @@ Data scaled(std::span<const std::span<const double>> axes, double period_s) {
         break;
       }
     auto& copy = data.axes.emplace_back();
-    for (const double v : axis) copy.push_back((v - level) / data.scale);
-    for (const double v : copy) data.samples += std::isfinite(v) ? 1U : 0U;
+    std::size_t samples = 0;
+    for (const double v : axis) {
+      copy.push_back((v - level) / own);
+      samples += std::isfinite(v) ? 1U : 0U;
+    }
+    data.samples += samples;
+    data.log_scales += static_cast<double>(samples) * std::log(own);
   }
   return data;
 }
@@ -161,7 +188,7 @@ Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& s
   model.parameters = candidate.size();
   const auto count = static_cast<double>(data.samples);
   // Back to the density of the data in rad/s, so that likelihoods can be set beside those of other programs.
-  model.log_likelihood = -found.cost - count * std::log(data.scale);
+  model.log_likelihood = -found.cost - data.log_scales;
   model.bic = model.parameters * std::log(count) - 2.0 * model.log_likelihood;
   std::vector<bool> known;
   const Eigen::MatrixXd errors =

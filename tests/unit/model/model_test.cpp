@@ -332,5 +332,23 @@ TEST(ModelFile, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
   std::remove(large.c_str());
 }
 
+// Of each of several axes the square over the mean of all; of one, and where an axis is without, nothing.
+TEST(ModelFile, SaysWhatEachAxisNoiseIsOfTheMean) {
+  Model model;
+  model.noise["x"] = {.N = 1e-6, .K = 3e-9};
+  model.noise["y"] = {.N = 2e-6, .K = 1e-9};
+  const std::vector<std::string> both{"x", "y"}, one{"x"}, more{"x", "z"};
+  const AxisShares shares = axis_shares(model, both);
+  ASSERT_TRUE(shares.noise && shares.walk);
+  EXPECT_NEAR((*shares.noise)[0], 0.4, 1e-12);
+  EXPECT_NEAR((*shares.noise)[1], 1.6, 1e-12);
+  EXPECT_NEAR((*shares.walk)[0], 1.8, 1e-12);
+  EXPECT_FALSE(axis_shares(model, one).noise);
+  EXPECT_FALSE(axis_shares(model, more).noise);
+  model.noise["y"].K.reset();
+  EXPECT_TRUE(axis_shares(model, both).noise);
+  EXPECT_FALSE(axis_shares(model, both).walk);
+}
+
 }  // namespace
 }  // namespace ifog

@@ -66,6 +66,31 @@ TEST(Tune, RecoversQAndRWithinItsOwnErrors) {
   EXPECT_GE(inside_r, 34);
 }
 
+// One model for all axes: however loud each is, the walk over the noise is the same, and what is told is of
+// the mean of their variances. The likelihood is that of the data as they are: less by n ln s where they are
+// scaled.
+TEST(Tune, ALoudAxisDoesNotDrownTheOthers) {
+  constexpr double kPeriod = 0.01, kR = 4e-12, kStep = 4e-15;
+  constexpr std::size_t kLength = 4000;
+  std::vector<std::vector<double>> axes;
+  for (const unsigned seed : {71U, 72U, 73U})
+    axes.push_back(random_walk(seed, kLength, seed == 73 ? 1e-3 * kStep : kStep, kR, 5e-5));
+  const auto fit = [&] {
+    const std::vector<std::span<const double>> views(axes.begin(), axes.end());
+    ifog::TuneOptions options;
+    options.states = {"random-walk"};
+    return ifog::tune(views, kPeriod, options).models[0];
+  };
+  const ifog::TunedModel alike = fit();
+  for (double& rate : axes[1]) rate *= 10.0;
+  for (double& rate : axes[2]) rate *= 100.0;
+  const ifog::TunedModel unlike = fit();
+  const double larger = unlike.settings.measurement_noise / alike.settings.measurement_noise;
+  EXPECT_NEAR(larger, (1.0 + 100.0 + 10'000.0) / 3.0, 0.05 * larger);
+  EXPECT_NEAR(unlike.settings.process_noise / alike.settings.process_noise / larger, 1.0, 0.02);
+  EXPECT_NEAR(unlike.log_likelihood, alike.log_likelihood - kLength * std::log(1000.0), 1.0);
+}
+
 // White noise alone: R is the sample variance and its error sqrt(2/n) R, known in closed form.
 TEST(Tune, WhiteNoiseHasTheClosedFormErrorAndALevelAtRest) {
   Noise noise(7);

@@ -87,6 +87,7 @@ const Increment* ChainRun::run(const Reading& reading, ChainOutput& out) {
 OfflineResult ChainRun::finish() {
   count(counts_);
   result_.filter = chain_->parts().filter();
+  result_.walk_share = chain_->parts().walk_share();
   result_.noise_known = chain_->parts().noise_known();
   result_.moved_in_start_up = chain_->parts().moved_in_start_up();
   return std::move(result_);

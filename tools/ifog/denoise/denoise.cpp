@@ -238,7 +238,7 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   std::vector<std::vector<double>> rates;
   for (const DenoisedAxis& axis : columns.axes) rates.push_back(axis.compensated);
   std::vector<Smoothed> smoothed =
-      ifog::smooth(result.filter, rates, columns.dt_s, 1.0 / result.sample_rate_hz);
+      ifog::smooth(result.filter, result.walk_share, rates, columns.dt_s, 1.0 / result.sample_rate_hz);
   for (std::size_t a = 0; a < columns.axes.size(); ++a) {
     columns.axes[a].smoothed = std::move(smoothed[a].rate_radps);
     columns.axes[a].smoothed_variance = std::move(smoothed[a].variance_rad2ps2);

@@ -60,6 +60,7 @@ struct OfflineResult {
   std::vector<std::string> axes;
   IncrementerCounts counts;           // of what counts, see OfflineSink
   FilterSettings filter;              // in force at the end
+  std::optional<Axes> walk_share;     // ChainParts::walk_share()
   bool noise_learned = false;         // from the first seconds
   bool moved_in_start_up = false;     // the sensor did in these
   bool noise_known = true;            // false: the record is shorter than the start-up

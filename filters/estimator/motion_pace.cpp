@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/estimator/motion_pace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace ifog {
+namespace {
+
+// Memories that are tried: as the trackers' half a power of ten apart. Of a sample, how many of them hold.
+using Level = std::uint8_t;
+constexpr Level kLevels = 12;
+double memory_of(Level level) { return std::pow(10.0, 0.5 * (level - 1)) / 0.7; }
+
+// Half of the window, in the longer memory. Where that is as good as the other the sum of risks over it is
+// -11 +- 3.5 variances of the noise: one in ten thousand is above the bound.
+constexpr double kHalfWindow = 6.0;
+constexpr double kAsGood = 8.0;
+constexpr double kUsed = 0.5;
+// A memory grows by this, a sample, from where the rate is quicker.
+constexpr float kGrows = 0.1F;
+// A long run is looked at in pieces, of which so much at either end is asked twice; and the longest memory
+// that these are enough for.
+constexpr std::size_t kPiece = std::size_t{1} << 16U;
+constexpr std::size_t kOverlap = std::size_t{1} << 14U;
+constexpr double kMostMemory = 2000.0;
+
+// Of each sample the estimate of its squared error, less what all memories have in common, over R. Level 0:
+// of the measurement itself.
+std::vector<double> risks(const RateCourse& part, double noise, Level level) {
+  const std::size_t length = part.rate.size();
+  std::vector<double> risk(length, 2.0);
+  if (level == 0) return risk;
+  const std::vector<float> memories(length, static_cast<float>(memory_of(level)));
+  RateCourse all = part;
+  all.memories = memories;
+  const Smoothed smoothed = smooth_course(all, noise);
+  for (std::size_t i = 0; i < length; ++i) {
+    const double apart = part.rate[i] - smoothed.rate_radps[i];
+    risk[i] = (apart * apart + 2.0 * smoothed.variance_rad2ps2[i]) / noise;
+  }
+  return risk;
+}
+
+// Whether the longer of two is as good, of each sample that all before it are. Gives how often.
+std::size_t compare(const RateCourse& part, const std::vector<double>& shorter,
+                    const std::vector<double>& longer, Level level, std::vector<Level>& levels) {
+  const std::size_t length = part.rate.size();
+  std::vector<double> sum(length + 1);
+  for (std::size_t i = 0; i < length; ++i)
+    sum[i + 1] = sum[i] + (std::isfinite(part.rate[i]) ? longer[i] - shorter[i] : 0.0);
+  const auto half = static_cast<std::size_t>(std::ceil(kHalfWindow * memory_of(level)));
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < length; ++i) {
+    if (levels[i] + 1 != level) continue;
+    const std::size_t begin = i > half ? i - half : 0, end = std::min(length, i + half + 1);
+    if (sum[end] - sum[begin] > kAsGood) continue;
+    levels[i] = level;
+    ++taken;
+  }
+  return taken;
+}
+
+std::vector<Level> levels_of(const RateCourse& part, double noise, double longest) {
+  std::vector<Level> levels(part.rate.size());
+  std::vector<double> shorter = risks(part, noise, 0);
+  for (Level level = 1; level < kLevels && memory_of(level) <= longest; ++level) {
+    std::vector<double> longer = risks(part, noise, level);
+    if (compare(part, shorter, longer, level, levels) == 0) break;
+    shorter = std::move(longer);
+  }
+  return levels;
+}
+
+RateCourse part_of(const RateCourse& course, std::size_t begin, std::size_t end) {
+  const std::size_t length = end - begin;
+  return {course.rate.subspan(begin, length),
+          course.walk.subspan(begin, length),
+          course.steps.empty() ? course.steps : course.steps.subspan(begin, length),
+          {}};
+}
+
+// Of one run of motion.
+void find_in(const RateCourse& run, double noise, double longest, std::span<float> memories) {
+  const std::size_t length = memories.size();
+  for (std::size_t begin = 0; begin < length; begin += kPiece) {
+    const std::size_t end = std::min(length, begin + kPiece);
+    const std::size_t from = begin - std::min(begin, kOverlap), to = std::min(length, end + kOverlap);
+    const std::vector<Level> levels = levels_of(part_of(run, from, to), noise, longest);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Level level = levels[i - from];
+      memories[i] = level == 0 ? pace::kBroken : static_cast<float>(kUsed * memory_of(level));
+    }
+  }
+  for (std::size_t i = 1; i < length; ++i) memories[i] = std::min(memories[i], memories[i - 1] + kGrows);
+  for (std::size_t i = length - 1; i-- > 0;) memories[i] = std::min(memories[i], memories[i + 1] + kGrows);
+}
+
+}  // namespace
+
+void find_paces(const RateCourse& course, double noise, double longest, std::span<float> memories) {
+  for (std::size_t begin = 0; begin < memories.size();) {
+    std::size_t end = begin;
+    while (end < memories.size() && memories[end] > pace::kRest) ++end;
+    if (end > begin)
+      find_in(part_of(course, begin, end), noise, std::min(longest, kMostMemory),
+              memories.subspan(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+}  // namespace ifog

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/estimator/motion_smoother.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ifog {
+namespace {
+
+using Vector = Eigen::Vector3d;  // level, slope, curvature; by nominal sample
+using Matrix = Eigen::Matrix3d;
+
+// Bandwidth times memory: the Kalman filter of three integrators has gain 2 w, the fading parabola 3 / M.
+constexpr double kBandwidth = 1.5;
+// After so many samples that nobody has seen a motion may be any other.
+constexpr double kGap = 16.0;
+// Beyond what neighbours differ by, in squares.
+constexpr double kAnything = 100.0;
+
+// A sample's estimate, of which at rest only the level counts.
+struct State {
+  Vector x = Vector::Zero();
+  Matrix p = Matrix::Zero();
+};
+
+// In units of the noise.
+class Course {
+ public:
+  Course(const RateCourse& of, double noise) : of_(of), noise_(noise) {}
+
+  [[nodiscard]] bool moving(std::size_t i) const {
+    return !of_.memories.empty() && of_.memories[i] > pace::kRest;
+  }
+  // A state at i - 1 taken to i, its transition with it.
+  void predict(std::size_t i, State& state, Matrix& transition) const {
+    Matrix driving = Matrix::Zero();
+    transition = Matrix::Zero();
+    transition(0, 0) = 1.0;
+    if (moving(i) || moving(i - 1)) move(i, transition, driving);
+    driving(0, 0) += of_.walk[i] / noise_;
+    state.x = transition * state.x;
+    state.p = transition * state.p * transition.transpose() + driving;
+    if (moving(i)) return;
+    state.x.tail<2>().setZero();
+    const double level = state.p(0, 0);
+    state.p.setZero();
+    state.p(0, 0) = level;
+  }
+  void correct(std::size_t i, State& state) const {
+    if (!std::isfinite(of_.rate[i])) return;
+    const Vector gain = state.p.col(0) / (state.p(0, 0) + 1.0);
+    state.x += gain * (of_.rate[i] / std::sqrt(noise_) - state.x[0]);
+    state.p = (state.p - gain * state.p.row(0)).eval();
+  }
+  [[nodiscard]] double anything(std::size_t i) const {
+    double most = 1.0;
+    for (const std::size_t j : {i, i + 1}) {
+      if (j == 0 || j >= of_.rate.size()) continue;
+      const double apart = of_.rate[j] - of_.rate[j - 1];
+      if (std::isfinite(apart)) most = std::max(most, apart * apart / noise_);
+    }
+    return kAnything * most;
+  }
+
+ private:
+  void move(std::size_t i, Matrix& transition, Matrix& driving) const {
+    const double t = of_.steps.empty() ? 1.0 : of_.steps[i];
+    const float now = of_.memories[i], before = of_.memories[i - 1];
+    const bool begins = before <= pace::kRest, ends = now <= pace::kRest;
+    if ((!ends && now <= pace::kBroken) || (!begins && before <= pace::kBroken) || t > kGap) {
+      driving.diagonal().setConstant(anything(i));
+      return;
+    }
+    if (begins) {
+      driving(1, 1) = driving(2, 2) = kAnything;
+    } else {
+      transition << 1.0, t, 0.5 * t * t, 0.0, 1.0, t, 0.0, 0.0, 1.0;
+    }
+    const double jerk = pace::jerk(ends ? before : begins ? now : std::min(now, before));
+    const double t2 = t * t, t3 = t2 * t;
+    Matrix of_jerk;
+    of_jerk << t3 * t2 / 20.0, t2 * t2 / 8.0, t3 / 6.0, t2 * t2 / 8.0, t3 / 3.0, t2 / 2.0, t3 / 6.0, t2 / 2.0,
+        t;
+    driving += jerk * of_jerk;
+  }
+
+  RateCourse of_;
+  double noise_;
+};
+
+// The state at i by all measurements, from the filtered one and the smoothed one of the next sample.
+void smooth_back(const Course& course, std::size_t i, State& filtered, const State& next) {
+  State predicted = filtered;
+  Matrix transition;
+  course.predict(i + 1, predicted, transition);
+  const Matrix cross = filtered.p * transition.transpose();
+  Matrix gain = Matrix::Zero();
+  if (course.moving(i + 1))
+    gain = predicted.p.llt().solve(cross.transpose()).transpose();
+  else
+    gain.col(0) = cross.col(0) / predicted.p(0, 0);
+  filtered.x += gain * (next.x - predicted.x);
+  filtered.p += gain * (next.p - predicted.p) * gain.transpose();
+}
+
+// At rest to rest a single state is all there is.
+bool rests(const Course& course, std::size_t i) { return !course.moving(i) && !course.moving(i - 1); }
+
+}  // namespace
+
+double pace::jerk(double memory) noexcept {
+  const double bandwidth = kBandwidth / memory, square = bandwidth * bandwidth;
+  return square * square * square;
+}
+
+Smoothed smooth_course(const RateCourse& of, double noise) {
+  const std::size_t length = of.rate.size();
+  Smoothed out{std::vector<double>(length, std::nan("")), std::vector<double>(length, std::nan(""))};
+  std::vector<double>&rate = out.rate_radps, &variance = out.variance_rad2ps2;
+  std::size_t first = 0;
+  while (first < length && !std::isfinite(of.rate[first])) ++first;
+  if (first == length) return out;
+  const Course course(of, noise);
+  const double sigma = std::sqrt(noise);
+  std::vector<State> moving;  // filtered
+  State now;
+  now.x[0] = of.rate[first] / sigma;
+  now.p(0, 0) = 1.0;
+  if (course.moving(first)) now.p(1, 1) = now.p(2, 2) = course.anything(first);
+  Matrix transition;
+  for (std::size_t i = first; i < length; ++i) {
+    if (i > first && rests(course, i)) {
+      now.p(0, 0) += of.walk[i] / noise;
+      if (std::isfinite(of.rate[i])) {
+        const double gain = now.p(0, 0) / (now.p(0, 0) + 1.0);
+        now.x[0] += gain * (of.rate[i] / sigma - now.x[0]);
+        now.p(0, 0) *= 1.0 - gain;
+      }
+    } else if (i > first) {
+      course.predict(i, now, transition);
+      course.correct(i, now);
+    }
+    rate[i] = now.x[0];
+    variance[i] = now.p(0, 0);
+    if (course.moving(i)) moving.push_back(now);
+  }
+  for (std::size_t i = length; i-- > first;) {
+    State filtered;
+    if (course.moving(i)) {
+      filtered = moving.back();
+      moving.pop_back();
+    } else {
+      filtered.x[0] = rate[i];
+      filtered.p(0, 0) = variance[i];
+    }
+    if (i + 1 < length && rests(course, i + 1)) {
+      const double predicted = filtered.p(0, 0) + of.walk[i + 1] / noise;
+      const double share = filtered.p(0, 0) / predicted;
+      filtered.x[0] += share * (now.x[0] - filtered.x[0]);
+      filtered.p(0, 0) += share * share * (now.p(0, 0) - predicted);
+    } else if (i + 1 < length) {
+      smooth_back(course, i, filtered, now);
+    }
+    now = filtered;
+    rate[i] = now.x[0] * sigma;
+    variance[i] = now.p(0, 0) * noise;
+  }
+  for (std::size_t i = first; i-- > 0;) {
+    rate[i] = rate[first];
+    variance[i] = variance[i + 1] + of.walk[i + 1];
+  }
+  return out;
+}
+
+}  // namespace ifog
