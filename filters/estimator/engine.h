@@ -157,6 +157,7 @@ class Engine {
   std::uint32_t started_ = 0;  // axes that have a state
   Knowledge knowledge_ = Knowledge::nothing;
   Motion motion_ = Motion::at_rest;
+  bool heard_before_ = false;       // the noise, when it began
   double unmeasured_s_ = 0.0;       // time that no measurement has covered, since the last one
   bool waiting_ = false;            // the last measurement was foreseen by nobody: an outlier, or a jump
   bool lost_ = false;               // was found so, and has not been well since: guard()

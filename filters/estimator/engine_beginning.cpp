@@ -24,6 +24,7 @@ constexpr double kGap = 16.0;
 void Engine::begin() noexcept {
   motion_ = follow_manoeuvres_ ? Motion::beginning : Motion::at_rest;
   waiting_ = false;
+  heard_before_ = knowledge_ == Knowledge::heard;
   kept_out_ = surprised_ = {};
   mix_.begin(0.0);
 }
@@ -138,8 +139,8 @@ void Engine::take_in(const Measurement& m, const Surprise& now) noexcept {
     if (has(m.valid, a) && !noise_[a].known())
       foresight_[a].take(trackers_, a, m.in.rate_radps[a], m.noise_scale);
   trackers_.correct(m.in.rate_radps, m.valid);
-  // Of noise that was heard nothing is learned: what is left may be a motion's that is not known yet.
-  const bool first = knowledge_ == Knowledge::nothing, learns = knowledge_ != Knowledge::heard;
+  // Of noise that was heard before nothing is learned: what is left may be a motion's that is not known yet.
+  const bool first = knowledge_ == Knowledge::nothing, learns = !heard_before_;
   const double predicted = rest_->measurement_variance();
   update_rest(m, learns);
   if (!first) {

@@ -142,8 +142,8 @@ TEST(Holes, UnusableSamplesInARhythmLeaveTheTrackersStable) {
       const auto motion = [=](int i) { return amplitude * std::sin(2 * std::numbers::pi * i * kPeriod); };
       const Seen whole = Turning(axes, motion, [](int) { return Sample::good; }).go(1000, 10'000, 10'000);
       for (const int begin : {0, 3000}) {
-        for (const int n : {2, 3, 5, 10, 20, 50}) {
-          for (const int k : {1, 2, 3, 4, n - 2, n - 1}) {
+        for (const int n : {2, 3, 5, 10, 20}) {
+          for (const int k : {1, 2, n - 2, n - 1}) {
             if (k < 1 || k >= n) continue;
             const auto fate = [=](int i) {
               return i >= begin && i < begin + 3000 && i % n < k ? Sample::invalid : Sample::good;
