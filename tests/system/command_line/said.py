@@ -54,7 +54,8 @@ class Checks:
     def check_samples_without_a_time_are_one_line(self):
         """What a sink throws must not reach the plugin's C functions: every command that reads, every kind of bytes."""
         log, trigger = self.folder / "untimed.log", self.folder / "trigger.bin"
-        log.write_text("(0.0) vcan0 100#0000000000000000\n(0.01) vcan0 100#0000000000010000\n")
+        # As candump shows frames on a screen.
+        log.write_text("  vcan0  100   [8]  00 00 00 00 00 00 00 00\n  vcan0  100   [8]  00 00 00 00 00 01 00 00\n")
         ifog("convert", self.one, trigger, "--driver", "stim300", "--option", "rate_hz=125")
         for source, options in ((log, DBC), (trigger, ["--driver", "stim300", "--option", "rate_hz=trigger"])):
             for command in (*READERS, "convert", "hdf5"):
