@@ -100,6 +100,8 @@ class DeviceCount {
   static constexpr double kLeastDoubt = 2e-5;
   static constexpr double kEnough = 64;  // periods, and the rate is measured
   static constexpr double kForgets = 0.9998;
+  static constexpr double kScatters =
+      4.0;  // further off than so much of what times scatter by, it is not by chance
   // Clock and counter of one device agree within this.
   static constexpr double kClockSamples = 2.0;
   static constexpr double kClockDoubt = 0.01;
@@ -132,12 +134,12 @@ class DeviceCount {
   }
 
   // Came again, or after one that follows it: the count goes back by little, and on from there to here there
-  // was no time. By little of a round, too: several frames of one read come with no time between them, and
-  // one step on of a counter of two bits is three back.
+  // was no time. By little of a round, too: several frames of one read come with no time between them. The
+  // very next of the count is never one, whatever its values are.
   [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
     using Had = RecentFrames::Had;
     const std::uint64_t back = modulus_ - difference;
-    if (frame.reopened || difference == 0 || back >= kMostBack) return false;
+    if (frame.reopened || difference <= 1 || back >= kMostBack) return false;
     if (frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
       return false;  // nothing is late behind it
     const bool timed = frame.elapsed_s >= 0.0;
@@ -146,14 +148,21 @@ class DeviceCount {
     const double passed_s = clocked(frame) ? this->passed_s(frame) : 0.0;
     if (passed_s > 0.5 * forward_s && (!timed || !ifog::restarted(passed_s, elapsed_s))) return false;
     const Had had = recent_.at_place(place_ - back, frame.digest);
-    // What the sensor measured then and not just now.
-    if (had == Had::same && frame.digest != last_.digest) return !timed || elapsed_s < 0.5 * forward_s;
+    if (had == Had::same && recent_.tells_values_apart()) return true;
+    const double back_s = static_cast<double>(back) * nominal_s_;
+    if (had != Had::other && passed_s < 0.0 && std::abs(passed_s + back_s) <= apart_s(back_s)) return true;
     if (had == Had::other || back >= std::min(kMostBack, modulus_ / 4)) return false;
     if (clocked(frame) && passed_s > 0.0 && timed && !ifog::restarted(passed_s, elapsed_s)) return false;
     if (!timed) return had == Had::same || back <= kBackUntimed;
-    return had == Had::same ? forward_s > elapsed_s + kPrompt_s : elapsed_s < 0.5 * forward_s;
+    return elapsed_s < std::max(0.5, had == Had::same ? 1.0 - prompt_s() / forward_s : 0.0) * forward_s;
   }
 
+  // What clock and counter of one device are apart by, at most, over such a time.
+  [[nodiscard]] double apart_s(double time_s) const noexcept {
+    return kClockSamples * nominal_s_ + kClockDoubt * time_s;
+  }
+  // Within what a sample is read as it comes, as far as this line has shown it.
+  [[nodiscard]] double prompt_s() const noexcept { return std::min(kPrompt_s, kScatters * scatter_s_); }
   [[nodiscard]] bool clocked(const Frame& frame) const noexcept { return frame.clocked && last_.clocked; }
   [[nodiscard]] double passed_s(const Frame& frame) const noexcept {
     return static_cast<double>(ns_between(last_.time_ns, frame.time_ns)) * 1e-9;
@@ -168,7 +177,7 @@ class DeviceCount {
     const double samples = passed_s / nominal_s_;
     const double rounds = std::max(0.0, std::round((samples - counted) / static_cast<double>(modulus_)));
     const double claimed = counted + rounds * static_cast<double>(modulus_);
-    const bool agrees = std::abs(claimed - samples) <= kClockSamples + kClockDoubt * std::abs(samples);
+    const bool agrees = std::abs(claimed * nominal_s_ - passed_s) <= apart_s(std::abs(passed_s));
     const bool possible = passed_s > 0.0 && (elapsed_s < 0.0 || !ifog::restarted(passed_s, elapsed_s));
     if (passed_s == 0.0) return false;  // the same frame again, or a clock of coarse ticks
     const bool goes_on = difference == 1 && frame.quiet_s < kPrompt_s + 2.0 * nominal_s_;
