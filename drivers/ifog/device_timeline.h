@@ -39,6 +39,7 @@ class DeviceTimeline {
     bool out_of_turn = false;  // it came again, or late: left out, and all else here says nothing
     bool clock_moved = false;  // as in DeviceCount::Step
     double late_s = 0.0;       // likewise
+    bool clock_set = false;    // the device's, while it counted on: by its counter here
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
   };
 
@@ -124,6 +125,7 @@ class DeviceTimeline {
     count.time_ns = time_ns;
     count.arrival_ns = frame.arrival_ns;
     count.reopened = frame.reopened;
+    count.grain_s = clock_steps_.grain_s();
     count.digest = now.digest;
     count.quiet_s = quiet_s(frame, elapsed_s);
     return now;
@@ -137,10 +139,15 @@ class DeviceTimeline {
     step.out_of_turn = counted.out_of_turn || (counted.samples == 0 && now.digest == last_digest_);
     if (step.out_of_turn) return step;
     counted.samples = std::max<std::uint64_t>(counted.samples, 1);
-    if (!counted.restarted && frame.clocked && last_clocked_ && now.time_ns >= stamp_.time_ns()) {
-      const ClockSteps::Step passed =
-          clock_steps_.take(ns_between(stamp_.time_ns(), now.time_ns), counted.samples);
-      if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
+    if (!counted.restarted && frame.clocked && last_clocked_) {
+      const std::int64_t passed_ns = ns_between(stamp_.time_ns(), now.time_ns);
+      if (passed_ns == 0 || counted.by_clock) {
+        const ClockSteps::Step passed = clock_steps_.take(passed_ns, counted.samples);
+        if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
+      } else {
+        step.clock_set = clock_steps_.known();
+        clock_steps_.jumped();
+      }
     }
     count_.take(now.count, counted);
     step.samples = counted.samples;
