@@ -10,7 +10,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
-constexpr double kPace = 0.75;      // of the period, and samples are not held up any more
+constexpr double kPace = 0.75;  // of the period, and samples are not held up any more
+// What comes at once when nothing was held up: adapters hand on what was in portions of more than so few.
+constexpr std::uint32_t kFew = 2;
+constexpr double kUsual = 1.5, kFollows = 0.05;
 constexpr double kSetBack_s = 1.0;  // of the times of arrival: more than any order of delivery
 
 int clock_memory(double rate_hz) {
@@ -79,7 +82,9 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) const noe
   const double period_s = clock_.period_s();
   const double late_s = clock_.lateness_s(1, reading.arrival_ns);
   const bool late = elapsed_s >= 0.0 && late_s > std::max(0.25, 20.0 * period_s);
-  const bool alone = reading.at_once > 0 && reading.at_once * period_s <= kPrompt_s + period_s;
+  const bool alone = reading.at_once > 0 && reading.at_once <= kFew &&
+                     reading.at_once <= kUsual * usually_at_once_ &&
+                     reading.at_once * period_s <= kPrompt_s + period_s;
   if (elapsed_s > 0.0 && reopened_)
     step.samples = at_least_one(elapsed_s / period_s);
   else if (late && (late_s_ > 0.0 ? elapsed_s >= kPace * period_s : alone))
@@ -95,6 +100,8 @@ Incrementer::Step Incrementer::step(const Reading& reading, const DeviceTimeline
   if (timeline_.tells(frame)) return timeline_.next(frame);
   Step step = step_by_arrival(reading);
   late_s_ = step.late_s;
+  const auto at_once = static_cast<double>(reading.at_once);
+  usually_at_once_ += (usually_at_once_ > 0.0 ? kFollows : 1.0) * (at_once - usually_at_once_);
   step.gap = step.gap || reopened_;
   step.time_ns = timeline_.first(frame);
   return step;
