@@ -17,7 +17,7 @@
 namespace ifog {
 
 // Time, the first of these that the samples have:
-//   - the device's clock, over its wraps;
+//   - the device's clock, over its wraps, and over where it was set while the device counted on;
 //   - the sequence counter, unwrapped, over the nominal rate, from 0;
 //   - the arrival times, from 0;
 //   - the number of the sample over the nominal rate.
@@ -59,6 +59,8 @@ class CaptureBuilder {
   [[nodiscard]] std::size_t missing() const { return missing_; }
   // Times the counter or the clock jumped back, without a discontinuity: the device was switched off and on.
   [[nodiscard]] std::size_t restarts() const { return restarted_; }
+  // Times the device's clock was set while its counter went on: time goes on by that.
+  [[nodiscard]] std::size_t clock_sets() const { return clock_sets_; }
   // Samples left out because they came twice, or after one that follows.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
   // Samples with a rate taken for missing: at full scale; or beyond what the driver interface allows.
@@ -85,8 +87,8 @@ class CaptureBuilder {
   std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0;
   TimeOrigin device_from_;  // of the device's clock, that its times are counted from
-  std::size_t missing_ = 0, repeated_ = 0, restarted_ = 0, impossible_ = 0, at_full_scale_ = 0,
-              implausible_ = 0;
+  std::size_t missing_ = 0, repeated_ = 0, restarted_ = 0, clock_sets_ = 0, impossible_ = 0,
+              at_full_scale_ = 0, implausible_ = 0;
   std::vector<Measurable> channel_range_;
   std::size_t taken_ = 0;  // rows, by next_rows()
   double last_s_ = 0.0;    // time of the last row

@@ -39,7 +39,8 @@ class DeviceTimeline {
     bool out_of_turn = false;  // it came again, or late: left out, and all else here says nothing
     bool clock_moved = false;  // as in DeviceCount::Step
     double late_s = 0.0;       // likewise
-    bool clock_set = false;    // the device's, while it counted on: by its counter here
+    bool by_count = false;     // dt_s is by the counter, and not what time_ns has moved on by
+    bool clock_set = false;    // that is because the device's clock was set while it counted on
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
   };
 
@@ -145,6 +146,7 @@ class DeviceTimeline {
         const ClockSteps::Step passed = clock_steps_.take(passed_ns, counted.samples);
         if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
       } else {
+        step.by_count = true;
         step.clock_set = clock_steps_.known();
         clock_steps_.jumped();
       }

@@ -154,7 +154,7 @@ void expect_truth(const Stream& stream, double set_s = 0.0) {
     wrong_missing += chain.counts().missing - before != one.missing ? 1 : 0;
     dt_s += took ? increment.dt_s : 0.0;
     angle += took ? increment.delta_theta_rad[0] : 0.0;
-    if (set_s == 0.0) builder.add(one.sample);
+    builder.add(one.sample);
     if (!one.taken) continue;
     ++taken;
     missing += one.missing;
@@ -168,7 +168,7 @@ void expect_truth(const Stream& stream, double set_s = 0.0) {
   EXPECT_EQ(chain.counts().restarts, 0U);
   EXPECT_NEAR(dt_s, static_cast<double>(last + 1) / stream.rate_hz, 1e-6 + 2.0 * tick_s);
   EXPECT_NEAR(angle, truth, 0.05 * (1e-6 + 6.0 * tick_s));
-  if (set_s != 0.0) return;
+  EXPECT_EQ(builder.clock_sets(), set_s == 0.0 ? 0U : 1U);
   EXPECT_EQ(builder.missing(), missing);
   EXPECT_EQ(builder.restarts(), 0U);
   EXPECT_EQ(builder.repeated(), sent.size() - taken);
