@@ -58,7 +58,7 @@ double Incrementer::clock_offset_ppm() const noexcept {
 }
 
 double Incrementer::interval_error() const noexcept {
-  const bool nominal = facts_.sequence_modulus > 0 && last_.device_time_ns < 0;
+  const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
 }
 
@@ -66,8 +66,10 @@ DeviceTimeline::Frame Incrementer::frame_of(const Reading& reading) const noexce
   DeviceTimeline::Frame frame;
   frame.counts = reading.has_sequence;
   frame.sequence = reading.sequence;
-  frame.clocked = reading.device_time_ns >= 0;
-  frame.stamp = {reading.device_time_ns, reading.device_wrap_ns};
+  frame.clocked = reading.device_time_ns.has_value();
+  frame.stamp = {reading.device_time_ns.value_or(0), reading.device_wrap_ns};
+  // Half of what a signed stamp goes through is below 0: of its rounds those from there on are published.
+  if (frame.stamp.ns < 0 && frame.stamp.wrap_ns > 0) frame.stamp.ns += frame.stamp.wrap_ns;
   frame.arrival_ns = reading.arrival_ns;
   frame.reopened = reopened_;
   frame.values = {reading.value.data(), static_cast<std::size_t>(facts_.axes)};
@@ -253,7 +255,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.wall_shift_ns, reading.device_time_ns, out.utime_ns};
+  last_ = {reading.wall_shift_ns, out.utime_ns, frame.clocked};
   started_ = true;
   reopened_ = false;
   return true;

@@ -73,7 +73,8 @@ class Incrementer {
   bool reopened_ = false;
   // Of the reading before; its channels are kept below.
   struct Last {
-    std::int64_t wall_shift_ns = 0, device_time_ns = -1, utime_ns = 0;
+    std::int64_t wall_shift_ns = 0, utime_ns = 0;
+    bool clocked = false;
   };
   Last last_;
   Arrivals arrivals_;
