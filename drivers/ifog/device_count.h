@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/recent_frames.h"
@@ -50,11 +51,19 @@ class DeviceCount {
     begin(frame);
     arrivals_.came(frame.arrival_ns, 0.0);
   }
+  // What has passed to a frame of that count, less whole rounds: to one half of one on, or back by little.
+  [[nodiscard]] std::optional<double> ahead_s(std::uint32_t sequence) const noexcept {
+    const std::uint64_t ahead = difference(sequence), back = modulus_ - ahead;
+    if (ahead == 0) return std::nullopt;
+    if (ahead <= modulus_ / 2) return static_cast<double>(ahead) * nominal_s_;
+    if (back < std::min(kMostBack, modulus_ / 4)) return -static_cast<double>(back) * nominal_s_;
+    return std::nullopt;
+  }
   // Of the next frame; changes nothing.
   [[nodiscard]] Step look(const Frame& next) const noexcept {
     const Timed frame{next, arrivals_.elapsed_s(next.arrival_ns)};
     Step step;
-    const std::uint64_t difference = (frame.sequence + modulus_ - last_.sequence % modulus_) % modulus_;
+    const std::uint64_t difference = this->difference(frame.sequence);
     if (out_of_turn(frame, difference)) {
       step.out_of_turn = true;
       return step;
@@ -114,6 +123,10 @@ class DeviceCount {
   struct Timed : Frame {
     double elapsed_s;  // since the frame before, by arrival; negative: not known
   };
+
+  [[nodiscard]] std::uint64_t difference(std::uint32_t sequence) const noexcept {
+    return (sequence + modulus_ - last_.sequence % modulus_) % modulus_;
+  }
 
   // What arrival times scatter by: all but one in thirty of them by less. One that is far off makes it hardly
   // more.

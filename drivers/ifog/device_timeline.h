@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "drivers/ifog/arrivals.h"
@@ -107,7 +108,10 @@ class DeviceTimeline {
   [[nodiscard]] bool counted(const Frame& frame) const noexcept { return frame.counts && modulus_ > 0; }
   [[nodiscard]] std::int64_t proposed(const Frame& frame, double elapsed_s) const noexcept {
     if (!last_clocked_) return frame.stamp.ns;
-    return stamp_.look(frame.stamp, elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s));
+    std::optional<double> counted_s;
+    if (counted(frame) && rate_known_) counted_s = count_.ahead_s(frame.sequence);
+    return stamp_.look(frame.stamp,
+                       {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s), counted_s});
   }
   // Since any frame came, also one that was left out.
   [[nodiscard]] double quiet_s(const Frame& frame, double elapsed_s) const noexcept {

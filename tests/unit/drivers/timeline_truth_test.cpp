@@ -194,6 +194,17 @@ TEST_P(TimelineTruthOf, EachFrameIsJudgedAsItWasMade) {
           }
 }
 
+// A stamp of 16 bits of microseconds, which goes round before ten samples are lost, and hardly after one.
+TEST_P(TimelineTruthOf, AStampThatGoesRoundWithinFewSamplesIsFollowedByTheCounter) {
+  for (const int bits : {7, 8, 16})
+    for (const double rate_hz : {20.0, 100.0, 200.0})
+      for (const Comes comes : {Comes::one_by_one, Comes::in_fours, Comes::untimed, Comes::every_16_ms}) {
+        const Stream stream{bits, rate_hz, 65'536'000, 1000, 0.0, comes, GetParam()};
+        SCOPED_TRACE(testing::Message() << stream);
+        expect_truth(stream);
+      }
+}
+
 // By a clock that is set, once, while the device counts on, no sample is lost and no angle is made.
 TEST(TimelineTruth, AClockThatIsSetMakesNeitherTimeNorAngle) {
   for (const int bits : {4, 7, 8, 16})
