@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "daemon/sensor/facts.h"
 #include "drivers/capture/capture_builder.h"
@@ -278,6 +279,20 @@ TEST(RollingStamp, AStepOfHardlyMoreThanASampleIsNeverBack) {
       before_ns = stamp.time_ns();
     }
   }
+}
+
+// Further apart than 64 bits hold: what has no room wraps, and overflows nothing.
+TEST(RollingStamp, StampsMayBeAnyThatHasRoom) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
+                         kMost = std::numeric_limits<std::int64_t>::max();
+  RollingStamp stamp;
+  stamp.take({kLeast + 5, 1000}, kLeast + 5);
+  EXPECT_EQ(stamp.look({kMost - 5, 1000}, {1e-3, 1e-3, 1e-3}), kLeast + 5 + 989);
+  for (const std::int64_t from_ns : {kLeast, std::int64_t{-1}, std::int64_t{0}, kMost})
+    for (const double elapsed_s : {-1.0, 1e-3, 9e9}) {
+      stamp.take({from_ns, kMost}, from_ns);
+      EXPECT_EQ(stamp.look({from_ns, kMost}, {elapsed_s, 1e-3, elapsed_s, 1e-3}), from_ns);
+    }
 }
 
 TEST(RollingStamp, AStampOfASecondHeldUpForMostOfOneMakesNoRound) {
