@@ -205,11 +205,12 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
     ++counts_.pauses;
   }
   // What is held up on its way says nothing of the clock.
-  out.utime_ns =
-      clock_.advance(step.samples, step.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
+  out.utime_ns = ns_after(clock_.advance(step.samples, step.late_s > 0.0 ? 0 : reading.arrival_ns),
+                          reading.wall_shift_ns);
   // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
   // fro by as much as arrival times scatter.
-  if (started_ && (out.flags & kClockStep) == 0) out.utime_ns = std::max(out.utime_ns, last_.utime_ns + 1000);
+  if (started_ && (out.flags & kClockStep) == 0)
+    out.utime_ns = std::max(out.utime_ns, ns_after(last_.utime_ns, 1000));
 }
 
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
