@@ -58,7 +58,8 @@ Limits channel_limits(const std::string& name, const Limits& said) {
 
 void read_sample(const ifog_sample& sample, int frame_channels, Reading& out) noexcept {
   out.arrival_ns = sample.arrival_ns;
-  out.device_time_ns = (sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0 ? sample.device_time_ns : -1;
+  out.device_time_ns.reset();
+  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) out.device_time_ns = sample.device_time_ns;
   out.device_wrap_ns = sample.device_wrap_ns;
   out.at_once = sample.at_once;
   out.sequence = sample.sequence;

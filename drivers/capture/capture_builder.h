@@ -51,6 +51,7 @@ class CaptureBuilder {
   [[nodiscard]] std::size_t impossible() const { return impossible_; }  // values left out so
   [[nodiscard]] std::size_t missing() const { return times_.missing(); }
   [[nodiscard]] std::size_t restarts() const { return times_.restarts(); }
+  [[nodiscard]] std::size_t clock_sets() const { return times_.clock_sets(); }
   [[nodiscard]] std::size_t repeated() const { return times_.repeated(); }
   // Samples with a rate taken for missing: at full scale; or beyond what the driver interface allows.
   [[nodiscard]] std::size_t at_full_scale() const { return at_full_scale_; }

@@ -60,7 +60,11 @@ bool is_hdf5(const std::string& path) {
   return has_ending(name, ".h5") || has_ending(name, ".hdf5");
 }
 
-bool is_hdf5(const InputFile& file) { return is_hdf5(file.path()) || begins_as_hdf5(file.head()); }
+// By its name, but for what begins as no file of that kind: a block of the user's own may stand before it.
+bool is_hdf5(const InputFile& file) {
+  if (begins_as_hdf5(file.head())) return true;
+  return is_hdf5(file.path()) && begun_as(file.head()) == FileKind::unknown;
+}
 
 FileKind file_kind(const std::string& path) {
   const std::string_view name = unpacked_name(path);

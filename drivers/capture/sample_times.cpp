@@ -146,8 +146,10 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   anew = anew || (timed_anew && clock_ == Clock::device);
   if (anew) begin_anew(sample);
   broken_ = false;
-  // Where the device's clock has stood still while it measured: by the sum of its steps.
-  if (!first && !anew && clock_ == Clock::device && timeline_.clock_stood())
+  if (step.clock_set) ++clock_sets_;
+  // Where the device's clock has stood still while it measured, by the sum of its steps; where it was set
+  // while the device counted on, by the counter.
+  if (!first && !anew && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
     offset_s_ += last_s_ + step.dt_s - seconds(sample);
   double now = seconds(sample);
   if (!first && now <= last_s_) {

@@ -3,7 +3,7 @@
 // and that --from and --to mean.
 //
 // The first of these that the samples have:
-//   - the device's clock, over its wraps;
+//   - the device's clock, over its wraps, and over where it was set while the device counted on;
 //   - the sequence counter, unwrapped, over the nominal rate, from 0;
 //   - the arrival times, from 0;
 //   - the number of the sample over the nominal rate, from 0.
@@ -54,6 +54,8 @@ class SampleTimes {
   [[nodiscard]] std::size_t missing() const { return missing_; }
   // Times the counter or the clock jumped back, without a discontinuity: the device was switched off and on.
   [[nodiscard]] std::size_t restarts() const { return restarted_; }
+  // Times the device's clock was set while its counter went on: time goes on by that.
+  [[nodiscard]] std::size_t clock_sets() const { return clock_sets_; }
   // Samples left out because they came twice, or after one that follows.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
 
@@ -74,7 +76,7 @@ class SampleTimes {
   std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
   std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
-  std::size_t taken_ = 0, missing_ = 0, repeated_ = 0, restarted_ = 0;
+  std::size_t taken_ = 0, missing_ = 0, repeated_ = 0, restarted_ = 0, clock_sets_ = 0;
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;

@@ -55,6 +55,15 @@ class ClockSteps {
     samples_ += static_cast<double>(step.samples);
     return step;
   }
+  // It was set: the step before this one is none of its own.
+  void jumped() noexcept { time_s_ = counted_s_ = samples_ = 0.0; }
+  // It has been seen to move, or to stand.
+  [[nodiscard]] bool known() const noexcept { return stood_ || steps_ > 0; }
+  // To what a single step says how much has passed.
+  [[nodiscard]] double grain_s() const noexcept {
+    constexpr double kSlowest_s = 1.0;  // while no tick is known
+    return !stood_ ? 0.0 : tick_ns_ == 0 ? kSlowest_s : static_cast<double>(tick_ns_) * 1e-9;
+  }
   // Its single steps say less than the period does.
   [[nodiscard]] bool coarse() const noexcept {
     if (stood_) return true;

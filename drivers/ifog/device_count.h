@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/recent_frames.h"
@@ -25,6 +26,7 @@ class DeviceCount {
     std::uint32_t sequence = 0;
     bool clocked = false;         // it has a clock
     std::int64_t time_ns = 0;     // of that, over its wraps
+    double grain_s = 0.0;         // to what a single step of it says how much has passed
     std::int64_t arrival_ns = 0;  // on a clock that nobody sets; 0: not known
     double quiet_s = -1.0;        // since any frame came, also one that was left out; negative: not known
     bool reopened = false;        // the device was closed and opened in between
@@ -33,6 +35,7 @@ class DeviceCount {
   struct Step {
     std::uint64_t samples = 1;  // since the frame before; 0: the same count again, too soon for a round
     double dt_s = 0.0;          // they took; by the device's clock where that agrees
+    bool by_clock = false;      // it does
     bool gap = false;
     bool restarted = false;    // counter or clock jumped: it was switched off and on
     bool out_of_turn = false;  // came again, or after one that follows it; all else here says nothing
@@ -48,11 +51,19 @@ class DeviceCount {
     begin(frame);
     arrivals_.came(frame.arrival_ns, 0.0);
   }
+  // What has passed to a frame of that count, less whole rounds: to one half of one on, or back by little.
+  [[nodiscard]] std::optional<double> ahead_s(std::uint32_t sequence) const noexcept {
+    const std::uint64_t ahead = difference(sequence), back = modulus_ - ahead;
+    if (ahead == 0) return std::nullopt;
+    if (ahead <= modulus_ / 2) return static_cast<double>(ahead) * nominal_s_;
+    if (back < std::min(kMostBack, modulus_ / 4)) return -static_cast<double>(back) * nominal_s_;
+    return std::nullopt;
+  }
   // Of the next frame; changes nothing.
   [[nodiscard]] Step look(const Frame& next) const noexcept {
     const Timed frame{next, arrivals_.elapsed_s(next.arrival_ns)};
     Step step;
-    const std::uint64_t difference = (frame.sequence + modulus_ - last_.sequence % modulus_) % modulus_;
+    const std::uint64_t difference = this->difference(frame.sequence);
     if (out_of_turn(frame, difference)) {
       step.out_of_turn = true;
       return step;
@@ -81,6 +92,8 @@ class DeviceCount {
       counted_s_ += counted_s;
       jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
     }
+    if (step.by_clock) took_by_clock_s_ = step.dt_s / static_cast<double>(samples);
+    if (elapsed >= 0.0) behind_s_ = std::max(0.0, behind_s_ + (1.0 - kClockDoubt) * elapsed - step.dt_s);
     last_ = frame;
     follow_lateness(elapsed, step);
   }
@@ -100,13 +113,20 @@ class DeviceCount {
   static constexpr double kLeastDoubt = 2e-5;
   static constexpr double kEnough = 64;  // periods, and the rate is measured
   static constexpr double kForgets = 0.9998;
+  static constexpr double kScatters =
+      4.0;  // further off than so much of what times scatter by, it is not by chance
   // Clock and counter of one device agree within this.
   static constexpr double kClockSamples = 2.0;
   static constexpr double kClockDoubt = 0.01;
+  static constexpr double kLonger = 8.0;  // than a sample took: a rate that was stated wrong, a late one
 
   struct Timed : Frame {
     double elapsed_s;  // since the frame before, by arrival; negative: not known
   };
+
+  [[nodiscard]] std::uint64_t difference(std::uint32_t sequence) const noexcept {
+    return (sequence + modulus_ - last_.sequence % modulus_) % modulus_;
+  }
 
   // What arrival times scatter by: all but one in thirty of them by less. One that is far off makes it hardly
   // more.
@@ -119,7 +139,7 @@ class DeviceCount {
     place_ = kFirstPlace;
     recent_.forget();
     recent_.add(place_, 0, frame.digest);
-    late_s_ = took_s_ = counted_s_ = jitter_s_ = 0.0;
+    late_s_ = took_s_ = counted_s_ = jitter_s_ = behind_s_ = took_by_clock_s_ = 0.0;
     last_ = frame;
   }
 
@@ -132,12 +152,12 @@ class DeviceCount {
   }
 
   // Came again, or after one that follows it: the count goes back by little, and on from there to here there
-  // was no time. By little of a round, too: several frames of one read come with no time between them, and
-  // one step on of a counter of two bits is three back.
+  // was no time. By little of a round, too: several frames of one read come with no time between them. The
+  // very next of the count is never one, whatever its values are.
   [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
     using Had = RecentFrames::Had;
     const std::uint64_t back = modulus_ - difference;
-    if (frame.reopened || difference == 0 || back >= kMostBack) return false;
+    if (frame.reopened || difference <= 1 || back >= kMostBack) return false;
     if (frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
       return false;  // nothing is late behind it
     const bool timed = frame.elapsed_s >= 0.0;
@@ -146,14 +166,21 @@ class DeviceCount {
     const double passed_s = clocked(frame) ? this->passed_s(frame) : 0.0;
     if (passed_s > 0.5 * forward_s && (!timed || !ifog::restarted(passed_s, elapsed_s))) return false;
     const Had had = recent_.at_place(place_ - back, frame.digest);
-    // What the sensor measured then and not just now.
-    if (had == Had::same && frame.digest != last_.digest) return !timed || elapsed_s < 0.5 * forward_s;
+    if (had == Had::same && recent_.tells_values_apart()) return true;
+    const double back_s = static_cast<double>(back) * nominal_s_;
+    if (had != Had::other && passed_s < 0.0 && std::abs(passed_s + back_s) <= apart_s(back_s)) return true;
     if (had == Had::other || back >= std::min(kMostBack, modulus_ / 4)) return false;
     if (clocked(frame) && passed_s > 0.0 && timed && !ifog::restarted(passed_s, elapsed_s)) return false;
     if (!timed) return had == Had::same || back <= kBackUntimed;
-    return had == Had::same ? forward_s > elapsed_s + kPrompt_s : elapsed_s < 0.5 * forward_s;
+    return elapsed_s < std::max(0.5, had == Had::same ? 1.0 - prompt_s() / forward_s : 0.0) * forward_s;
   }
 
+  // What clock and counter of one device are apart by, at most, over such a time.
+  [[nodiscard]] double apart_s(double time_s) const noexcept {
+    return kClockSamples * nominal_s_ + kClockDoubt * time_s;
+  }
+  // Within what a sample is read as it comes, as far as this line has shown it.
+  [[nodiscard]] double prompt_s() const noexcept { return std::min(kPrompt_s, kScatters * scatter_s_); }
   [[nodiscard]] bool clocked(const Frame& frame) const noexcept { return frame.clocked && last_.clocked; }
   [[nodiscard]] double passed_s(const Frame& frame) const noexcept {
     return static_cast<double>(ns_between(last_.time_ns, frame.time_ns)) * 1e-9;
@@ -163,29 +190,41 @@ class DeviceCount {
   [[nodiscard]] bool by_clock(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
     if (!clocked(frame)) return false;
     const double passed_s = this->passed_s(frame);
-    const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
-    const auto counted = static_cast<double>(difference);
-    const double samples = passed_s / nominal_s_;
-    const double rounds = std::max(0.0, std::round((samples - counted) / static_cast<double>(modulus_)));
-    const double claimed = counted + rounds * static_cast<double>(modulus_);
-    const bool agrees = std::abs(claimed - samples) <= kClockSamples + kClockDoubt * std::abs(samples);
-    const bool possible = passed_s > 0.0 && (elapsed_s < 0.0 || !ifog::restarted(passed_s, elapsed_s));
     if (passed_s == 0.0) return false;  // the same frame again, or a clock of coarse ticks
+    const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
+    const bool possible = passed_s > 0.0 && !ifog::restarted(passed_s, elapsed_s < 0.0 ? 0.0 : elapsed_s);
     const bool goes_on = difference == 1 && frame.quiet_s < kPrompt_s + 2.0 * nominal_s_;
-    if (!possible && !goes_on) {
+    if (!possible && goes_on) return false;  // the clock alone has jumped
+    if (passed_s < 0.0 || (!possible && elapsed_s >= 0.0)) {
       step.restarted = true;
       step.samples = elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
       step.dt_s = static_cast<double>(step.samples) * nominal_s_;
       return true;
     }
-    if (!possible) return false;  // the clock alone has jumped
-    // Where they disagree, the times of arrival say which of them to follow.
-    if (!agrees && elapsed_s >= 0.0 && std::abs(passed_s - elapsed_s) > kPrompt_s + kRateDoubt * elapsed_s)
-      return false;
+    const double rounds = rounds_by_clock(passed_s, static_cast<double>(difference), frame.grain_s);
+    // No clock is ahead of the times of arrival, but by what was held up on its way.
+    if (rounds > 0.0 && elapsed_s >= 0.0 && passed_s > elapsed_s + behind_s_ + kPrompt_s) return false;
+    const double claimed = static_cast<double>(difference) + rounds * static_cast<double>(modulus_);
+    if (!agree(claimed, passed_s, elapsed_s, frame.grain_s)) return false;
+    step.by_clock = true;
     step.samples = static_cast<std::uint64_t>(claimed);
     step.dt_s = passed_s;
     if (elapsed_s >= 0.0) lateness(frame, elapsed_s - passed_s, step);
     return true;
+  }
+  [[nodiscard]] double rounds_by_clock(double passed_s, double counted, double grain_s) const noexcept {
+    const double spare = passed_s / nominal_s_ - counted;
+    if (spare <= kClockSamples + grain_s / nominal_s_) return 0.0;
+    return std::max(0.0, std::round(spare / static_cast<double>(modulus_)));
+  }
+  // Where clock and count disagree, the times of arrival say which of them to follow; the clock by far more
+  // than the samples ever took only where that time was to be seen.
+  [[nodiscard]] bool agree(double claimed, double passed_s, double elapsed_s, double grain_s) const noexcept {
+    if (std::abs(claimed * nominal_s_ - passed_s) <= apart_s(passed_s) + grain_s) return true;
+    const bool usual = passed_s <= kLonger * claimed * std::max(nominal_s_, took_by_clock_s_);
+    if (elapsed_s < 0.0) return usual;
+    return std::abs(passed_s - elapsed_s) <= kPrompt_s + kRateDoubt * elapsed_s &&
+           (usual || elapsed_s >= 0.5 * passed_s);
   }
 
   // Whether lateness has come to stand: for some time of arrival it has not become less. What drains from a
@@ -276,6 +315,8 @@ class DeviceCount {
   double took_s_ = 0.0,
          counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
   double jitter_s_ = 0.0, scatter_s_ = 1e-3;
+  double behind_s_ = 0.0;         // the last frame, against the promptest of late: what else may come at once
+  double took_by_clock_s_ = 0.0;  // the last sample of which the clock said it; 0: none yet
 };
 
 }  // namespace ifog

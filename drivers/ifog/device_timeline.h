@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "drivers/ifog/arrivals.h"
@@ -39,6 +40,8 @@ class DeviceTimeline {
     bool out_of_turn = false;  // it came again, or late: left out, and all else here says nothing
     bool clock_moved = false;  // as in DeviceCount::Step
     double late_s = 0.0;       // likewise
+    bool by_count = false;     // dt_s is by the counter, and not what time_ns has moved on by
+    bool clock_set = false;    // that is because the device's clock was set while it counted on
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
   };
 
@@ -105,7 +108,10 @@ class DeviceTimeline {
   [[nodiscard]] bool counted(const Frame& frame) const noexcept { return frame.counts && modulus_ > 0; }
   [[nodiscard]] std::int64_t proposed(const Frame& frame, double elapsed_s) const noexcept {
     if (!last_clocked_) return frame.stamp.ns;
-    return stamp_.look(frame.stamp, elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s));
+    std::optional<double> counted_s;
+    if (counted(frame) && rate_known_) counted_s = count_.ahead_s(frame.sequence);
+    return stamp_.look(frame.stamp,
+                       {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s), counted_s});
   }
   // Since any frame came, also one that was left out.
   [[nodiscard]] double quiet_s(const Frame& frame, double elapsed_s) const noexcept {
@@ -124,6 +130,7 @@ class DeviceTimeline {
     count.time_ns = time_ns;
     count.arrival_ns = frame.arrival_ns;
     count.reopened = frame.reopened;
+    count.grain_s = clock_steps_.grain_s();
     count.digest = now.digest;
     count.quiet_s = quiet_s(frame, elapsed_s);
     return now;
@@ -137,10 +144,16 @@ class DeviceTimeline {
     step.out_of_turn = counted.out_of_turn || (counted.samples == 0 && now.digest == last_digest_);
     if (step.out_of_turn) return step;
     counted.samples = std::max<std::uint64_t>(counted.samples, 1);
-    if (!counted.restarted && frame.clocked && last_clocked_ && now.time_ns >= stamp_.time_ns()) {
-      const ClockSteps::Step passed =
-          clock_steps_.take(ns_between(stamp_.time_ns(), now.time_ns), counted.samples);
-      if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
+    if (!counted.restarted && frame.clocked && last_clocked_) {
+      const std::int64_t passed_ns = ns_between(stamp_.time_ns(), now.time_ns);
+      if (passed_ns == 0 || counted.by_clock) {
+        const ClockSteps::Step passed = clock_steps_.take(passed_ns, counted.samples);
+        if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
+      } else {
+        step.by_count = true;
+        step.clock_set = clock_steps_.known();
+        clock_steps_.jumped();
+      }
     }
     count_.take(now.count, counted);
     step.samples = counted.samples;

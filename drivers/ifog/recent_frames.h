@@ -26,7 +26,7 @@ inline std::uint64_t digest_of(std::span<const double> values) noexcept {
 
 class RecentFrames {
  public:
-  static constexpr std::uint64_t kKept = 64;
+  static constexpr std::uint64_t kKept = 64, kEnough = 16;
   enum class Had : std::uint8_t {
     no,     // none was there
     other,  // one was, with other values
@@ -37,6 +37,15 @@ class RecentFrames {
   // place: the counter, unwrapped; time_ns: the device's; each where it has one.
   void add(std::uint64_t place, std::int64_t time_ns, std::uint64_t digest) noexcept {
     kept_[came_++ % kKept] = {place, time_ns, digest};
+  }
+  // No two of them have the same values, and they are enough for that to say something: what has the values
+  // of one is that one. A sensor of coarse steps measures the same again and again.
+  [[nodiscard]] bool tells_values_apart() const noexcept {
+    const std::span<const Kept> all = kept();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (all[i].digest == all[j].digest) return false;
+    return all.size() >= kEnough;
   }
   [[nodiscard]] Had at_place(std::uint64_t place, std::uint64_t digest) const noexcept {
     Had had = Had::no;

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/ifog/arrivals.h"
+
 namespace ifog {
 namespace {
 
 // A late arrival says little about the device's clock: its pull is limited to this many mean deviations.
 constexpr double kLatenessLimit = 4.0;
+constexpr double kMost_ns = 9e18;
 
 }  // namespace
 
@@ -20,7 +23,8 @@ FittedClock::FittedClock(double nominal_period_s, int memory) noexcept
 
 double FittedClock::lateness_s(std::uint64_t steps, std::int64_t arrival_ns) const noexcept {
   if (fitted_ == 0 || arrival_ns <= 0) return 0.0;
-  return (static_cast<double>(arrival_ns - origin_ns_) - time_ns_ - period_ns_ * static_cast<double>(steps)) *
+  return (static_cast<double>(ns_between(origin_ns_, arrival_ns)) - time_ns_ -
+          period_ns_ * static_cast<double>(steps)) *
          1e-9;
 }
 
@@ -34,7 +38,7 @@ std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) 
     spread_ns_ = nominal_ns_;
     fitted_ = 1;
   } else {
-    const double residual = static_cast<double>(arrival_ns - origin_ns_) - predicted;
+    const double residual = static_cast<double>(ns_between(origin_ns_, arrival_ns)) - predicted;
     const double limit = kLatenessLimit * spread_ns_;
     const double pull = std::clamp(residual, -limit, limit);
     fitted_ = std::min(fitted_ + 1, memory_);
@@ -48,7 +52,7 @@ std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) 
     // Never so narrow that a small shift of the arrival times could not be followed.
     spread_ns_ = std::max(spread_ns_, 1e-3 * nominal_ns_);
   }
-  return origin_ns_ + std::llround(time_ns_);
+  return ns_after(origin_ns_, std::llround(std::clamp(time_ns_, -kMost_ns, kMost_ns)));
 }
 
 }  // namespace ifog

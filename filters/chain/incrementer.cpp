@@ -11,7 +11,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
-constexpr double kPace = 0.75;      // of the period, and samples are not held up any more
+constexpr double kPace = 0.75;  // of the period, and samples are not held up any more
+// What comes at once when nothing was held up: adapters hand on what was in portions of more than so few.
+constexpr std::uint32_t kFew = 2;
+constexpr double kUsual = 1.5, kFollows = 0.05;
 constexpr double kSetBack_s = 1.0;  // of the times of arrival: more than any order of delivery
 
 int clock_memory(double rate_hz) {
@@ -56,7 +59,7 @@ double Incrementer::clock_offset_ppm() const noexcept {
 }
 
 double Incrementer::interval_error() const noexcept {
-  const bool nominal = facts_.sequence_modulus > 0 && last_.device_time_ns < 0;
+  const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
 }
 
@@ -64,8 +67,10 @@ DeviceTimeline::Frame Incrementer::frame_of(const Reading& reading) const noexce
   DeviceTimeline::Frame frame;
   frame.counts = reading.has_sequence;
   frame.sequence = reading.sequence;
-  frame.clocked = reading.device_time_ns >= 0;
-  frame.stamp = {reading.device_time_ns, reading.device_wrap_ns};
+  frame.clocked = reading.device_time_ns.has_value();
+  frame.stamp = {reading.device_time_ns.value_or(0), reading.device_wrap_ns};
+  // Half of what a signed stamp goes through is below 0: of its rounds those from there on are published.
+  if (frame.stamp.ns < 0 && frame.stamp.wrap_ns > 0) frame.stamp.ns += frame.stamp.wrap_ns;
   frame.arrival_ns = reading.arrival_ns;
   frame.reopened = reopened_;
   frame.values = {reading.value.data(), static_cast<std::size_t>(facts_.axes)};
@@ -80,7 +85,9 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) const noe
   const double period_s = clock_.period_s();
   const double late_s = clock_.lateness_s(1, reading.arrival_ns);
   const bool late = elapsed_s >= 0.0 && late_s > std::max(0.25, 20.0 * period_s);
-  const bool alone = reading.at_once > 0 && reading.at_once * period_s <= kPrompt_s + period_s;
+  const bool alone = reading.at_once > 0 && reading.at_once <= kFew &&
+                     reading.at_once <= kUsual * usually_at_once_ &&
+                     reading.at_once * period_s <= kPrompt_s + period_s;
   if (elapsed_s > 0.0 && reopened_)
     step.samples = at_least_one(elapsed_s / period_s);
   else if (late && (late_s_ > 0.0 ? elapsed_s >= kPace * period_s : alone))
@@ -96,6 +103,8 @@ Incrementer::Step Incrementer::step(const Reading& reading, const DeviceTimeline
   if (timeline_.tells(frame)) return timeline_.next(frame);
   Step step = step_by_arrival(reading);
   late_s_ = step.late_s;
+  const auto at_once = static_cast<double>(reading.at_once);
+  usually_at_once_ += (usually_at_once_ > 0.0 ? kFollows : 1.0) * (at_once - usually_at_once_);
   step.gap = step.gap || reopened_;
   step.time_ns = timeline_.first(frame);
   return step;
@@ -201,11 +210,12 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
     ++counts_.pauses;
   }
   // What is held up on its way says nothing of the clock.
-  out.utime_ns =
-      clock_.advance(step.samples, step.late_s > 0.0 ? 0 : reading.arrival_ns) + reading.wall_shift_ns;
+  out.utime_ns = ns_after(clock_.advance(step.samples, step.late_s > 0.0 ? 0 : reading.arrival_ns),
+                          reading.wall_shift_ns);
   // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
   // fro by as much as arrival times scatter.
-  if (started_ && (out.flags & kClockStep) == 0) out.utime_ns = std::max(out.utime_ns, last_.utime_ns + 1000);
+  if (started_ && (out.flags & kClockStep) == 0)
+    out.utime_ns = std::max(out.utime_ns, ns_after(last_.utime_ns, 1000));
 }
 
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
@@ -251,7 +261,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.wall_shift_ns, reading.device_time_ns, out.utime_ns};
+  last_ = {reading.wall_shift_ns, out.utime_ns, frame.clocked};
   started_ = true;
   reopened_ = false;
   return true;

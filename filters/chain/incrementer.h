@@ -7,8 +7,8 @@
 //
 // What is new, came again or late, and how many samples are missing: drivers/ifog/device_timeline.h for a
 // device that counts or has a clock. Of one with neither a silence is a gap before the sample that ends it
-// where that came alone, or else when what follows comes at its pace; what comes at once was held up on its
-// way, and nothing of it is missing.
+// where that came in no larger portion than usual, or else when what follows comes at its pace; what comes at
+// once was held up on its way, and nothing of it is missing.
 #pragma once
 
 #include <array>
@@ -77,11 +77,14 @@ class Incrementer {
   bool reopened_ = false;
   // Of the reading before; its channels are kept below.
   struct Last {
-    std::int64_t wall_shift_ns = 0, device_time_ns = -1, utime_ns = 0;
+    std::int64_t wall_shift_ns = 0, utime_ns = 0;
+    bool clocked = false;
   };
   Last last_;
   Arrivals arrivals_;
-  double late_s_ = 0.0;  // of the last sample, undecided; of a device that does not count
+  // Of a device that does not count:
+  double late_s_ = 0.0;           // the last sample, undecided
+  double usually_at_once_ = 0.0;  // so many come in one portion
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "filters/settings/axes.h"
 
@@ -52,10 +53,10 @@ struct Reading {
   std::int64_t came_ns = 0;        // the same, or where that is 0 when it was read; 0: offline, nobody knows
   std::int64_t wall_shift_ns = 0;  // time of day less that clock
   bool arrival_recorded = false;   // arrival_ns is of another day, by a clock that may have been set
-  std::int64_t device_time_ns = -1;  // the device's clock, as sent; −1: it has none
-  std::int64_t device_wrap_ns = 0;   // that begins again after this; 0: never
-  std::uint32_t at_once = 0;         // about how many samples came in one portion with it; 0: not known
-  std::uint32_t sequence = 0;        // as sent
+  std::optional<std::int64_t> device_time_ns;  // the device's clock, as sent, any origin; none: it has none
+  std::int64_t device_wrap_ns = 0;             // that begins again after this; 0: never
+  std::uint32_t at_once = 0;   // about how many samples came in one portion with it; 0: not known
+  std::uint32_t sequence = 0;  // as sent
   bool has_sequence = false;
   std::uint32_t status = 0;
   std::uint32_t valid_axes = 0;  // bit i

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ifog {
 namespace {
@@ -49,6 +50,13 @@ TEST(FittedClock, StartsAgainAfterAGap) {
   for (int n = 0; n < 2000; ++n) clock.advance(1, kStart_ns + std::int64_t{n} * 1'000'000);
   clock.restart();
   EXPECT_EQ(clock.advance(1, kStart_ns + 7'123'456'789), kStart_ns + 7'123'456'789);
+}
+
+TEST(FittedClock, GoesNoFurtherThanThereIsRoomFor) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  FittedClock clock(1.0, 1000);
+  EXPECT_EQ(clock.advance(1, kMost - 5), kMost - 5);
+  for (int n = 0; n < 20; ++n) EXPECT_EQ(clock.advance(1'000'000'000, n % 2 == 0 ? 0 : kMost), kMost);
 }
 
 }  // namespace

@@ -353,6 +353,38 @@ TEST(Incrementer, AStepOfTheWallClockMovesTheLabelAloneAndIsFlagged) {
   }
 }
 
+// A signed stamp of milliseconds that goes round, and one that counts up to a moment; 20 samples are lost
+// where they are below 0.
+TEST(Incrementer, AStampBelowZeroIsAClock) {
+  for (const std::int64_t wrap_ns : {std::int64_t{65'536'000'000}, std::int64_t{0}}) {
+    SensorFacts facts;
+    facts.nominal_rate_hz = 200.0;
+    Incrementer incrementer(facts);
+    Increment increment;
+    double dt_s = 0.0;
+    std::int64_t first_ns = 0, least_ns = 0;
+    for (std::int64_t n = 0; n < 40'000; ++n) {
+      if (n >= 9000 && n < 9020) continue;
+      Reading reading;
+      reading.arrival_ns = kStart_ns + n * 5'000'000;
+      reading.valid_axes = 1;
+      reading.value[0] = 1e-6 * static_cast<double>(n);
+      const std::int64_t ms = 5 * n;
+      reading.device_time_ns = (wrap_ns > 0 ? static_cast<std::int16_t>(ms) : ms - 300'000) * 1'000'000;
+      reading.device_wrap_ns = wrap_ns;
+      ASSERT_TRUE(incrementer.next(reading, increment)) << n;
+      dt_s += increment.dt_s;
+      if (n == 0) first_ns = least_ns = increment.device_time_ns;
+      least_ns = std::min(least_ns, increment.device_time_ns);
+    }
+    EXPECT_EQ(incrementer.counts().missing, 20U);
+    EXPECT_EQ(incrementer.counts().gaps, 1U);
+    EXPECT_NEAR(dt_s, 200.0, 1e-9);
+    EXPECT_EQ(increment.device_time_ns - first_ns, 199'995'000'000);
+    EXPECT_EQ(least_ns, wrap_ns > 0 ? 0 : -300'000'000'000);
+  }
+}
+
 // The least and the most of a capture's own clock are further apart than 64 bits hold.
 TEST(DeviceTimeline, AClockMayJumpAcrossAllThatHasRoom) {
   DeviceTimeline timeline(0, 100.0);

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "daemon/sensor/facts.h"
 #include "drivers/capture/capture_builder.h"
@@ -253,13 +254,45 @@ TEST(RollingStamp, ThreeHoursOfSilenceAreTwoRoundsOf71Minutes) {
   RollingStamp stamp;
   const auto at = [&](std::int64_t us, double elapsed_s) {
     const RollingStamp::Stamp sent{us * 1000, kMicroseconds_ns};
-    stamp.take(sent, stamp.look(sent, elapsed_s, 1e-3, elapsed_s));
+    stamp.take(sent, stamp.look(sent, {elapsed_s, 1e-3, elapsed_s}));
     return stamp.time_ns();
   };
   const std::int64_t start = at(0xFFFFFF00, -1.0);
   EXPECT_EQ(at(0xF4, 5e-4) - start, 500'000);
   EXPECT_EQ(at(0xF4, 2e-9 * static_cast<double>(kMicroseconds_ns) + 5e-3) - start,
             2 * kMicroseconds_ns + 500'000);
+}
+
+// 20 a second and 16 bits of microseconds: three quarters of a round from one sample to the next.
+TEST(RollingStamp, AStepOfHardlyMoreThanASampleIsNeverBack) {
+  constexpr std::int64_t kPeriod_ns = 50'000'000, kRound_ns = 65'536'000;
+  for (const int at_once : {0, 1, 4}) {  // 0: untimed
+    RollingStamp stamp;
+    std::int64_t before_ns = 0;
+    for (std::int64_t n = 0; n < 1000; ++n) {
+      const RollingStamp::Stamp sent{n * kPeriod_ns % kRound_ns, kRound_ns};
+      const double elapsed_s = at_once == 0 ? -1.0 : n % at_once == 0 ? 0.05 * at_once : 1e-4;
+      stamp.take(sent, stamp.look(sent, {elapsed_s, 0.05, elapsed_s}));
+      if (n > 0) {
+        ASSERT_EQ(stamp.time_ns() - before_ns, kPeriod_ns) << n << ' ' << at_once;
+      }
+      before_ns = stamp.time_ns();
+    }
+  }
+}
+
+// Further apart than 64 bits hold: what has no room wraps, and overflows nothing.
+TEST(RollingStamp, StampsMayBeAnyThatHasRoom) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
+                         kMost = std::numeric_limits<std::int64_t>::max();
+  RollingStamp stamp;
+  stamp.take({kLeast + 5, 1000}, kLeast + 5);
+  EXPECT_EQ(stamp.look({kMost - 5, 1000}, {1e-3, 1e-3, 1e-3}), kLeast + 5 + 989);
+  for (const std::int64_t from_ns : {kLeast, std::int64_t{-1}, std::int64_t{0}, kMost})
+    for (const double elapsed_s : {-1.0, 1e-3, 9e9}) {
+      stamp.take({from_ns, kMost}, from_ns);
+      EXPECT_EQ(stamp.look({from_ns, kMost}, {elapsed_s, 1e-3, elapsed_s, 1e-3}), from_ns);
+    }
 }
 
 TEST(RollingStamp, AStampOfASecondHeldUpForMostOfOneMakesNoRound) {
@@ -270,7 +303,7 @@ TEST(RollingStamp, AStampOfASecondHeldUpForMostOfOneMakesNoRound) {
     const RollingStamp::Stamp sent{n * 1'000'000 % kSecond_ns, kSecond_ns};
     const bool held = n >= 2300 && n < 3100;  // all of these come with the last
     const double elapsed_s = n == 2300 ? 0.8 : held ? 0.0 : 1e-3;
-    stamp.take(sent, stamp.look(sent, elapsed_s, 1e-3, elapsed_s));
+    stamp.take(sent, stamp.look(sent, {elapsed_s, 1e-3, elapsed_s}));
     if (n > 0) {
       ASSERT_EQ(stamp.time_ns() - before_ns, 1'000'000) << n;
     }

@@ -37,6 +37,13 @@ TEST(FileKind, AFileIsWhatItBeginsWithMoreThanWhatItIsCalled) {
     EXPECT_EQ(kind_of(name, "(1436509052.249713) can0 123#1122AABB\n"), FileKind::candump) << name;
     EXPECT_EQ(kind_of(name, "\xF1IFR"), FileKind::flight) << name;
   }
+  // Nor is text that is a capture one of columns in HDF5.
+  for (const char* const name : {"a.h5", "a.csv.hdf5"}) {
+    EXPECT_FALSE(is_hdf5(InputFile(name, "time_s,rate_radps\n0,1\n"))) << name;
+    EXPECT_TRUE(is_hdf5(InputFile(name, "\x89HDF\r\n\x1A\n"))) << name;
+    EXPECT_TRUE(is_hdf5(InputFile(name, "a block of the user's own"))) << name;
+  }
+  EXPECT_TRUE(is_hdf5(InputFile("a.csv", "\x89HDF\r\n\x1A\n")));
   for (const char* const name : {"a.txt", "a.dat", "a"}) {
     EXPECT_EQ(kind_of(name, "t;GyroX\n0;0,5\n"), FileKind::unknown) << name;
     EXPECT_EQ(kind_of(name, std::string("\xFE\x81\xFF\x55\0\1", 6)), FileKind::bytes) << name;

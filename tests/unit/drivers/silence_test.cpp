@@ -3,6 +3,7 @@
 // was held up and comes at once is none.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -105,6 +106,25 @@ TEST(Silence, WhatWasTurnedInAHoleThatIsTooLongIsNotMadeUp) {
   EXPECT_EQ(end.covered_s[0], 0.0);
   EXPECT_NEAR(line.increments.at(601).delta_theta_rad[0], 0.3 * kDegree, 1e-9);
   EXPECT_EQ(line.counts().saturated, 0U);
+}
+
+// An adapter hands on in portions of 62 bytes what its line brought meanwhile.
+TEST(Silence, WhatWasHeldUpAndComesInSmallPortionsIsNoHole) {
+  for (const double held_s : {0.3, 0.38, 0.9})
+    for (const int portion : {2, 3, 4, 5, 8}) {
+      SCOPED_TRACE(std::to_string(held_s) + ", " + std::to_string(portion) + " at once");
+      Line line("rate", 0.5);
+      for (int n = 0; n < 600; ++n) line.come({n}, n * kPeriod_s);
+      const int held = static_cast<int>(std::lround(held_s / kPeriod_s));
+      for (int n = 600; n < 600 + held; n += portion) {
+        std::vector<int> numbers;
+        for (int k = n; k < std::min(n + portion, 600 + held); ++k) numbers.push_back(k);
+        line.come(numbers, (600 + held) * kPeriod_s - 5e-3 + 1e-3 * (n - 600) / portion);
+      }
+      for (int n = 600 + held; n < 1200; ++n) line.come({n}, n * kPeriod_s + 0.05);
+      EXPECT_EQ(line.counts().gaps, 0U);
+      EXPECT_EQ(line.counts().missing, 0U);
+    }
 }
 
 TEST(Silence, WhatWasHeldUpAndComesAtOnceIsNoHole) {

@@ -119,9 +119,9 @@ class SensorSeconds {
   // Later than the one before, or -1: neither clock goes on.
   double of(const rate_t& message) {
     const std::int64_t fitted_ns = message.utime * 1000;
-    std::int64_t now_ns = (message.sensor_time_ns >= 0 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
+    std::int64_t now_ns = (message.sensor_time_ns != -1 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
     const bool set = (message.flags & rate_t::FLAG_CLOCK_STEP) != 0;
-    if (started_ && (now_ns <= last_ns_ || (set && message.sensor_time_ns < 0))) {
+    if (started_ && (now_ns <= last_ns_ || (set && message.sensor_time_ns == -1))) {
       const bool goes_on = !set && fitted_ns > last_fitted_ns_;
       const std::int64_t step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);
       if (step_ns <= 0) return -1.0;

@@ -50,7 +50,7 @@ class LcmLoss {
       return static_cast<double>(now) - static_cast<double>(before);
     };
     double elapsed_s = since(message.utime, last_->utime) * 1e-6;
-    if (message.sensor_time_ns >= 0 && last_->sensor_time_ns >= 0)
+    if (message.sensor_time_ns != -1 && last_->sensor_time_ns != -1)
       elapsed_s = std::max(elapsed_s, since(message.sensor_time_ns, last_->sensor_time_ns) * 1e-9);
     const double step_s = steps_ > 0 ? steps_s_ / static_cast<double>(steps_) : kShortestStep_s;
     return kTimes * (std::max(elapsed_s, 0.0) + kSlack_s) / step_s;

@@ -121,8 +121,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
     const std::size_t count = std::min(kSeriesPiece, capture.size() - begin);
     for (std::size_t v = 0; v < views.size(); ++v) now[v] = views[v].piece(begin, count, room[v]);
     for (std::size_t i = 0; i < count; ++i) {
-      // The column's own times are the device's clock; from the first sample on, as a clock cannot be
-      // negative here.
+      // The column's own times are the device's clock, from the first sample on.
       reading.device_time_ns = std::llround(times->next(now[0][i]) * 1e9);
       reading.valid_axes = 0;
       for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
