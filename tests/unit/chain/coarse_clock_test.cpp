@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "drivers/ifog/device_timeline.h"
 #include "filters/chain/incrementer.h"
 
 namespace ifog {
@@ -51,6 +52,22 @@ TEST(DevicesClock, ThatTicksHardlyMoreOftenThanItSamplesLosesNothing) {
           << device.rate_hz << ' ' << modulus;
     }
   }
+}
+
+// The least and the most of a capture's own clock are further apart than 64 bits hold.
+TEST(DeviceTimeline, AClockMayJumpAcrossAllThatHasRoom) {
+  DeviceTimeline timeline(0, 100.0);
+  const double value = 0.5;
+  DeviceTimeline::Frame frame;
+  frame.clocked = true;
+  frame.values = {&value, 1};
+  frame.stamp.ns = -8'999'999'999'000'000'000;
+  timeline.first(frame);
+  frame.stamp.ns = 8'999'999'999'000'000'000;
+  const DeviceTimeline::Step step = timeline.next(frame);
+  EXPECT_FALSE(step.out_of_turn);
+  EXPECT_TRUE(step.restarted);
+  EXPECT_EQ(step.time_ns, frame.stamp.ns);
 }
 
 }  // namespace

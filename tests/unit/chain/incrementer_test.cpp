@@ -9,8 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "drivers/ifog/device_timeline.h"
-
 namespace ifog {
 namespace {
 
@@ -383,22 +381,6 @@ TEST(Incrementer, AStampBelowZeroIsAClock) {
     EXPECT_EQ(increment.device_time_ns - first_ns, 199'995'000'000);
     EXPECT_EQ(least_ns, wrap_ns > 0 ? 0 : -300'000'000'000);
   }
-}
-
-// The least and the most of a capture's own clock are further apart than 64 bits hold.
-TEST(DeviceTimeline, AClockMayJumpAcrossAllThatHasRoom) {
-  DeviceTimeline timeline(0, 100.0);
-  const double value = 0.5;
-  DeviceTimeline::Frame frame;
-  frame.clocked = true;
-  frame.values = {&value, 1};
-  frame.stamp.ns = -8'999'999'999'000'000'000;
-  timeline.first(frame);
-  frame.stamp.ns = 8'999'999'999'000'000'000;
-  const DeviceTimeline::Step step = timeline.next(frame);
-  EXPECT_FALSE(step.out_of_turn);
-  EXPECT_TRUE(step.restarted);
-  EXPECT_EQ(step.time_ns, frame.stamp.ns);
 }
 
 }  // namespace
