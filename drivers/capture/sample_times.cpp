@@ -109,6 +109,20 @@ void SampleTimes::begin_anew(const ifog_sample& sample) {
   offset_s_ += last_s_ + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
 }
 
+// The time of the next sample of a device with neither counter nor clock, by when it arrived. What comes in
+// one delivery was measured one after the other.
+double SampleTimes::spread(double arrived_s) {
+  constexpr double kFollows = 0.02;               // of what a time is beside its arrival, a sample
+  constexpr double kLeast = 0.5;                  // periods between two samples
+  constexpr double kHole_s = 0.25, kHole = 30.0;  // s, and periods: later than that it was not held up
+  const double period_s = 1.0 / description_.nominal_rate_hz;
+  bunched_ = bunched_ || arrived_s - last_s_ < kLeast * period_s;
+  if (!bunched_) return arrived_s;
+  const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
+  if (late_s > std::max(kHole_s, kHole * period_s)) return arrived_s;
+  return std::max(next_s + kFollows * late_s, last_s_ + kLeast * period_s);
+}
+
 void SampleTimes::refuse(double now) const {
   const auto told = [this](double time_s) {
     std::string text;
@@ -152,6 +166,9 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   if (!first && !anew && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
     offset_s_ += last_s_ + step.dt_s - seconds(sample);
   double now = seconds(sample);
+  const bool by_arrival =
+      clock_ == Clock::arrival && !zero_of_stamps_ns_ && description_.nominal_rate_hz > 0.0;
+  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(now);
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
     if (now == last_s_) {
@@ -164,7 +181,7 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   }
   Taken taken{now, first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_, 0.0, anew};
   taken.period_s = taken.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
-  if ((first || anew) && description_.nominal_rate_hz > 0.0)
+  if ((first || anew || bunched_) && description_.nominal_rate_hz > 0.0)
     taken.period_s = 1.0 / description_.nominal_rate_hz;
   last_s_ = now;
   last_arrival_ns_ = sample.arrival_ns;

@@ -218,11 +218,12 @@ class DeviceCount {
     return std::max(0.0, std::round(spare / static_cast<double>(modulus_)));
   }
   // Where clock and count disagree, the times of arrival say which of them to follow; the clock by far more
-  // than the samples ever took only where that time was to be seen.
+  // than the samples ever took only where that time was to be seen, or where nobody knows how long one takes
+  // but the stated rate.
   [[nodiscard]] bool agree(double claimed, double passed_s, double elapsed_s, double grain_s) const noexcept {
     if (std::abs(claimed * nominal_s_ - passed_s) <= apart_s(passed_s) + grain_s) return true;
     const bool usual = passed_s <= kLonger * claimed * std::max(nominal_s_, took_by_clock_s_);
-    if (elapsed_s < 0.0) return usual;
+    if (elapsed_s < 0.0) return usual || took_by_clock_s_ == 0.0;
     return std::abs(passed_s - elapsed_s) <= kPrompt_s + kRateDoubt * elapsed_s &&
            (usual || elapsed_s >= 0.5 * passed_s);
   }

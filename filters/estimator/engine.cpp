@@ -257,7 +257,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     return;
   }
   hear(m);
-  if (now.valid != 0 && outliers_.run().size() <= 1) kept_out_ = {};
+  if (now.valid != 0 && (outliers_.run().empty() || outliers_.began())) kept_out_ = {};
   if (keep_out) {
     out.flags |= kGated;
     ++health_.gated;

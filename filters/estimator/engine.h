@@ -166,6 +166,8 @@ class Engine {
   Axes kept_out_{};                 // angle of the measurements kept out in a row
   Axes waiting_rate_{};             // that measurement
   std::uint32_t waiting_axes_ = 0;  // that it had
+  std::uint32_t waiting_for_ = 0;   // of these the ones that nobody foresaw
+  std::uint32_t unforeseen_axes_ = 0;
   Axes surprised_{};                // running mean of the least normalised square in the manoeuvre
   double noise_of_one_;             // variance of a measurement, as set
   double rest_variance_ = 0.0;      // of the predicted rate at rest, averaged

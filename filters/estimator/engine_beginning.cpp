@@ -106,8 +106,8 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
       publish_mix(now);
     return;
   }
-  waiting_ = false;
-  kept_out_ = {};
+  waiting_ = waiting_ && (m.valid & waiting_for_) == 0;
+  if (!waiting_) kept_out_ = {};
   if (foreseen) {
     expect_surprise(least);
     mix_.judge(trackers_, now, least);
@@ -125,6 +125,7 @@ void Engine::wait(const Measurement& m, const Surprise& now, EstimatorOutput& ou
   waiting_ = published_.passed_over = true;
   waiting_rate_ = now.rate;
   waiting_axes_ = m.valid;
+  waiting_for_ = unforeseen_axes_;
   rest_->skip();
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;

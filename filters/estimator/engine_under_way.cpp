@@ -84,7 +84,8 @@ void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, Estimato
 
 // Whether nobody foresaw this measurement, by what has lately surprised the best of all.
 bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) noexcept {
-  bool far = false, beyond = false;
+  bool far = false;
+  unforeseen_axes_ = 0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(now.valid, a)) continue;
     double smallest = 1e300;
@@ -95,9 +96,9 @@ bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) 
     least[a] = smallest;
     const double own = m.innovation[a] * m.innovation[a] / (now.rest_factor * now.scale[a]);
     far = far || own > kFar * kFar;
-    beyond = beyond || smallest > kFar * kFar * std::max(1.0, surprised_[a]);
+    if (smallest > kFar * kFar * std::max(1.0, surprised_[a])) unforeseen_axes_ |= 1U << a;
   }
-  return far && beyond;
+  return far && unforeseen_axes_ != 0;
 }
 
 void Engine::expect_surprise(const Axes& least) noexcept {
@@ -141,6 +142,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     waiting_ = true;
     waiting_rate_ = now.rate;
     waiting_axes_ = m.valid;
+    waiting_for_ = unforeseen_axes_;
     rest_->skip();
     for (std::size_t a = 0; a < axes_; ++a) published_.variance[a] += m.innovation[a] * m.innovation[a];
     return;
@@ -155,7 +157,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     publish_mix(now);
     return;
   }
-  waiting_ = false;
+  waiting_ = waiting_ && (m.valid & waiting_for_) == 0;
   expect_surprise(least);
   mix_.judge(trackers_, now, least);
   trackers_.correct(m.in.rate_radps, m.valid);

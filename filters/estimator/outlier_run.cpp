@@ -39,13 +39,15 @@ void OutlierRun::fill(std::uint32_t valid) noexcept {
 }
 
 void OutlierRun::take(const Surprise& now, double lag) noexcept {
-  keep_out_ = jump_ = false;
+  keep_out_ = jump_ = began_ = false;
+  std::uint32_t far_axes = 0;
   double farthest = 0.0, square = 0.0, apart = 0.0;
   int axes = 0;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     if ((now.valid >> a & 1U) == 0) continue;
     const double own = now.innovation[a] * now.innovation[a] / (now.rest_factor * now.scale[a]);
     farthest = std::max(farthest, own);
+    if (own > kFar * kFar) far_axes |= 1U << a;
     square += own;
     ++axes;
     if (length_ == 0 || (measured_ >> a & 1U) == 0) continue;
@@ -54,6 +56,8 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
   }
   samples_ = std::min(samples_ + 1.0, kMemory);
   if (farthest <= kFar * kFar) {
+    // Of the axes that are far it says nothing where it has none of them.
+    if (length_ > 0 && (now.valid & far_axes_) == 0) return;
     // Only now: the first of a jump is no outlier.
     if (length_ > 0) {
       for (; length_ > 0; --length_) count(true);
@@ -66,8 +70,10 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
   keep_out_ = share_ <= kTails || farthest > kFarInTails * kFarInTails;
   if (length_ == 0) {
     apart_ = squares_ = 0.0;
-    measured_ = 0;
+    measured_ = far_axes_ = 0;
+    began_ = true;
   }
+  far_axes_ |= far_axes;
   squares_ += square;
   if (length_ > 0)
     apart_ += 0.5 * logarithm(squares_ / static_cast<double>(length_ + 1) / std::max(apart, 2.0 * axes));

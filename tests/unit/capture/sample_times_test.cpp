@@ -64,6 +64,38 @@ TEST(SampleTimes, ACounterCountsOnFromALogsFirstStamp) {
   }
 }
 
+// As a serial adapter hands on what a device with neither counter nor clock sends: what came within 16 ms at
+// once, or five at a time. The device's own rate is not quite the nominal one.
+TEST(SampleTimes, OfADeliveryEverySampleHasATimeOfItsOwn) {
+  struct Line {
+    double nominal_hz, rate_hz, every_s;
+  };
+  for (const Line line : {Line{100, 100, 0.016}, Line{100, 97, 0.016}, Line{100, 102.5, 0.016},
+                          Line{1000, 1000, 0.016}, Line{100, 100, 0.05}, Line{100, 98, 0.05}}) {
+    SampleTimes times(description(line.nominal_hz));
+    times.allow_restarts();
+    constexpr int kSamples = 20'000;
+    double last_s = 0.0, half_s = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double measured_s = i / line.rate_hz;
+      const double came_s = std::ceil(measured_s / line.every_s + 1e-9) * line.every_s;
+      const auto taken = times.next(sample(kEpoch_ns + std::llround(came_s * 1e9), i));
+      ASSERT_TRUE(taken) << line.rate_hz << ", " << i;
+      if (i > 0) {
+        EXPECT_GT(taken->since_s - last_s, 0.45 / line.nominal_hz) << line.rate_hz << ", " << i;
+        EXPECT_LT(taken->since_s - last_s, 2.5 / line.nominal_hz + (i < 10 ? line.every_s : 0.0))
+            << line.rate_hz << ", " << i;
+      }
+      EXPECT_TRUE(i < 10 || taken->period_s == 1.0 / line.nominal_hz);
+      last_s = taken->since_s;
+      if (i == kSamples / 2) half_s = last_s;
+    }
+    EXPECT_EQ(times.repeated(), 0U);
+    EXPECT_EQ(times.missing(), 0U);
+    EXPECT_NEAR((kSamples / 2 - 1) / (last_s - half_s), line.rate_hz, 5e-4 * line.rate_hz);
+  }
+}
+
 TEST(SampleTimes, WhatComesTwiceHasNoTimeAndWhatGoesBackIsRefused) {
   SampleTimes times(description(0.0));
   EXPECT_TRUE(std::isnan(times.next(sample(kEpoch_ns, 0))->elapsed_s));

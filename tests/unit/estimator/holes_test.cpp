@@ -3,6 +3,7 @@
 // none of its angle goes. Told by the truth of the records that are made here; 1 kHz, noise 1e-4 rad/s.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -230,6 +231,46 @@ TEST(Holes, AnAxisThatIsNotMeasuredWhileAnotherJumpsStaysWhereItIs) {
       }
     }
     EXPECT_EQ(estimator.health().divergences, 0U);
+  }
+}
+
+// A turn about an axis of which only every n-th sample comes, while another that does not turn has all.
+TEST(Holes, ATurnAboutAnAxisInARhythmIsSeen) {
+  for (const int n : {2, 3, 4, 7}) {
+    for (const double slope_s : {0.0, 0.05, 0.3, 2.0}) {
+      ifog::FilterSettings settings;
+      settings.process_noise = 1e-13;
+      settings.measurement_noise = kNoise * kNoise;
+      ifog::Estimator estimator(settings, 2, kPeriod);
+      std::mt19937_64 random(5);
+      std::normal_distribution<double> normal;
+      ifog::EstimatorOutput out;
+      double angle = 0.0;
+      for (int i = 0; i < 30'000; ++i) {
+        const double into_s = (i - 5000) * kPeriod, left_s = (9000 - i) * kPeriod;
+        const double share = into_s < 0 || left_s <= 0 ? 0.0
+                             : slope_s > 0             ? std::min({1.0, into_s / slope_s, left_s / slope_s})
+                                                       : 1.0;
+        ifog::EstimatorInput in;
+        in.sequence = static_cast<std::uint64_t>(i);
+        in.dt_s = kPeriod;
+        in.rate_radps = {kNoise * normal(random), 1.5 * share + kNoise * normal(random), 0.0};
+        in.covered_s = {kPeriod, kPeriod, 0.0};
+        in.valid_axes = 3;
+        if (i % n != 0) {
+          in.rate_radps[1] = kNan;
+          in.covered_s[1] = 0.0;
+          in.valid_axes = 1;
+        }
+        estimator.step(in, out);
+        angle += (out.denoised_radps[1] - 1.5 * share) * kPeriod;
+        if (i > 8500 && i < 8600) {
+          ASSERT_NEAR(out.denoised_radps[1], 1.5 * share, 0.01) << n << ", " << slope_s << ", " << i;
+        }
+      }
+      // 6 rad were turned; of a ramp of which one sample in seven comes nobody knows better.
+      EXPECT_LT(std::abs(angle), n > 4 ? 0.1 : 0.01) << n << ", " << slope_s << ": " << angle;
+    }
   }
 }
 
