@@ -24,6 +24,8 @@ constexpr std::size_t kMostStartUp = 20000;
 constexpr double kMostLearnedRatio = 1e-3;
 // Beyond that by so much, the noise having turned out quieter, it is brought back.
 constexpr double kOutOfReach = 2.0;
+// Samples lost in a row, at most, after which a sensor at rest still is.
+constexpr double kShortGap = 16.0;
 
 double within_reach(double process_noise, double measurement_noise, double period_s) noexcept {
   return std::min(process_noise, kMostLearnedRatio * measurement_noise / period_s);
@@ -227,7 +229,10 @@ void ChainParts::keep_within_reach() noexcept {
 // whenever the sensor has rested long enough to say more.
 void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept {
   RestSample is = (out.estimate.flags & kAtRest) != 0 ? RestSample::kRest : RestSample::kPassedOver;
-  if ((out.estimate.flags & kManoeuvre) != 0 || (in.flags & kGapBefore) != 0) is = RestSample::kMotion;
+  // Few samples that are lost are as good as few that cannot be used. What the sensor does for longer nobody
+  // knows.
+  const bool hole = (in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_;
+  if ((out.estimate.flags & kManoeuvre) != 0 || hole) is = RestSample::kMotion;
   rest_noise_.take(out.compensated_radps, in.valid_axes & ~stuck_beside_others(in), is);
   keep_within_reach();
   const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);

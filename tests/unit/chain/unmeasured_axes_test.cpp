@@ -41,6 +41,44 @@ TEST(SignalChain, AnAxisThatHasHadValuesKeepsOneOverAnInvalidSample) {
   }
 }
 
+// One in a hundred is lost on the way, or comes and cannot be used: what is learned of the noise is the same,
+// and as much as of a sensor that loses none.
+TEST(SignalChain, WhatIsLearnedAtRestIsTheSameWhetherSamplesAreLostOrInvalid) {
+  const auto told_variance = [](bool lost, bool invalid) {
+    ChainSettings learning = settings();
+    learning.filter = FilterChoice{};
+    learning.start_up_s = 1.0;
+    SignalChain chain(std::make_unique<ChainParts>(learning));
+    ChainOutput out;
+    int missing = 0;
+    double variance = 0.0;
+    const std::vector<Increment> all = increments(120'000, 3);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Increment in = all[i];
+      if (i % 97 == 96 && (lost || invalid)) {
+        if (lost) {
+          ++missing;
+          continue;
+        }
+        in.valid_axes = 0;
+        in.covered_s[0] = in.delta_theta_rad[0] = 0.0;
+        in.rate_radps[0] = std::numeric_limits<double>::quiet_NaN();
+        in.flags |= kInvalid;
+      }
+      if (missing > 0) {
+        in.flags |= kGapBefore;
+        in.dt_s += kPeriod_s * std::exchange(missing, 0);
+      }
+      chain.process(in, out);
+      if (i >= 110'000) variance += out.estimate.variance_rad2ps2[0] / 10'000;
+    }
+    return variance;
+  };
+  const double whole = told_variance(false, false);
+  EXPECT_NEAR(told_variance(true, false) / told_variance(false, true), 1.0, 0.05);
+  EXPECT_LT(told_variance(true, false), 2.0 * whole);
+}
+
 // A correction by a channel that is alive makes every compensated value another. What repeats itself is told
 // of what the sensor sent: from the 101st on, without a model and with one, before the noise is known and
 // after; the flag ends with the first other value.
