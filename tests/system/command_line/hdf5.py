@@ -385,7 +385,7 @@ class Checks:
 
     def check_what_is_no_hdf5_is_refused(self):
         text = self.folder / "text.h5"
-        text.write_text("time_s,rate_radps\n0,1\n")
+        text.write_text("a letter, of what was measured\n0,1\n")
         self.refused(text, "cannot be read as HDF5")
         folder = self.folder / "folder.h5"
         os.mkdir(folder)
