@@ -99,12 +99,13 @@ std::optional<std::string> TableReader::choice(std::string_view key,
                                                std::initializer_list<const char*> allowed) {
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;
+  const auto* const value = node->as_string();
   std::string list;
   for (const char* const one : allowed) {
-    if (const auto* value = node->as_string(); value != nullptr && value->get() == one) return one;
+    if (value != nullptr && value->get() == one) return one;
     list += (list.empty() ? "\"" : " | \"") + std::string(one) + "\"";
   }
-  wrong(key, *node, list);
+  wrong(key, *node, list + (value == nullptr ? "" : did_you_mean(value->get(), allowed)));
   return std::nullopt;
 }
 
@@ -152,7 +153,8 @@ void TableReader::filter_setting(const FilterSetting& setting, FilterChoice& cho
   const toml::node* const node = find(setting.key);
   if (node == nullptr) return;
   const std::optional<SettingValue> value = setting_value(*node);
-  if (!value || !choose(setting, *value, choice)) wrong(setting.key, *node, expected(setting));
+  if (!value || !choose(setting, *value, choice))
+    wrong(setting.key, *node, expected(setting, node->value<std::string>().value_or("")));
 }
 
 std::optional<std::vector<int>> TableReader::integers(std::string_view key, int least, int most) {

@@ -55,4 +55,19 @@ std::string meant_or_known(std::string_view written, const Names& names) {
   return meant.empty() ? ", expected one of: " + known : meant + " Known here: " + known;
 }
 
+// What a value that has to be one of some words should have been: "one of allan, tune; did you mean
+// 'allan'?". `also` stands behind the words: what else could be written there.
+template <typename Names>
+std::string one_of(std::string_view written, const Names& names, std::string_view also = "") {
+  std::string out = "one of ";
+  bool first = true;
+  for (const auto& name : names) {
+    if (!std::exchange(first, false)) out += ", ";
+    out += name;
+  }
+  out += also;
+  const std::string meant = did_you_mean(written, names);
+  return meant.empty() ? out : out + ";" + meant.substr(1);
+}
+
 }  // namespace ifog

@@ -16,9 +16,11 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "decimal.h"
 #include "driver.h"
+#include "nearest.h"
 #include "quoted.h"
 
 namespace ifog::plugin {
@@ -41,12 +43,12 @@ class Options {
   [[nodiscard]] T choice(std::string_view key,
                          std::initializer_list<std::pair<std::string_view, T>> words) const {
     const std::string_view value = text(key);
-    std::string expected;
+    std::vector<std::string_view> known;
     for (const auto& [word, meaning] : words) {
       if (word == value) return meaning;
-      expected += (expected.empty() ? "" : ", ") + std::string(word);
+      known.push_back(word);
     }
-    fail(key, "one of " + expected);
+    fail(key, one_of(value, known));
   }
 
   // A finite number in [low, high]; `expected` says so in words.

@@ -184,7 +184,7 @@ FilterSettings read_filter(Table table) {
     if (node == nullptr) continue;
     const std::optional<SettingValue> value = setting_value(*node);
     if (!value || !choose(setting, *value, choice))
-      table.fail(setting.key, node, "expected " + expected(setting));
+      table.fail(setting.key, node, "expected " + expected(setting, node->value<std::string>().value_or("")));
     // What has its name elsewhere than in the table.
     const std::string wrong = setting.choices.empty() && std::holds_alternative<std::string>(*value)
                                   ? expected_name(setting, std::get<std::string>(*value))
@@ -264,13 +264,9 @@ void require_source(Table& table, const Effect& effect) {
                "form " + effect.form + " needs its period, expected more than 0");
   if (effect.form != "product") return;
   const std::vector<std::string_view>& forms = forms_of_product();
-  if (std::find(forms.begin(), forms.end(), effect.with_form) == forms.end()) {
-    std::string list;
-    for (const std::string_view form : forms) list += (list.empty() ? "" : ", ") + std::string(form);
+  if (std::find(forms.begin(), forms.end(), effect.with_form) == forms.end())
     table.fail("with_form", table.find("with_form"),
-               "no form that a product can be with" + did_you_mean(effect.with_form, forms) +
-                   "; expected one of " + list);
-  }
+               "no form that a product can be with, expected " + one_of(effect.with_form, forms));
   if (effect.with_channel.empty())
     table.fail("with_channel", table.find("with_channel"),
                "a product is of two channels, expected the second");

@@ -2,6 +2,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/rules/rule.h"
 
@@ -19,13 +20,17 @@ constexpr std::array kRules{
 
 std::span<const RuleEntry> rules() { return kRules; }
 
+std::vector<std::string_view> rule_names() {
+  std::vector<std::string_view> names;
+  for (const RuleEntry& entry : kRules) names.emplace_back(entry.name);
+  return names;
+}
+
 std::unique_ptr<Rule> make_rule(const FilterSettings& settings) {
-  std::string names;
-  for (const RuleEntry& entry : kRules) {
+  for (const RuleEntry& entry : kRules)
     if (settings.rule == entry.name) return entry.make(settings);
-    names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  }
-  throw std::invalid_argument("rule: " + in_quotes(settings.rule) + ", expected one of " + names);
+  throw std::invalid_argument("rule: " + in_quotes(settings.rule) + ", expected " +
+                              one_of(settings.rule, rule_names()));
 }
 
 }  // namespace ifog

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/rules/names.h"
 
+#include <algorithm>
 #include <string_view>
+#include <vector>
 
+#include "drivers/ifog/nearest.h"
 #include "filters/rules/rule.h"
 #include "filters/state_models/state_model.h"
 #include "filters/state_models/state_name.h"
@@ -10,20 +13,12 @@
 namespace ifog {
 
 std::string expected_name(const FilterSetting& setting, const std::string& name) {
-  std::string list;
   if (setting.key == std::string_view("rule")) {
-    for (const RuleEntry& entry : rules()) {
-      if (name == entry.name) return "";
-      list += (list.empty() ? "" : ", ") + std::string(entry.name);
-    }
-  } else if (setting.key == std::string_view("state")) {
-    if (is_state_model(name)) return "";
-    for (const std::string& known : state_model_names()) list += (list.empty() ? "" : ", ") + known;
-    list += ", or a sum of them with ' + '";
-  } else {
-    return "";
+    const std::vector<std::string_view> known = rule_names();
+    return std::find(known.begin(), known.end(), name) == known.end() ? one_of(name, known) : "";
   }
-  return "one of " + list;
+  if (setting.key == std::string_view("state") && !is_state_model(name)) return expected_state_model(name);
+  return "";
 }
 
 }  // namespace ifog

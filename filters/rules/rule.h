@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "filters/settings/filter_settings.h"
@@ -73,6 +74,7 @@ struct RuleEntry {
 
 // Every rule, in the order the command line shows them.
 std::span<const RuleEntry> rules();
+std::vector<std::string_view> rule_names();
 
 // Throws std::invalid_argument naming the setting, its value and what was expected.
 std::unique_ptr<Rule> make_rule(const FilterSettings& settings);

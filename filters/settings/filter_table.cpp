@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -139,7 +140,7 @@ bool inside(double value, const SettingRange& range) {
          (range.least_but_zero == 0.0 || value == 0.0 || value >= range.least_but_zero);
 }
 
-bool one_of(const std::string& value, std::span<const char* const> choices) {
+bool is_among(const std::string& value, std::span<const char* const> choices) {
   for (const char* const choice : choices)
     if (value == choice) return true;
   return choices.empty();
@@ -162,7 +163,7 @@ std::optional<T> accepted(const FilterSetting& setting, const SettingValue& valu
     if (inside(given, setting.range)) return given;
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (const auto* const given = std::get_if<std::string>(&value);
-        given != nullptr && !given->empty() && one_of(*given, setting.choices))
+        given != nullptr && !given->empty() && is_among(*given, setting.choices))
       return *given;
   } else {
     if (const auto* const given = std::get_if<std::vector<double>>(&value)) {
@@ -282,6 +283,10 @@ void require_in_range(const FilterSettings& settings) {
       throw std::invalid_argument(std::string(setting.key) + ": " + as_text(value) + ", expected " +
                                   expected(setting));
   }
+}
+
+std::string expected(const FilterSetting& setting, const std::string& written) {
+  return expected(setting) + did_you_mean(written, setting.choices);
 }
 
 FilterSettings settings_in_force(const FilterChoice& choice, FilterSettings base) {

@@ -55,6 +55,8 @@ const FilterSetting& filter_setting(std::string_view key);
 
 // Type and range, in words: "a whole number 2 ... 100000".
 std::string expected(const FilterSetting& setting);
+// The same to who wrote another value: with the choice that is near it.
+std::string expected(const FilterSetting& setting, const std::string& written);
 
 // Puts a value of the right type and range into the choice; false, and nothing is done, for any other.
 [[nodiscard]] bool choose(const FilterSetting& setting, const SettingValue& value, FilterChoice& choice);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/state_models/arma.h"
 #include "filters/state_models/gauss_markov.h"
@@ -86,15 +87,17 @@ std::unique_ptr<StateModel> make_term(const std::string& term, ParameterReader& 
     for (int i = 0; i < q; ++i) theta.push_back(parameters.take("moving-average coefficient"));
     return std::make_unique<Arma>(std::move(phi), std::move(theta), period_s);
   }
-  std::string list;
-  for (const std::string& known : state_model_names()) list += (list.empty() ? "" : ", ") + known;
-  refuse(term, "one of " + list + ", or a sum of them with ' + '");
+  refuse(term, expected_state_model(term));
 }
 
 }  // namespace
 
 std::vector<std::string> state_model_names() {
   return {"random-walk", "integrated-random-walk", "gauss-markov", "ar(p)", "arma(p,q)", "harmonic"};
+}
+
+std::string expected_state_model(const std::string& written) {
+  return one_of(written, state_model_names(), ", or a sum of them with ' + '");
 }
 
 bool is_state_model(const std::string& name) {

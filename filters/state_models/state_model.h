@@ -67,4 +67,7 @@ std::unique_ptr<StateModel> make_state_model(const std::string& name, std::span<
 // The names above, as the command line lists them.
 std::vector<std::string> state_model_names();
 
+// What a name that is none of them, or one term of a sum, should have been.
+std::string expected_state_model(const std::string& written);
+
 }  // namespace ifog

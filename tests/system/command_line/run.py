@@ -344,6 +344,11 @@ class Checks:
         # The parser itself says only that --output is missing.
         refused(2, "denoise", self.capture, "--outptu=a.csv", says=["unknown option '--outptu'", "'--output'"])
         refused(2, says=["expected one of", "allan"])
+        refused(2, "allan", self.capture, "--estimator", "hadamar", says=["overlapping, modified, hadamard; did you mean 'hadamard'?"])
+        refused(2, "denoise", self.capture, "--filter", "irwe-akgf", says=["ckf", "did you mean 'irwe-akfg'?"])
+        refused(2, "denoise", self.capture, "--state", "randomwalk", says=["or a sum of them", "did you mean 'random-walk'?"])
+        refused(2, "denoise", self.capture, "--weights", "unifrom", says=["did you mean 'uniform'?"])
+        refused(1, "convert", self.capture, self.folder / "never.kvh", "--driver", "kvh1750", "--option", "output=dleta", says=["rate, delta; did you mean 'delta'?"])
         refused(1, "drivers", "kvh175", says=["did you mean 'kvh1750'?", "dsp3000"])
         refused(1, "convert", self.capture, self.folder / "never.kvh", "--driver", "kvh1750", "--option", "rate_hx=200", says=["did you mean 'rate_hz'?"])
         version = ran("--version").stdout.splitlines()

@@ -35,5 +35,13 @@ TEST(Nearest, WhoIsFarFromAllIsToldAll) {
   EXPECT_EQ(meant_or_known("plot", names), ", expected one of: tune, drivers");
 }
 
+TEST(Nearest, AValueThatIsNoneOfItsWordsIsToldAllAndTheNear) {
+  const std::vector<std::string> words{"overlapping", "modified"};
+  EXPECT_EQ(one_of("overlaping", words), "one of overlapping, modified; did you mean 'overlapping'?");
+  EXPECT_EQ(one_of("total", words), "one of overlapping, modified");
+  EXPECT_EQ(one_of("modifed", words, ", or both"),
+            "one of overlapping, modified, or both; did you mean 'modified'?");
+}
+
 }  // namespace
 }  // namespace ifog

@@ -236,9 +236,9 @@ TEST(ModelFile, WhatAnEffectTakesItsValueFromIsRefusedByLine) {
   const std::string product = "form = \"product\"\nchannel = \"t_degC\"\nwith_channel = \"u_V\"\n";
   EXPECT_EQ(
       effect(product + "with_form = \"quadratc\"\n"),
-      "m.toml:6: effect[1].with_form = 'quadratc': no form that a product can be with, did you mean "
-      "'quadratic'?; expected one of linear, quadratic, cubic, quintic, septic, rate, second_rate, lagged, "
-      "absolute, band_power, transition, dead_zone, earth_rate");
+      "m.toml:6: effect[1].with_form = 'quadratc': no form that a product can be with, expected "
+      "one of linear, quadratic, cubic, quintic, septic, rate, second_rate, lagged, absolute, band_power, "
+      "transition, dead_zone, earth_rate; did you mean 'quadratic'?");
   for (const char* wrong : {"lookup", "product", "line", "outliers"})
     EXPECT_EQ(effect(product + "with_form = \"" + wrong + "\"\n").find("m.toml:6: effect[1].with_form = '"),
               0U);

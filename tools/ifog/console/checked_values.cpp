@@ -67,11 +67,11 @@ std::string number_in_words(ValueKind kind, const std::string& range) {
   return kind == ValueKind::count ? out + " 0 or more" : out;
 }
 
-void say_expected(CLI::Validator& check, const std::string& expected) {
+void say_expected(CLI::Validator& check, std::function<std::string(const std::string&)> expected) {
   const CLI::Validator before = check;
-  check.operation([before, expected](std::string& value) {
+  check.operation([before, expected = std::move(expected)](std::string& value) {
     const std::string given = value;
-    return before(value).empty() ? std::string() : complaint(given, expected);
+    return before(value).empty() ? std::string() : complaint(given, expected(given));
   });
 }
 

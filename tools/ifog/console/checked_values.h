@@ -2,6 +2,7 @@
 // What an option's value must be, and the words for one that is not: the value and what was expected.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,8 +27,8 @@ bool is_number(const std::string& text, ValueKind kind);
 // "a number more than 0"; "a whole number 1 to 1000". range: of it, may be "".
 std::string number_in_words(ValueKind kind, const std::string& range);
 
-// The check's own words become: is 'VALUE', expected EXPECTED.
-void say_expected(CLI::Validator& check, const std::string& expected);
+// The check's own words become: is 'VALUE', expected EXPECTED, which may depend on the value.
+void say_expected(CLI::Validator& check, std::function<std::string(const std::string&)> expected);
 
 // The option takes what is_number() says, and nothing else.
 void hold_to_number(CLI::Option& option, ValueKind kind, const std::string& expected);

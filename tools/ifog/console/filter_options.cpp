@@ -47,10 +47,12 @@ std::string wrong_number(const FilterSetting& setting, const std::string& text) 
   return good ? "" : "is " + in_quotes(text) + ", expected " + expected(setting);
 }
 
-std::string given(const std::string& value) { return "is " + in_quotes(value) + ", "; }
+std::string refusal(const FilterSetting& setting, const std::string& value) {
+  return "is " + in_quotes(value) + ", expected " + expected(setting, value);
+}
 template <typename T>
-std::string given(const T&) {
-  return "";
+std::string refusal(const FilterSetting& setting, const T&) {
+  return "expected " + expected(setting);
 }
 
 template <typename T>
@@ -68,7 +70,7 @@ CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choi
         setting.option,
         [&setting, &choice](const Read<T>& value) {
           if (!choose(setting, value, choice))
-            throw CLI::ValidationError(setting.option, given(value) + "expected " + expected(setting));
+            throw CLI::ValidationError(setting.option, refusal(setting, value));
         },
         help(setting));
     return option->check([&setting](const std::string& text) {

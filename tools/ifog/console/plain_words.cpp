@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/ifog/nearest.h"
 #include "tools/ifog/console/checked_values.h"
 
 namespace ifog::tools {
@@ -62,10 +63,14 @@ std::string choice_of(const std::string& check) {
   return words;
 }
 
-std::string in_words(std::string choice) {
-  for (std::size_t at = 0; (at = choice.find('|', at)) != std::string::npos; at += 2)
-    choice.replace(at, 1, ", ");
-  return "one of " + choice;
+std::vector<std::string> words_of(const std::string& choice) {
+  std::vector<std::string> words;
+  for (std::size_t from = 0; from <= choice.size();) {
+    const std::size_t to = std::min(choice.find('|', from), choice.size());
+    words.push_back(choice.substr(from, to - from));
+    from = to + 1;
+  }
+  return words;
 }
 
 void in_plain_words(CLI::Option& option) {
@@ -80,16 +85,20 @@ void in_plain_words(CLI::Option& option) {
       break;
     }
     const std::string said = check->get_description();
-    const std::string words = choice_of(said), range = range_of(said);
-    if (!words.empty()) choice = words;
+    const std::string words_here = choice_of(said), range = range_of(said);
+    if (!words_here.empty()) choice = words_here;
     if (!range.empty()) ranges += (ranges.empty() ? "" : "; ") + range;
-    if (!words.empty() || !range.empty()) said_here.push_back(check);
+    if (!words_here.empty() || !range.empty()) said_here.push_back(check);
     check->description("");
   }
   const std::string type = option.get_type_name();
   const ValueKind kind = choice.empty() ? value_kind(type) : ValueKind::text;
-  const std::string expected = choice.empty() ? number_in_words(kind, ranges) : in_words(choice);
-  for (CLI::Validator* const check : said_here) say_expected(*check, expected);
+  const std::string expected = choice.empty() ? number_in_words(kind, ranges) : "";
+  const std::vector<std::string> words = words_of(choice);
+  for (CLI::Validator* const check : said_here)
+    say_expected(*check, [expected, words](const std::string& written) {
+      return expected.empty() ? one_of(written, words) : expected;
+    });
   if (kind != ValueKind::text) hold_to_number(option, kind, expected);
   const std::string shown = choice.empty() ? word(type, option.get_name(option.get_positional())) : choice;
   // A variable of a script that was never set: --model "$MODEL" must not run without the model.
