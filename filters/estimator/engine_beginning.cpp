@@ -14,8 +14,6 @@
 namespace ifog {
 namespace {
 
-// Measurements that a parabola goes through: from then on it foresees something.
-constexpr double kParabola = 3.0;
 // Samples missed after which no tracker that is quick foresees anything.
 constexpr double kGap = 16.0;
 
@@ -85,7 +83,7 @@ bool Engine::heard(std::uint32_t axes) const noexcept {
 
 void Engine::follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
   Axes least{};
-  const bool foreseen = trackers_.age(0) >= kParabola;
+  const bool foreseen = trackers_.age(0) >= TrackerBank::kParabola;
   const bool far = foreseen && unforeseen(m, now, least) && heard(m.valid);
   hear(m);
   if (far && !waiting_) {

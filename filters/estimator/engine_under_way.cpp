@@ -91,6 +91,8 @@ bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) 
     double smallest = 1e300;
     for (std::size_t j = 0; j < trackers_.size(); ++j) {
       const double apart = m.in.rate_radps[a] - trackers_.rate(j, a);
+      // Of who knows nothing any more nothing is unforeseen.
+      if (!trackers_.foresees(j, a)) smallest = 0.0;
       smallest = std::min(smallest, apart * apart / (trackers_.factor(j, a) * now.scale[a]));
     }
     least[a] = smallest;

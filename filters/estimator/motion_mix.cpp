@@ -26,6 +26,9 @@ constexpr double kForgetFailure = 0.9;
 // A normalised square this much above the least one says no more: one bad sample must not rule a tracker out
 // for long.
 constexpr double kMostSquare = 25.0;
+// Log-likelihood of a measurement for a tracker that foresees nothing: less than for one that is right, more
+// than for one that is wrong.
+constexpr double kNothingForeseen = -6.0;
 
 // Of what two trackers differ by so many of the longer one's memories are averaged.
 constexpr double kBiasMemories = 6.0;
@@ -65,6 +68,10 @@ void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Ax
     const double scale = now.scale[a], degrees = now.degrees[a];
     const double foreseen = unlikely(least[a], degrees);
     for (std::size_t j = 0; j < trackers.size(); ++j) {
+      if (!trackers.foresees(j, a)) {
+        log[j] += kNothingForeseen;
+        continue;
+      }
       const double apart = now.rate[a] - trackers.rate(j, a);
       const double factor = trackers.factor(j, a);
       const double log_factor = trackers.since(a) == 1.0 ? trackers.log_factor(j) : logarithm(factor);
@@ -142,13 +149,15 @@ void MotionMix::compare(const TrackerBank& trackers, const Surprise& now) noexce
 
 double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double rest, double rest_variance,
                            double scale) const noexcept {
-  double noise = 0.0, bias = 0.0, shorter = 0.0, mean = 0.0;
+  double noise = 0.0, bias = 0.0, drift = 0.0, shorter = 0.0, mean = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double longer = 1.0 - shorter;
     if (j > 0) bias += longer * longer * std::max(0.0, bias_square_[axis][j]);
-    // Where the axis has no measurement of this sample: of what is foreseen.
-    const double factor =
-        trackers.since(axis) > 0.0 ? trackers.factor(j, axis) - 1.0 : trackers.output_factor(j);
+    // Where the axis has no measurement of this sample: of what is foreseen, or else held.
+    const bool foreseen = trackers.foresees(j, axis);
+    const double factor = trackers.since(axis) > 0.0 && foreseen ? trackers.factor(j, axis) - 1.0
+                                                                  : trackers.output_factor(j);
+    if (!foreseen) drift += weight_[j] * trackers.drift_square(j, axis);
     noise += factor * weight_[j] * (weight_[j] + 2.0 * kShared * shorter);
     shorter += weight_[j];
     mean += weight_[j] * trackers.rate(j, axis);
@@ -156,7 +165,7 @@ double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double
   // Either the filter at rest is right or the trackers are.
   const double moving = 1.0 - rest_weight_;
   const double apart = moving > 1e-9 ? rest - mean / moving : 0.0;
-  return noise * scale + bias + rest_weight_ * (rest_variance + moving * apart * apart);
+  return noise * scale + bias + drift + rest_weight_ * (rest_variance + moving * apart * apart);
 }
 
 double MotionMix::gain(const TrackerBank& trackers, double rest_gain) const noexcept {

@@ -14,8 +14,13 @@ constexpr double kShortest = 1.0 / 0.7;
 const double kApart = std::sqrt(10.0);
 // A motion is looked for over this many samples at least, however short the filter at rest is.
 constexpr double kLeastReach = 48.0;
-// After more missed samples than its memory, and than these, a polynomial's prediction is worth nothing.
+// A parabola is prolonged by so many lengths of what it goes through: behind them, whatever it was that it
+// followed, it is further off than what was measured last.
+constexpr double kMostLengths = 2.0;
+// An axis that has not come for so many samples makes the trackers no younger.
 constexpr double kMostSteps = 16.0;
+// Lengths that the steepness of a motion is a mean over: enough of them for a swing that the tracker follows.
+constexpr double kSteepness = 16.0;
 // Measurements, at least, that a mean of their distances is taken of.
 constexpr double kLeastMean = 2.0;
 // Innovation variance over the noise's of a tracker that has not enough measurements for a parabola.
@@ -76,6 +81,10 @@ void TrackerBank::begin_from(std::size_t tracker, std::size_t from) noexcept {
   }
 }
 
+double TrackerBank::farthest(std::size_t tracker, std::size_t axis) const noexcept {
+  return kMostLengths * length(tracker) * state_[tracker].usual_step[axis];
+}
+
 double TrackerBank::length(std::size_t tracker) const noexcept {
   return std::min(memory_[tracker], state_[tracker].age / 3.0 + 1.0);
 }
@@ -104,18 +113,22 @@ void TrackerBank::gains(std::size_t tracker) noexcept {
 
 void TrackerBank::predict(double steps) noexcept {
   for (double& since : steps_) since += steps;
-  const double least = *std::min_element(steps_.begin(), steps_.end());
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
-    const double most = std::max(kMostSteps, memory_[j]);
-    if (least > most) {
-      state.age = 0.0;
-      state.settled = false;
-    }
+    bool foresees = false;
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
-      if (state.age <= 0.0 || steps_[a] > most) state.slope[a] = state.curvature[a] = 0.0;
+      if (steps_[a] > farthest(j, a)) {
+        state.rate[a] = state.filtered[a];
+        state.slope[a] = state.curvature[a] = 0.0;
+        continue;
+      }
+      foresees = true;
       state.rate[a] += steps * (state.slope[a] + steps * state.curvature[a]);
       state.slope[a] += 2.0 * steps * state.curvature[a];
+    }
+    if (!foresees) {
+      state.age = 0.0;
+      state.settled = false;
     }
     gains(j);
   }
@@ -132,17 +145,20 @@ void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
       if ((valid_axes >> a & 1U) == 0) continue;
       // Prolonged no further than that, what is left of its parabola is not to be corrected but begun again.
-      if (steps_[a] > std::max(kMostSteps, memory_[j])) {
-        state.rate[a] = rate[a];
+      double& usual = state.usual_step[a];
+      if (steps_[a] > farthest(j, a)) {
+        state.rate[a] = state.filtered[a] = rate[a];
+        usual = std::min(steps_[a], kMostSteps);
         continue;
       }
+      usual += (steps_[a] - usual) / std::max(kLeastMean, std::min(memory_[j], state.age));
       const double innovation = rate[a] - state.rate[a];
-      double& usual = state.usual_step[a];
-      usual += (steps_[a] - usual) / std::max(kLeastMean, memory_[j]);
       const double step = std::max(steps_[a], usual);
       state.rate[a] += g.rate * innovation;
+      state.filtered[a] = state.rate[a];
       state.slope[a] += g.slope / step * innovation;
       state.curvature[a] += g.curvature / (step * step) * innovation;
+      state.slope_square[a] += (state.slope[a] * state.slope[a] - state.slope_square[a]) / (kSteepness * length(j));
     }
     if (whole) state.age += 1.0;
   }
@@ -154,6 +170,7 @@ void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
 // through; the factor between a parabola through three measurements (1.2) and through many (0.8).
 double TrackerBank::growth(std::size_t tracker, std::size_t axis) const noexcept {
   constexpr double kPerLength = 0.9;
+  if (state_[tracker].age <= 0.0) return 1.0;  // it foresees nothing, and its factor says so
   const double n = length(tracker) / kPerLength;
   const double more = (n + steps_[axis]) / (n + 1.0), square = more * more;
   return square * square;

@@ -22,6 +22,8 @@ namespace ifog {
 class TrackerBank {
  public:
   static constexpr std::size_t kMost = 12;
+  // Measurements that a parabola goes through: from then on a tracker foresees something.
+  static constexpr double kParabola = 3.0;
 
   TrackerBank();
 
@@ -53,6 +55,14 @@ class TrackerBank {
   // Variance of what it foresees of an axis that was last corrected `since(axis)` samples ago, over that of
   // one sample ahead.
   [[nodiscard]] double growth(std::size_t tracker, std::size_t axis) const noexcept;
+  // Whether the axis has been missing for no longer than the tracker prolongs what it has; and where it has,
+  // the variance of the rate that is held instead, by how steep it has lately been.
+  [[nodiscard]] bool foresees(std::size_t tracker, std::size_t axis) const noexcept {
+    return state_[tracker].age >= kParabola && steps_[axis] <= farthest(tracker, axis);
+  }
+  [[nodiscard]] double drift_square(std::size_t tracker, std::size_t axis) const noexcept {
+    return steps_[axis] * steps_[axis] * state_[tracker].slope_square[axis];
+  }
   [[nodiscard]] double since(std::size_t axis) const noexcept { return steps_[axis]; }
   [[nodiscard]] double factor(std::size_t tracker, std::size_t axis) const noexcept {
     const double one = now_[tracker].innovation;
@@ -70,12 +80,16 @@ class TrackerBank {
   };
   struct State {
     Axes rate{}, slope{}, curvature{};  // per sample, half of it per sample squared
+    Axes filtered{};                    // the rate when it was last corrected
+    Axes slope_square{};                // mean over its last lengths
     Axes usual_step{1.0, 1.0, 1.0};     // mean distance of its measurements, nominal samples
     double age = 0.0;                   // measurements of all axes
     bool settled = false;
   };
 
   void gains(std::size_t tracker) noexcept;
+  // Nominal samples that it is prolonged by.
+  [[nodiscard]] double farthest(std::size_t tracker, std::size_t axis) const noexcept;
 
   std::array<double, kMost> memory_{};
   std::array<Gains, kMost> fading_{}, now_{};
