@@ -91,6 +91,7 @@ class Engine {
   void follow(const Measurement& m, EstimatorOutput& out) noexcept;
   void follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void follow_manoeuvre(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
+  [[nodiscard]] bool still_waiting(std::uint32_t valid) noexcept;
   [[nodiscard]] bool unforeseen(const Measurement& m, const Surprise& now, Axes& least) noexcept;
   void average_rest(double predicted) noexcept;
   void expect_surprise(const Axes& least) noexcept;
@@ -168,6 +169,7 @@ class Engine {
   std::uint32_t waiting_axes_ = 0;  // that it had
   std::uint32_t waiting_for_ = 0;   // of these the ones that nobody foresaw
   std::uint32_t unforeseen_axes_ = 0;
+  std::size_t waited_ = 0;          // samples since, without those
   Axes surprised_{};                // running mean of the least normalised square in the manoeuvre
   double noise_of_one_;             // variance of a measurement, as set
   double rest_variance_ = 0.0;      // of the predicted rate at rest, averaged

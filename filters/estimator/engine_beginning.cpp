@@ -104,7 +104,7 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
       publish_mix(now);
     return;
   }
-  waiting_ = waiting_ && (m.valid & waiting_for_) == 0;
+  waiting_ = still_waiting(m.valid);
   if (!waiting_) kept_out_ = {};
   if (foreseen) {
     expect_surprise(least);
@@ -121,6 +121,7 @@ void Engine::wait(const Measurement& m, const Surprise& now, EstimatorOutput& ou
   out.flags |= kGated;
   ++health_.gated;
   waiting_ = published_.passed_over = true;
+  waited_ = 0;
   waiting_rate_ = now.rate;
   waiting_axes_ = m.valid;
   waiting_for_ = unforeseen_axes_;

@@ -103,6 +103,11 @@ bool Engine::unforeseen(const Measurement& m, const Surprise& now, Axes& least) 
   return far && unforeseen_axes_ != 0;
 }
 
+// An axis that has not come for long may be gone for good.
+bool Engine::still_waiting(std::uint32_t valid) noexcept {
+  return waiting_ && (valid & waiting_for_) == 0 && ++waited_ <= OutlierRun::kMost;
+}
+
 void Engine::expect_surprise(const Axes& least) noexcept {
   for (std::size_t a = 0; a < axes_; ++a)
     surprised_[a] += (std::min(least[a], kMostSurprise) - surprised_[a]) / kSurpriseMemory;
@@ -142,6 +147,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     out.flags |= kGated;
     ++health_.gated;
     waiting_ = true;
+    waited_ = 0;
     waiting_rate_ = now.rate;
     waiting_axes_ = m.valid;
     waiting_for_ = unforeseen_axes_;
@@ -159,7 +165,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
     publish_mix(now);
     return;
   }
-  waiting_ = waiting_ && (m.valid & waiting_for_) == 0;
+  waiting_ = still_waiting(m.valid);
   expect_surprise(least);
   mix_.judge(trackers_, now, least);
   trackers_.correct(m.in.rate_radps, m.valid);

@@ -155,8 +155,8 @@ double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double
     if (j > 0) bias += longer * longer * std::max(0.0, bias_square_[axis][j]);
     // Where the axis has no measurement of this sample: of what is foreseen, or else held.
     const bool foreseen = trackers.foresees(j, axis);
-    const double factor = trackers.since(axis) > 0.0 && foreseen ? trackers.factor(j, axis) - 1.0
-                                                                  : trackers.output_factor(j);
+    const double factor =
+        trackers.since(axis) > 0.0 && foreseen ? trackers.factor(j, axis) - 1.0 : trackers.output_factor(j);
     if (!foreseen) drift += weight_[j] * trackers.drift_square(j, axis);
     noise += factor * weight_[j] * (weight_[j] + 2.0 * kShared * shorter);
     shorter += weight_[j];

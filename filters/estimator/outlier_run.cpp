@@ -56,8 +56,9 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
   }
   samples_ = std::min(samples_ + 1.0, kMemory);
   if (farthest <= kFar * kFar) {
-    // Of the axes that are far it says nothing where it has none of them.
-    if (length_ > 0 && (now.valid & far_axes_) == 0) return;
+    // Of the axes that are far it says nothing where it has none of them. But those may be gone for good, and
+    // what comes long after is no part of the row.
+    if (length_ > 0 && (now.valid & far_axes_) == 0 && ++waited_ <= kMost) return;
     // Only now: the first of a jump is no outlier.
     if (length_ > 0) {
       for (; length_ > 0; --length_) count(true);
@@ -74,6 +75,7 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
     began_ = true;
   }
   far_axes_ |= far_axes;
+  waited_ = 0;
   squares_ += square;
   if (length_ > 0)
     apart_ += 0.5 * logarithm(squares_ / static_cast<double>(length_ + 1) / std::max(apart, 2.0 * axes));

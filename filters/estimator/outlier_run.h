@@ -53,6 +53,7 @@ class OutlierRun {
   double share_ = 1e-8;         // of samples that are far
   double samples_ = 0.0;
   double most_ = 12.5;
+  std::size_t waited_ = 0;  // samples since one had an axis that is far
   bool keep_out_ = false, jump_ = false, began_ = false;
 };
 

@@ -158,7 +158,8 @@ void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
       state.filtered[a] = state.rate[a];
       state.slope[a] += g.slope / step * innovation;
       state.curvature[a] += g.curvature / (step * step) * innovation;
-      state.slope_square[a] += (state.slope[a] * state.slope[a] - state.slope_square[a]) / (kSteepness * length(j));
+      state.slope_square[a] +=
+          (state.slope[a] * state.slope[a] - state.slope_square[a]) / (kSteepness * length(j));
     }
     if (whole) state.age += 1.0;
   }
