@@ -9,8 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "drivers/transport/sole_reader.h"
-
 namespace ifog {
 namespace {
 
@@ -40,7 +38,7 @@ void ByteFile::open(const std::string& path) {
   }
   if (!standard_input) {
     try {
-      read_alone(fd, path, owned_ ? fd_ : -1);
+      sole_.take(fd, path);
     } catch (...) {
       ::close(fd);
       throw;
@@ -55,7 +53,8 @@ void ByteFile::open(const std::string& path) {
     }
     gzdirect(gz);  // reads the header now: zlib's buffers are then there before the first fill()
   }
-  close();
+  close_file();
+  if (standard_input) sole_.release();
   fd_ = fd;
   gz_ = gz;
   owned_ = !standard_input;
@@ -70,6 +69,11 @@ void ByteFile::open(const std::string& path) {
 }
 
 void ByteFile::close() noexcept {
+  sole_.release();
+  close_file();
+}
+
+void ByteFile::close_file() noexcept {
   if (gz_ != nullptr)
     gzclose(gz_);
   else if (fd_ >= 0 && owned_)

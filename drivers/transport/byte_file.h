@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/transport/sole_reader.h"
+
 namespace ifog {
 
 class ByteFile {
@@ -48,6 +50,9 @@ class ByteFile {
   static constexpr std::size_t kCapacity = 1U << 16U;
 
  private:
+  void close_file() noexcept;
+
+  SoleReader sole_;
   int fd_ = -1;
   bool owned_ = false, regular_ = false, fifo_ = false, blocks_ = false;
   gzFile_s* gz_ = nullptr;

@@ -13,9 +13,22 @@ struct DeviceTaken : OpenError {
   explicit DeviceTaken(const std::string& device);
 };
 
-// Says so of what `fd` has open, for as long as it is open; `before`, −1 for none, had it in this process and
-// gives it up. What many may read, and a file system that knows no locks, is left as it is. Throws
-// DeviceTaken.
-void read_alone(int fd, const std::string& device, int before = -1);
+// Says so of what is open, until it is released, however often it is opened meanwhile: between two openings
+// nobody else gets in. What many may read, and a file system that knows no locks, is left as it is.
+class SoleReader {
+ public:
+  SoleReader() = default;
+  ~SoleReader() { release(); }
+  SoleReader(const SoleReader&) = delete;
+  SoleReader& operator=(const SoleReader&) = delete;
+
+  // Of what `fd` has open, which may be what is held already. Throws DeviceTaken, and holds what it held.
+  void take(int fd, const std::string& device);
+  // For a child, too, that has inherited the descriptor.
+  void release() noexcept;
+
+ private:
+  int held_ = -1;  // a descriptor of its own of what was opened first
+};
 
 }  // namespace ifog

@@ -4,9 +4,11 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
@@ -15,6 +17,7 @@
 #include <thread>
 
 #include "drivers/capture/text_file.h"
+#include "drivers/transport/byte_file.h"
 #include "drivers/transport/sole_reader.h"
 
 namespace {
@@ -280,6 +283,26 @@ TEST_F(FileTransport, AFifoWhoseWriterReturnsStartsAnew) {
     EXPECT_EQ(transport->state(), TransportState::gone);
   }
   EXPECT_EQ(transport->counters().reopened, 19U);
+}
+
+// While another tries again and again, opening it anew lets nobody in.
+TEST_F(FileTransport, AFifoOpenedAnewIsStillOneReaders) {
+  fifo();
+  ifog::ByteFile file;
+  file.open(settings_.path);
+  std::atomic<bool> done = false;
+  std::atomic<int> got_in = 0;
+  std::thread other([&] {
+    while (!done) {
+      const int fd = ::open(settings_.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+      if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0) ++got_in;
+      ::close(fd);
+    }
+  });
+  for (int i = 0; i < 5000; ++i) EXPECT_NO_THROW(file.open(settings_.path)) << i;
+  done = true;
+  other.join();
+  EXPECT_EQ(got_in, 0);
 }
 
 TEST_F(FileTransport, AFifoIsOneReaders) {

@@ -8,11 +8,13 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <thread>
 
@@ -282,10 +284,16 @@ TEST(SerialTransport, ALineIsOneReaders) {
   ASSERT_EQ(unlockpt(master), 0);
   const auto line = [&] { return open(ptsname(master), O_RDWR | O_NOCTTY | O_CLOEXEC); };
   const int first = line(), second = line();
-  ifog::read_alone(first, "gyro");
-  EXPECT_THROW(ifog::read_alone(second, "gyro"), ifog::DeviceTaken);
+  ifog::SoleReader one, other;
+  one.take(first, "gyro");
+  EXPECT_THROW(other.take(second, "gyro"), ifog::DeviceTaken);
+  const pid_t child = fork();  // has the descriptors, too
+  if (child == 0) pause();
+  one.release();
   close(first);
-  EXPECT_NO_THROW(ifog::read_alone(second, "gyro"));
+  EXPECT_NO_THROW(other.take(second, "gyro"));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
   close(second);
   close(master);
 }
