@@ -40,6 +40,7 @@ class DeviceTimeline {
     bool out_of_turn = false;  // it came again, or late: left out, and all else here says nothing
     bool clock_moved = false;  // as in DeviceCount::Step
     double late_s = 0.0;       // likewise
+    bool same_gap = false;     // likewise
     bool by_count = false;     // dt_s is by the counter, and not what time_ns has moved on by
     bool clock_set = false;    // that is because the device's clock was set while it counted on
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
@@ -162,6 +163,7 @@ class DeviceTimeline {
     step.restarted = counted.restarted;
     step.clock_moved = counted.clock_moved;
     step.late_s = counted.late_s;
+    step.same_gap = counted.same_gap;
     return step;
   }
 

@@ -239,7 +239,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     for (PlausibleRate& rate : rate_) rate.forget();
     for (PlausibleAngle& angle : angle_) angle.miss();
     for (PlausibleValue& channel : frame_channel_) channel.forget();
-    ++counts_.gaps;
+    counts_.gaps += now.same_gap ? 0 : 1;
     counts_.missing += now.samples - 1;
     clock_.restart();
   }
