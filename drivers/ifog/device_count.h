@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
 
 namespace ifog {
@@ -95,7 +96,8 @@ class DeviceCount {
       jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
     }
     if (step.by_clock) took_by_clock_s_ = step.dt_s / static_cast<double>(samples);
-    if (elapsed >= 0.0) behind_s_ = std::max(0.0, behind_s_ + (1.0 - kClockDoubt) * elapsed - step.dt_s);
+    if (elapsed >= 0.0) prompt_.came(elapsed, step.dt_s);
+    refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
     follow_doubt(frame, step);
     follow_lateness(frame, elapsed, step);
     last_ = frame;
@@ -146,7 +148,9 @@ class DeviceCount {
     place_ = kFirstPlace;
     recent_.forget();
     recent_.add(place_, 0, frame.digest);
-    late_s_ = took_s_ = counted_s_ = jitter_s_ = behind_s_ = took_by_clock_s_ = 0.0;
+    late_s_ = took_s_ = counted_s_ = jitter_s_ = took_by_clock_s_ = 0.0;
+    prompt_.forget();
+    refused_ = false;
     doubt_ = {};
     last_ = frame;
   }
@@ -211,7 +215,8 @@ class DeviceCount {
     }
     const double rounds = rounds_by_clock(passed_s, static_cast<double>(difference), frame.grain_s);
     // No clock is ahead of the times of arrival, but by what was held up on its way.
-    if (rounds > 0.0 && elapsed_s >= 0.0 && passed_s > elapsed_s + behind_s_ + kPrompt_s) return false;
+    if (rounds > 0.0 && elapsed_s >= 0.0 && passed_s > elapsed_s + prompt_.behind_s() + kPrompt_s)
+      return false;
     const double claimed = static_cast<double>(difference) + rounds * static_cast<double>(modulus_);
     if (!agree(claimed, passed_s, elapsed_s, frame.grain_s)) return false;
     step.by_clock = true;
@@ -225,13 +230,22 @@ class DeviceCount {
     if (spare <= kClockSamples + grain_s / nominal_s_) return 0.0;
     return std::max(0.0, std::round(spare / static_cast<double>(modulus_)));
   }
-  // Where clock and count disagree, the times of arrival say which of them to follow; the clock by far more
-  // than the samples ever took only where that time was to be seen, or where nobody knows how long one takes
-  // but the stated rate.
+  // Where clock and count disagree, a clock that goes on as before is followed. Else the times of arrival say
+  // which of them: the count where it is as near to them as they scatter by, or where the clock would be
+  // ahead of them; the clock by far more than the samples ever took only where that time was to be seen, or
+  // where nobody knows how long one takes but the stated rate.
   [[nodiscard]] bool agree(double claimed, double passed_s, double elapsed_s, double grain_s) const noexcept {
     if (std::abs(claimed * nominal_s_ - passed_s) <= apart_s(passed_s) + grain_s) return true;
     const bool usual = passed_s <= kLonger * claimed * std::max(nominal_s_, took_by_clock_s_);
     if (elapsed_s < 0.0) return usual || took_by_clock_s_ == 0.0;
+    if (took_by_clock_s_ > 0.0) {
+      const double as_before_s = claimed * took_by_clock_s_;
+      if (std::abs(as_before_s - passed_s) <=
+          kClockSamples * took_by_clock_s_ + kClockDoubt * passed_s + grain_s)
+        return true;
+      if (prompt_.ahead(passed_s, elapsed_s, apart_s(passed_s) + grain_s)) return false;
+      if (!refused_ && std::abs(as_before_s - elapsed_s) <= prompt_s()) return false;
+    }
     return std::abs(passed_s - elapsed_s) <= kPrompt_s + kRateDoubt * elapsed_s &&
            (usual || elapsed_s >= 0.5 * passed_s);
   }
@@ -369,7 +383,8 @@ class DeviceCount {
   double took_s_ = 0.0,
          counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
   double jitter_s_ = 0.0, scatter_s_ = 1e-3;
-  double behind_s_ = 0.0;         // the last frame, against the promptest of late: what else may come at once
+  PromptArrivals prompt_;
+  bool refused_ = false;          // the clock's step to the last frame was not followed
   double took_by_clock_s_ = 0.0;  // the last sample of which the clock said it; 0: none yet
 };
 

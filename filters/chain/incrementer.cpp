@@ -243,6 +243,10 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     counts_.missing += now.samples - 1;
     clock_.restart();
   }
+  if (now.clock_set) {
+    out.flags |= kSensorClockSet;
+    ++counts_.sensor_clock_sets;
+  }
   if (now.restarted) {
     ++counts_.restarts;
     // An angle counts from power-up: after a restart it says nothing about the turn since the last one.

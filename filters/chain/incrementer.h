@@ -36,6 +36,7 @@ struct IncrementerCounts {
   std::uint64_t implausible = 0;          // of those: marked good, but a value that cannot be
   std::uint64_t channel_implausible = 0;  // values of channels that cannot be; the one before is held
   std::uint64_t clock_steps = 0;          // times the clock of the labels was set: they moved, nothing else
+  std::uint64_t sensor_clock_sets = 0;    // times the device's own clock was set while it measured on
   std::uint64_t pauses = 0;  // times they moved because the device had not counted on for a while
 };
 
