@@ -115,8 +115,8 @@ class DeviceTimeline {
     if (!last_clocked_) return frame.stamp.ns;
     std::optional<double> counted_s;
     if (counted(frame) && rate_known_) counted_s = count_.ahead_s(frame.sequence);
-    return stamp_.look(frame.stamp,
-                       {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s), counted_s});
+    return stamp_.look(frame.stamp, {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s),
+                                     counted_s, static_cast<double>(modulus_) * period_s_});
   }
   // Since any frame came, also one that was left out.
   [[nodiscard]] double quiet_s(const Frame& frame, double elapsed_s) const noexcept {

@@ -69,7 +69,8 @@ struct Got {
   std::uint64_t most_missing = 0;  // before any one sample
 };
 
-Got run(const std::vector<Frame>& frames, const Device& device) {
+// wrap_ns: in which the device's stamp goes round; 0: it has none.
+Got run(const std::vector<Frame>& frames, const Device& device, std::int64_t wrap_ns = 0) {
   SensorFacts facts;
   facts.nominal_rate_hz = device.rate_hz;
   facts.sequence_modulus = device.modulus;
@@ -83,6 +84,10 @@ Got run(const std::vector<Frame>& frames, const Device& device) {
     reading.value[0] = static_cast<double>(frames[i].number % 1009);
     reading.has_sequence = true;
     reading.sequence = static_cast<std::uint32_t>(frames[i].number % device.modulus);
+    if (wrap_ns > 0)
+      reading.device_time_ns =
+          std::llround(static_cast<double>(frames[i].number) / device.rate_hz * 1e6) * 1000 % wrap_ns;
+    reading.device_wrap_ns = wrap_ns;
     const std::uint64_t before = incrementer.counts().missing;
     EXPECT_TRUE(incrementer.next(reading, increment)) << i;
     got.most_missing = std::max(got.most_missing, incrementer.counts().missing - before);
@@ -153,6 +158,23 @@ TEST(LostRounds, WhatIsLostOfWhatWasHeldUpIsCountedToTheSample) {
                                           << silent_s << " s, kept " << keeps_s << " s");
           expect_truth({{{6.0, silent_s}}, faster, 1, keeps_s}, device);
         }
+}
+
+// A stamp that begins anew each second goes round in a silence, too: only what is whole rounds of both is
+// not told.
+TEST(LostRounds, AStampThatGoesRoundAsWellMakesNone) {
+  for (const Device& device : {Device{200.0, 128}, Device{500.0, 128}, Device{1000.0, 128}})
+    for (const double silent_s : {1.5, 2.2, 2.56, 3.0, 3.2, 5.0})
+      for (const double keeps_s : {0.0, 1e9}) {
+        SCOPED_TRACE(testing::Message()
+                     << device.rate_hz << " Hz, silent " << silent_s << " s, keeps " << keeps_s);
+        const auto samples = static_cast<std::uint64_t>(30.0 * device.rate_hz);
+        const std::vector<Frame> frames = through({{{7.0, silent_s}}, 1e6, 1, keeps_s}, device, samples);
+        const Got got = run(frames, device, 1'000'000'000);
+        EXPECT_EQ(got.counts.missing, samples - frames.size());
+        EXPECT_EQ(got.counts.sensor_clock_sets, 0U);
+        EXPECT_NEAR(got.dt_s, 30.0, 1e-3);
+      }
 }
 
 // A short hold-up with a gap at its beginning, behind which the line of the times of arrival begins.

@@ -121,8 +121,9 @@ class SensorSeconds {
     const std::int64_t fitted_ns = message.utime * 1000;
     std::int64_t now_ns = (message.sensor_time_ns != -1 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
     const bool sensor = message.sensor_time_ns != -1, set = (message.flags & rate_t::FLAG_CLOCK_STEP) != 0;
-    const bool own_set =
-        (message.flags & (sensor ? rate_t::FLAG_SENSOR_CLOCK_SET : rate_t::FLAG_CLOCK_STEP)) != 0;
+    const std::int32_t own =
+        sensor ? std::int32_t{rate_t::FLAG_SENSOR_CLOCK_SET} : std::int32_t{rate_t::FLAG_CLOCK_STEP};
+    const bool own_set = (message.flags & own) != 0;
     if (started_ && (now_ns <= last_ns_ || own_set)) {
       const bool goes_on = !set && fitted_ns > last_fitted_ns_;
       const std::int64_t step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);

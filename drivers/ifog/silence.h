@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Of a device with neither counter nor clock: whether what comes late ends a hole in what was measured, or
+// was held up on its way. It was held up where more comes at once than usual, and then until what follows
+// comes at its pace: from there on it is a hole.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "drivers/ifog/arrivals.h"
+
+namespace ifog {
+
+class Silence {
+ public:
+  enum class Ends : std::uint8_t { none, hole, hold_up };
+  struct Next {
+    double elapsed_s = -1.0;  // since the sample before, by arrival; negative: not known
+    double late_s = 0.0;      // later than the next sample is due
+    std::uint32_t at_once = 0;
+  };
+
+  void forget() noexcept { *this = {}; }
+  // What the next sample ends; changes nothing.
+  [[nodiscard]] Ends look(const Next& next, double period_s) const noexcept {
+    if (next.elapsed_s < 0.0 || next.late_s <= std::max(kLate_s, kLatePeriods * period_s)) return Ends::none;
+    const bool alone = next.at_once > 0 && next.at_once <= kFew &&
+                       next.at_once <= kUsual * usually_at_once_ &&
+                       next.at_once * period_s <= kPrompt_s + period_s;
+    return (held_ ? next.elapsed_s >= kPace * period_s : alone) ? Ends::hole : Ends::hold_up;
+  }
+  void take(const Next& next, Ends ends) noexcept {
+    held_ = ends == Ends::hold_up;
+    const auto at_once = static_cast<double>(next.at_once);
+    usually_at_once_ += (usually_at_once_ > 0.0 ? kFollows : 1.0) * (at_once - usually_at_once_);
+  }
+
+ private:
+  static constexpr double kLate_s = 0.25, kLatePeriods = 20.0;  // less is scheduling's
+  static constexpr double kPace = 0.75;  // of the period, and samples are not held up any more
+  // What comes at once when nothing was held up: adapters hand on what was in portions of more than so few.
+  static constexpr std::uint32_t kFew = 2;
+  static constexpr double kUsual = 1.5, kFollows = 0.05;
+
+  bool held_ = false;
+  double usually_at_once_ = 0.0;  // so many come in one portion
+};
+
+}  // namespace ifog
