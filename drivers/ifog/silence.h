@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "drivers/ifog/arrivals.h"
 
@@ -27,10 +28,15 @@ class Silence {
     const bool alone = next.at_once > 0 && next.at_once <= kFew &&
                        next.at_once <= kUsual * usually_at_once_ &&
                        next.at_once * period_s <= kPrompt_s + period_s;
-    return (held_ ? next.elapsed_s >= kPace * period_s : alone) ? Ends::hole : Ends::hold_up;
+    // Over a while, as an adapter's portions come at their own times.
+    const double came_s = came_s_ + next.elapsed_s;
+    const bool at_pace = came_s >= std::max(kWhile_s, kPace * (came_ + 1.0) * period_s);
+    return (held_ ? at_pace : alone) ? Ends::hole : Ends::hold_up;
   }
   void take(const Next& next, Ends ends) noexcept {
-    held_ = ends == Ends::hold_up;
+    const bool goes_on = std::exchange(held_, ends == Ends::hold_up) && held_;
+    came_s_ = goes_on ? came_s_ + next.elapsed_s : 0.0;
+    came_ = goes_on ? came_ + 1.0 : 0.0;
     const auto at_once = static_cast<double>(next.at_once);
     usually_at_once_ += (usually_at_once_ > 0.0 ? kFollows : 1.0) * (at_once - usually_at_once_);
   }
@@ -38,12 +44,14 @@ class Silence {
  private:
   static constexpr double kLate_s = 0.25, kLatePeriods = 20.0;  // less is scheduling's
   static constexpr double kPace = 0.75;  // of the period, and samples are not held up any more
+  static constexpr double kWhile_s = 0.1;
   // What comes at once when nothing was held up: adapters hand on what was in portions of more than so few.
   static constexpr std::uint32_t kFew = 2;
   static constexpr double kUsual = 1.5, kFollows = 0.05;
 
   bool held_ = false;
-  double usually_at_once_ = 0.0;  // so many come in one portion
+  double came_s_ = 0.0, came_ = 0.0;  // time and samples behind the first that was held up
+  double usually_at_once_ = 0.0;      // so many come in one portion
 };
 
 }  // namespace ifog

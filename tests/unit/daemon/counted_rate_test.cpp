@@ -18,8 +18,9 @@ TEST(CountedRate, IsThatOfTheSensorHoweverSlowItIs) {
     for (int s = 1; s <= seconds; ++s) {
       shown_hz = rate.of(static_cast<std::int64_t>(rate_hz * s + 0.5), 1.0, rate_hz);
       // A reading is a second: of ten samples that came, one of ten periods.
-      if (s > 25.0 / rate_hz)
-        EXPECT_NEAR(shown_hz, rate_hz, std::max(0.12 * rate_hz, 0.0)) << rate_hz << ", " << s;
+      if (s > 25.0 / rate_hz) {
+        EXPECT_NEAR(shown_hz, rate_hz, 0.12 * rate_hz) << rate_hz << ", " << s;
+      }
     }
     const auto last = static_cast<std::int64_t>(rate_hz * seconds + 0.5);
     for (int s = 0; s < 4.0 / rate_hz + 4.0; ++s) shown_hz = rate.of(last, 1.0, rate_hz);
