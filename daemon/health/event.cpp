@@ -34,6 +34,11 @@ std::string describe(const Event& event) {
           "the wall clock was set, now {:+.3f} s against start-up: times of day follow from number {} on, "
           "intervals and angles do not",
           event.a, event.sequence);
+    case EventKind::sensor_clock_set:
+      return fmt::format(
+          "the device's clock was set before number {}: sensor_time_ns moved, times of day, intervals and "
+          "angles did not",
+          event.sequence);
     case EventKind::label_moved:
       return fmt::format(
           "the device did not count on for a while, or whole rounds of its counter were lost: times of day "

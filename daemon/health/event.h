@@ -8,15 +8,16 @@
 namespace ifog {
 
 enum class EventKind : std::uint8_t {
-  gap,             // count: samples missing, sequence: before this one
-  device_restart,  // the device's counter or clock jumped back
-  reopened,        // the device was closed and is open again
-  overflow,        // the ring was full
-  noise_learned,   // a: process noise, b: measurement noise, from start-up data; count: 1 when it moved
-  model_in_use,    // sequence: the first sample with the new parts
-  divergence,      // the estimator started again
-  clock_step,      // the wall clock was set; a: how far it is now from where it was at start-up, s
-  label_moved,     // the device stood still, or whole rounds of its counter are lost: times of day follow
+  gap,               // count: samples missing, sequence: before this one
+  device_restart,    // the device's counter or clock jumped back
+  reopened,          // the device was closed and is open again
+  overflow,          // the ring was full
+  noise_learned,     // a: process noise, b: measurement noise, from start-up data; count: 1 when it moved
+  model_in_use,      // sequence: the first sample with the new parts
+  divergence,        // the estimator started again
+  clock_step,        // the wall clock was set; a: how far it is now from where it was at start-up, s
+  sensor_clock_set,  // the device's own clock was set while it measured on
+  label_moved,       // the device stood still, or whole rounds of its counter are lost: times of day follow
   publish_failed,
 };
 

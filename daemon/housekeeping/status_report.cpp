@@ -239,9 +239,8 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.events_lost = as_signed(pipeline.events_lost());
   now_.state = state_of(pipeline);
   if (interval_s > 0.0) {
-    now_.input_rate_hz = static_cast<double>(now_.samples_in - before_.samples_in) / interval_s;
-    now_.output_rate_hz =
-        static_cast<double>(now_.samples_published - before_.samples_published) / interval_s;
+    now_.input_rate_hz = input_rate_.of(now_.samples_in, interval_s, nominal_rate_hz_);
+    now_.output_rate_hz = output_rate_.of(now_.samples_published, interval_s, nominal_rate_hz_);
   }
   return now_;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/health/counted_rate.h"
 #include "daemon/health/sensor_watch.h"
 #include "daemon/pipeline/pipeline.h"
 #include "daemon/recorder/recorder.h"
@@ -67,6 +68,7 @@ class StatusReport {
   bool news_ = false;           // the last update() found new samples
   int seconds_of_samples_ = 0;  // updates that found new samples
   double nominal_rate_hz_;
+  CountedRate input_rate_, output_rate_;
   double interval_error_ = 0.0, interval_error_before_ = 0.0;
   bool frozen_before_ = false;
   int in_vain_ = 0;             // updates in a row after which something had come, and never a good frame

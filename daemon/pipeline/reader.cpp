@@ -75,6 +75,10 @@ void Reader::report(const Increment& increment, const IncrementerCounts& before)
     event.a = static_cast<double>(increment.wall_shift_ns) * 1e-9;
     events_.report(event);
   }
+  if (now.sensor_clock_sets != before.sensor_clock_sets) {
+    event.kind = EventKind::sensor_clock_set;
+    events_.report(event);
+  }
   if (now.pauses != before.pauses) {
     event.kind = EventKind::label_moved;
     events_.report(event);

@@ -110,17 +110,23 @@ void SampleTimes::begin_anew(const ifog_sample& sample) {
 }
 
 // The time of the next sample of a device with neither counter nor clock, by when it arrived. What comes in
-// one delivery was measured one after the other.
-double SampleTimes::spread(double arrived_s) {
-  constexpr double kFollows = 0.02;               // of what a time is beside its arrival, a sample
-  constexpr double kLeast = 0.5;                  // periods between two samples
-  constexpr double kHole_s = 0.25, kHole = 30.0;  // s, and periods: later than that it was not held up
+// one delivery was measured one after the other. How it comes shows in the first few samples.
+double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
+  constexpr double kFollows = 0.02;             // of what a time is beside its arrival, a sample
+  constexpr double kLeast = 0.5, kMost = 1.25;  // periods between two samples
+  constexpr double kEven = 0.85;                // at least, where each comes as it was measured
+  constexpr std::size_t kShows = 16;            // samples
   const double period_s = 1.0 / description_.nominal_rate_hz;
-  bunched_ = bunched_ || arrived_s - last_s_ < kLeast * period_s;
-  if (!bunched_) return arrived_s;
   const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
-  if (late_s > std::max(kHole_s, kHole * period_s)) return arrived_s;
-  return std::max(next_s + kFollows * late_s, last_s_ + kLeast * period_s);
+  const Silence::Next next{static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecond, late_s,
+                           sample.at_once};
+  const Silence::Ends ends = silence_.look(next, period_s);
+  silence_.take(next, ends);
+  bunched_ =
+      bunched_ || next.elapsed_s < kEven * period_s || sample.at_once > 1 || ends == Silence::Ends::hold_up;
+  if (ends == Silence::Ends::hold_up) return next_s;
+  if (ends == Silence::Ends::hole || (!bunched_ && taken_ >= kShows)) return arrived_s;
+  return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
 }
 
 void SampleTimes::refuse(double now) const {
@@ -168,7 +174,7 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   double now = seconds(sample);
   const bool by_arrival =
       clock_ == Clock::arrival && !zero_of_stamps_ns_ && description_.nominal_rate_hz > 0.0;
-  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(now);
+  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(sample, now);
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
     if (now == last_s_) {

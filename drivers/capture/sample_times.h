@@ -5,8 +5,8 @@
 // The first of these that the samples have:
 //   - the device's clock, over its wraps, and over where it was set while the device counted on;
 //   - the sequence counter, unwrapped, over the nominal rate, from 0;
-//   - the arrival times, from 0; of samples that come several at once, evenly by the nominal rate, with the
-//     arrivals followed slowly;
+//   - the arrival times, from 0; of samples that come several at once, or at times that scatter, evenly by
+//     the nominal rate, with the arrivals followed slowly; what was held up on its way goes on evenly, too;
 //   - the number of the sample over the nominal rate, from 0.
 // Where a log's own times are kept, they are what the samples are known by: arrival times stand as they are,
 // and a counter counts on from the first of them.
@@ -19,6 +19,7 @@
 #include "drivers/capture/time_stamps.h"
 #include "drivers/ifog/device_timeline.h"
 #include "drivers/ifog/driver.h"
+#include "drivers/ifog/silence.h"
 
 namespace ifog {
 
@@ -66,7 +67,7 @@ class SampleTimes {
   void count_from(const ifog_sample& sample);
   DeviceTimeline::Step step_to(const ifog_sample& sample);
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
-  [[nodiscard]] double spread(double arrived_s);
+  [[nodiscard]] double spread(const ifog_sample& sample, double arrived_s);
   void begin_anew(const ifog_sample& sample);
   void refuse(double now) const;
 
@@ -82,7 +83,8 @@ class SampleTimes {
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;
-  bool bunched_ = false;  // several samples have one time of arrival
+  bool bunched_ = false;  // several samples have one time of arrival, or times that scatter
+  Silence silence_;       // of arrival times
   std::optional<std::int64_t> zero_of_stamps_ns_;
 };
 

@@ -4,10 +4,11 @@
 //
 // The counter goes round. How often it did, the device's clock says; else the times of arrival, where whole
 // rounds fit the time to what those times and the rate are worth: behind a gap that shows, and behind a
-// silence of more than kLongSilence_s. What else comes late and continues the count is only late; where it
-// has not drained for kStands_s, the labels follow it. So exactly whole rounds that are lost within that time
-// cannot be told from a late delivery or a pause and are taken for one, and the other way round a delay
-// beyond it that is a whole number of rounds for a loss.
+// silence of more than kLongSilence_s. Where that time is one in which frames may have been held up, those
+// that follow are waited for: what was held up comes with less time between them than they took, and what was
+// lost does not. What else comes late and continues the count is only late; where it has not drained for
+// kStands_s, the labels follow it. So exactly whole rounds that are lost within kLongSilence_s cannot be told
+// from a late delivery or a pause and are taken for one.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <optional>
 
 #include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
 
 namespace ifog {
@@ -41,6 +43,7 @@ class DeviceCount {
     bool out_of_turn = false;  // came again, or after one that follows it; all else here says nothing
     bool clock_moved = false;  // the times of arrival have moved against the count, for good
     double late_s = 0.0;       // so much later than the count: held up on its way, as what follows will show
+    bool same_gap = false;     // what is missing belongs to the gap that was told when it began to be late
   };
 
   // modulus: the counter's, > 0. period_s > 0.
@@ -93,9 +96,11 @@ class DeviceCount {
       jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
     }
     if (step.by_clock) took_by_clock_s_ = step.dt_s / static_cast<double>(samples);
-    if (elapsed >= 0.0) behind_s_ = std::max(0.0, behind_s_ + (1.0 - kClockDoubt) * elapsed - step.dt_s);
+    if (elapsed >= 0.0) prompt_.came(elapsed, step.dt_s);
+    refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
+    follow_doubt(frame, step);
+    follow_lateness(frame, elapsed, step);
     last_ = frame;
-    follow_lateness(elapsed, step);
   }
   // What the clock of the frame just taken is held for.
   void keep_time(std::int64_t time_ns) noexcept { last_.time_ns = time_ns; }
@@ -108,6 +113,10 @@ class DeviceCount {
   static constexpr double kStands_s = 1.5;    // it has come to stand when for so long it has not become less
   static constexpr double kShrinks_s = 0.03;  // by more than this
   static constexpr double kLongest_s = 60.0;  // and what does not come to stand is left at that
+  static constexpr double kDrains = 0.02;     // of the time: what was held up drains by more
+  static constexpr double kPaces = 200.0;     // so many times what times scatter by tell that
+  static constexpr int kPaceFrames = 8;
+  static constexpr double kAgain_s = 0.25;  // a silence of more is another one
   // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
   static constexpr double kRateDoubt = 0.05;
   static constexpr double kLeastDoubt = 2e-5;
@@ -139,7 +148,10 @@ class DeviceCount {
     place_ = kFirstPlace;
     recent_.forget();
     recent_.add(place_, 0, frame.digest);
-    late_s_ = took_s_ = counted_s_ = jitter_s_ = behind_s_ = took_by_clock_s_ = 0.0;
+    late_s_ = took_s_ = counted_s_ = jitter_s_ = took_by_clock_s_ = 0.0;
+    prompt_.forget();
+    refused_ = false;
+    doubt_ = {};
     last_ = frame;
   }
 
@@ -203,7 +215,8 @@ class DeviceCount {
     }
     const double rounds = rounds_by_clock(passed_s, static_cast<double>(difference), frame.grain_s);
     // No clock is ahead of the times of arrival, but by what was held up on its way.
-    if (rounds > 0.0 && elapsed_s >= 0.0 && passed_s > elapsed_s + behind_s_ + kPrompt_s) return false;
+    if (rounds > 0.0 && elapsed_s >= 0.0 && passed_s > elapsed_s + prompt_.behind_s() + kPrompt_s)
+      return false;
     const double claimed = static_cast<double>(difference) + rounds * static_cast<double>(modulus_);
     if (!agree(claimed, passed_s, elapsed_s, frame.grain_s)) return false;
     step.by_clock = true;
@@ -217,21 +230,35 @@ class DeviceCount {
     if (spare <= kClockSamples + grain_s / nominal_s_) return 0.0;
     return std::max(0.0, std::round(spare / static_cast<double>(modulus_)));
   }
-  // Where clock and count disagree, the times of arrival say which of them to follow; the clock by far more
-  // than the samples ever took only where that time was to be seen, or where nobody knows how long one takes
-  // but the stated rate.
+  // Where clock and count disagree, a clock that goes on as before is followed. Else the times of arrival say
+  // which of them: the count where it is as near to them as they scatter by, or where the clock would be
+  // ahead of them; the clock by far more than the samples ever took only where that time was to be seen, or
+  // where nobody knows how long one takes but the stated rate.
   [[nodiscard]] bool agree(double claimed, double passed_s, double elapsed_s, double grain_s) const noexcept {
     if (std::abs(claimed * nominal_s_ - passed_s) <= apart_s(passed_s) + grain_s) return true;
     const bool usual = passed_s <= kLonger * claimed * std::max(nominal_s_, took_by_clock_s_);
     if (elapsed_s < 0.0) return usual || took_by_clock_s_ == 0.0;
+    if (took_by_clock_s_ > 0.0) {
+      const double as_before_s = claimed * took_by_clock_s_;
+      if (std::abs(as_before_s - passed_s) <=
+          kClockSamples * took_by_clock_s_ + kClockDoubt * passed_s + grain_s)
+        return true;
+      if (prompt_.ahead(passed_s, elapsed_s, apart_s(passed_s) + grain_s)) return false;
+      if (!refused_ && std::abs(as_before_s - elapsed_s) <= prompt_s()) return false;
+    }
     return std::abs(passed_s - elapsed_s) <= kPrompt_s + kRateDoubt * elapsed_s &&
            (usual || elapsed_s >= 0.5 * passed_s);
   }
 
+  // Behind another silence: how that drains is still to be seen.
+  [[nodiscard]] bool held_again(const Frame& frame) const noexcept {
+    return frame.quiet_s > kAgain_s + static_cast<double>(difference(frame.sequence)) * nominal_s_;
+  }
   // Whether lateness has come to stand: for some time of arrival it has not become less. What drains from a
   // line that is but little faster than the sensor still becomes less.
   [[nodiscard]] bool stands(const Timed& frame, double late_s) const noexcept {
-    return late_s_ > 0.0 && late_s >= window_late_s_ - kShrinks_s && window_s_ + frame.elapsed_s >= kStands_s;
+    return late_s_ > 0.0 && !held_again(frame) && late_s >= window_late_s_ - kShrinks_s &&
+           window_s_ + frame.elapsed_s >= kStands_s;
   }
   // Nothing is to be told of it any more: it has drained, or will not stand.
   [[nodiscard]] bool over(const Timed& frame, double late_s) const noexcept {
@@ -244,8 +271,9 @@ class DeviceCount {
     else if (late_s_ > 0.0 ? !over(frame, late_s) : late_s > kLate_s)
       step.late_s = late_s;
   }
-  void follow_lateness(double elapsed_s, const Step& step) noexcept {
-    if (late_s_ == 0.0 || step.late_s < window_late_s_ - kShrinks_s) {
+  // Before the frame is the last one.
+  void follow_lateness(const Frame& frame, double elapsed_s, const Step& step) noexcept {
+    if (late_s_ == 0.0 || held_again(frame) || step.late_s < window_late_s_ - kShrinks_s) {
       window_late_s_ = step.late_s;
       window_s_ = 0.0;
     } else {
@@ -253,6 +281,32 @@ class DeviceCount {
     }
     episode_s_ = late_s_ == 0.0 ? 0.0 : episode_s_ + std::max(0.0, elapsed_s);
     late_s_ = step.late_s;
+  }
+
+  // Rounds may have been lost where this one is.
+  [[nodiscard]] static bool doubtful(const Frame& frame, std::uint64_t difference) noexcept {
+    return difference != 1 || frame.quiet_s > kLongSilence_s;
+  }
+  // So long frames have to come at the pace at which they were taken.
+  [[nodiscard]] double paced_s() const noexcept { return std::clamp(kPaces * scatter_s_, 0.1, kStands_s); }
+  [[nodiscard]] bool at_pace(const Timed& frame, double late_s) const noexcept {
+    return doubt_.frames >= kPaceFrames && std::abs(late_s - doubt_.late_s) <= kDrains * paced_s() &&
+           doubt_.paced_s + frame.elapsed_s >= paced_s();
+  }
+  void follow_doubt(const Frame& frame, const Step& step) noexcept {
+    const std::uint64_t difference = this->difference(frame.sequence);
+    if (step.late_s == 0.0 || (late_s_ == 0.0 && !doubtful(frame, difference))) {
+      doubt_ = {};
+      return;
+    }
+    const double took_s = static_cast<double>(difference) * nominal_s_;
+    if (doubtful(frame, difference)) doubt_.rounds = true;
+    if (frame.quiet_s > took_s + kPrompt_s) doubt_.quiet_s += frame.quiet_s - took_s;
+    doubt_.gap = doubt_.gap || step.gap;
+    const bool drains = std::abs(step.late_s - doubt_.late_s) > kDrains * paced_s();
+    if (drains) doubt_.late_s = step.late_s;
+    doubt_.frames = drains ? 0 : doubt_.frames + 1;
+    doubt_.paced_s = drains ? 0.0 : doubt_.paced_s + std::max(0.0, frame.quiet_s);
   }
 
   // Whole rounds of the counter in a time that it does not account for.
@@ -269,15 +323,20 @@ class DeviceCount {
     step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_s_;
     // So do the times of arrival say it at the end of a backlog, whose own were not known.
     const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
-    if (known && elapsed_s > 0.0 &&
-        (frame.reopened || after_backlog ||
-         (late_s_ == 0.0 && (difference != 1 || frame.quiet_s > kLongSilence_s)))) {
+    // The same count again is a round on, or nothing.
+    const bool at_once = frame.reopened || after_backlog || difference == 0 ||
+                         (late_s_ == 0.0 && doubtful(frame, difference) && step.late_s <= kLate_s);
+    const bool came_to_stand = stands(frame, step.late_s);
+    const bool told = doubt_.rounds && (came_to_stand || at_pace(frame, step.late_s));
+    if (known && elapsed_s > 0.0 && (at_once || told)) {
       // While a frame came again and again no round was lost: the device stood still.
-      const double rounds = rounds_in(std::min(step.late_s, frame.quiet_s), elapsed_s);
+      const double quiet_s = at_once ? frame.quiet_s : doubt_.quiet_s;
+      const double rounds = rounds_in(std::min(step.late_s, quiet_s), elapsed_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
+      step.same_gap = !at_once && rounds > 0.0 && doubt_.gap;
       if (rounds > 0.0) step.late_s = 0.0;
     }
-    if (stands(frame, step.late_s)) {
+    if (came_to_stand) {
       // What does not drain was no delivery: a pause, or rounds that were lost. Which of them nothing says,
       // but the labels follow.
       step.clock_moved = step.late_s > kLate_s || rounds_in(step.late_s, elapsed_s) >= 1.0;
@@ -310,13 +369,22 @@ class DeviceCount {
   std::uint64_t place_ = kFirstPlace;                                    // of the last one
   RecentFrames recent_;
   Arrivals arrivals_;
+  // Of frames that are late where rounds may have been lost.
+  struct Doubt {
+    bool rounds = false, gap = false;    // the latter: a gap has been told
+    double quiet_s = 0.0;                // in all, beside what was counted
+    double late_s = 0.0, paced_s = 0.0;  // since it last became less or more; so long
+    int frames = 0;
+  };
+  Doubt doubt_;
   double window_late_s_ = 0.0, window_s_ = 0.0,
          episode_s_ = 0.0;  // since lateness last became less; since it began
   double late_s_ = 0.0;     // the last frame, undecided
   double took_s_ = 0.0,
          counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
   double jitter_s_ = 0.0, scatter_s_ = 1e-3;
-  double behind_s_ = 0.0;         // the last frame, against the promptest of late: what else may come at once
+  PromptArrivals prompt_;
+  bool refused_ = false;          // the clock's step to the last frame was not followed
   double took_by_clock_s_ = 0.0;  // the last sample of which the clock said it; 0: none yet
 };
 

@@ -16,6 +16,7 @@
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/clock_steps.h"
 #include "drivers/ifog/device_count.h"
+#include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
 #include "drivers/ifog/rolling_stamp.h"
 
@@ -40,8 +41,9 @@ class DeviceTimeline {
     bool out_of_turn = false;  // it came again, or late: left out, and all else here says nothing
     bool clock_moved = false;  // as in DeviceCount::Step
     double late_s = 0.0;       // likewise
-    bool by_count = false;     // dt_s is by the counter, and not what time_ns has moved on by
-    bool clock_set = false;    // that is because the device's clock was set while it counted on
+    bool same_gap = false;     // likewise
+    bool by_count = false;     // dt_s is by the counter, or the rate, and not what time_ns has moved on by
+    bool clock_set = false;    // that is because the device's clock was set while it measured on
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
   };
 
@@ -62,6 +64,7 @@ class DeviceTimeline {
     arrivals_.forget();
     recent_.forget();
     clock_steps_.restart();
+    prompt_.forget();
     const Look now = look_at(frame, -1.0, frame.stamp.ns);
     count_.first(now.count);
     keep(frame, now, period_s_);
@@ -80,6 +83,7 @@ class DeviceTimeline {
     if (step.restarted) {
       recent_.forget();
       clock_steps_.restart();
+      prompt_.forget();
     }
     if (step.restarted || clock_jumped(frame, now)) step.time_ns = frame.stamp.ns;
     Look taken = now;
@@ -96,6 +100,7 @@ class DeviceTimeline {
   static constexpr double kShortStep_s = 1.0;   // of a clock that is set while it runs
   static constexpr double kSamplesLate = 64.0;  // at most
   static constexpr double kSilence_s = 2.0;     // nothing is late behind it
+  static constexpr double kNoPause_s = 0.25;    // no device begins anew within it
   static constexpr double kSamePlace = 0.25;    // of a period
 
   struct Look {
@@ -110,8 +115,8 @@ class DeviceTimeline {
     if (!last_clocked_) return frame.stamp.ns;
     std::optional<double> counted_s;
     if (counted(frame) && rate_known_) counted_s = count_.ahead_s(frame.sequence);
-    return stamp_.look(frame.stamp,
-                       {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s), counted_s});
+    return stamp_.look(frame.stamp, {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s),
+                                     counted_s, static_cast<double>(modulus_) * period_s_});
   }
   // Since any frame came, also one that was left out.
   [[nodiscard]] double quiet_s(const Frame& frame, double elapsed_s) const noexcept {
@@ -162,6 +167,7 @@ class DeviceTimeline {
     step.restarted = counted.restarted;
     step.clock_moved = counted.clock_moved;
     step.late_s = counted.late_s;
+    step.same_gap = counted.same_gap;
     return step;
   }
 
@@ -172,6 +178,12 @@ class DeviceTimeline {
     step.out_of_turn = !frame.reopened && (passed_ns == 0 ? same_again(now) : passed_ns < 0 && late(now));
     if (step.out_of_turn) return step;
     standing_ = passed_ns == 0 ? standing_ + 1 : 0;
+    if (was_set(frame, now, passed_s)) {
+      step.dt_s = period_s_;
+      step.by_count = step.clock_set = true;
+      clock_steps_.jumped();
+      return step;
+    }
     if (passed_ns < 0 || (now.elapsed_s >= 0.0 && ifog::restarted(passed_s, now.elapsed_s))) {
       step.restarted = step.gap = true;
       step.samples = now.elapsed_s > 0.0 && rate_known_ ? at_least_one(now.elapsed_s / period_s_) : 1;
@@ -186,6 +198,13 @@ class DeviceTimeline {
     }
     step.gap = step.samples > 1 || frame.reopened;
     return step;
+  }
+  // A clock alone that jumps back while the device measures on, or ahead of when its samples come.
+  [[nodiscard]] bool was_set(const Frame& frame, const Look& now, double passed_s) const noexcept {
+    if (frame.reopened || now.elapsed_s < 0.0 || !rate_known_) return false;
+    const bool goes_on = now.count.quiet_s <= kNoPause_s + 2.0 * period_s_;
+    const double slack_s = 2.0 * period_s_ + PromptArrivals::kDoubt * passed_s + clock_steps_.grain_s();
+    return passed_s < 0.0 ? goes_on : prompt_.ahead(passed_s, now.elapsed_s, slack_s) && goes_on;
   }
   // With the stamp of the frame before. Of a clock of coarse ticks it may be another that measured the same,
   // but for what is more of them than a tick holds.
@@ -213,6 +232,7 @@ class DeviceTimeline {
     if (counted(frame)) count_.keep_time(now.time_ns);
     last_clocked_ = frame.clocked;
     last_digest_ = now.digest;
+    if (now.elapsed_s >= 0.0) prompt_.came(now.elapsed_s, dt_s);
     arrivals_.came(frame.arrival_ns, dt_s);
     seen_ns_ = frame.arrival_ns;
   }
@@ -224,6 +244,7 @@ class DeviceTimeline {
   ClockSteps clock_steps_;
   RollingStamp stamp_;
   Arrivals arrivals_;
+  PromptArrivals prompt_;
   RecentFrames recent_;  // of a device with a clock alone; the count keeps its own
   bool last_clocked_ = false;
   std::uint64_t last_digest_ = 0, standing_ = 0;  // standing_: frames with this same stamp before

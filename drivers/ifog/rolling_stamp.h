@@ -25,6 +25,7 @@ class RollingStamp {
     double period_s = 0.0;              // of the samples; 0: not known
     double quiet_s = -1.0;              // since any came, by arrival; negative: not known
     std::optional<double> counted_s{};  // by the device's counter; none: it has none, or does not tell
+    double count_round_s = 0.0;         // in which that goes round; 0: it does not
   };
   // As far on as the counter says, where the stamp fits that. Else before the last one where that is nearer,
   // or where nothing is known and it is little or more than a device is silent for; but never where it is on
@@ -63,16 +64,31 @@ class RollingStamp {
                                      static_cast<std::uint64_t>(rounds) *
                                          static_cast<std::uint64_t>(wrap_ns));
   }
-  // Whole rounds to where the counter says; none: they do not fit, or behind a silence, in which the counter
-  // went round as well.
+  // Whole rounds to where the counter says; none: they do not fit. Behind a silence the counter may have gone
+  // round as well: those with which whole rounds of both agree, nearest to what the silence was.
   static std::optional<double> rounds_counted(double step_s, double wrap_s, const Between& between) noexcept {
     constexpr double kSamples = 2.0, kDoubt = 0.01, kTells = 0.25;
-    if (!between.counted_s || std::min(between.elapsed_s, between.quiet_s) > kSilence_s) return std::nullopt;
+    if (!between.counted_s) return std::nullopt;
+    if (const double silent_s = std::min(between.elapsed_s, between.quiet_s); silent_s > kSilence_s)
+      return rounds_of_both(step_s, wrap_s, silent_s, between);
     const double counted_s = *between.counted_s, rounds = std::round((counted_s - step_s) / wrap_s);
     const double slack_s =
         std::min(kSamples * between.period_s + kDoubt * std::abs(counted_s), kTells * wrap_s);
     const bool fits = std::abs(step_s + rounds * wrap_s - counted_s) <= slack_s;
     return fits && rounds * wrap_s < kMost_s ? std::optional(rounds) : std::nullopt;
+  }
+  static std::optional<double> rounds_of_both(double step_s, double wrap_s, double silent_s,
+                                              const Between& between) noexcept {
+    constexpr double kSamples = 2.0, kDoubt = 1e-3, kTells = 0.125, kMost = 1000.0;
+    const double most = std::floor((silent_s - step_s) / wrap_s + 0.5), count_s = between.count_round_s;
+    if (!(count_s > 0.0 && most >= 1.0 && most <= kMost)) return std::nullopt;
+    for (double rounds = most; rounds >= 0.0; --rounds) {
+      const double passed_s = step_s + rounds * wrap_s, beside_s = passed_s - *between.counted_s;
+      const double slack_s = std::min(kSamples * between.period_s + kDoubt * passed_s, kTells * count_s);
+      const double counts = std::max(0.0, std::round(beside_s / count_s));
+      if (std::abs(beside_s - counts * count_s) <= slack_s) return rounds;
+    }
+    return std::nullopt;
   }
   static bool goes_back(double step_s, double wrap_s, const Between& between) noexcept {
     constexpr double kSamples = 64.0, kNoPause_s = 60.0;

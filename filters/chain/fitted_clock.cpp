@@ -11,6 +11,7 @@ namespace {
 
 // A late arrival says little about the device's clock: its pull is limited to this many mean deviations.
 constexpr double kLatenessLimit = 4.0;
+constexpr double kShortest = 0.5;  // of the nominal period, that the true one can be
 constexpr double kMost_ns = 9e18;
 
 }  // namespace
@@ -28,13 +29,22 @@ double FittedClock::lateness_s(std::uint64_t steps, std::int64_t arrival_ns) con
          1e-9;
 }
 
+// By samples that come at more than twice the nominal rate, which is none that a device has.
+bool FittedClock::overtaken(std::int64_t arrival_ns) const noexcept {
+  const auto elapsed_ns = static_cast<double>(ns_between(origin_ns_, arrival_ns));
+  return !settled() && elapsed_ns >= 0.0 && counted_ns_ - elapsed_ns > kPrompt_s * 1e9 &&
+         elapsed_ns < kShortest * counted_ns_;
+}
+
 std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) noexcept {
+  counted_ns_ += nominal_ns_ * static_cast<double>(steps);
+  if (fitted_ > 0 && arrival_ns > 0 && overtaken(arrival_ns)) restart();
   const double predicted = time_ns_ + period_ns_ * static_cast<double>(steps);
   if (arrival_ns <= 0) {
     time_ns_ = predicted;
   } else if (fitted_ == 0) {
     origin_ns_ = arrival_ns;
-    time_ns_ = 0.0;
+    time_ns_ = counted_ns_ = 0.0;
     spread_ns_ = nominal_ns_;
     fitted_ = 1;
   } else {
@@ -47,7 +57,8 @@ std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) 
     const double h = 6.0 / ((n + 1.0) * (n + 2.0));
     time_ns_ = predicted + g * pull;
     // The first samples say nothing about the period that the nominal one does not say better.
-    if (n >= 8.0) period_ns_ = std::clamp(period_ns_ + h * pull, 0.5 * nominal_ns_, 2.0 * nominal_ns_);
+    if (n >= 8.0)
+      period_ns_ = std::clamp(period_ns_ + h * pull, kShortest * nominal_ns_, nominal_ns_ / kShortest);
     spread_ns_ += (std::abs(pull) - spread_ns_) * g;
     // Never so narrow that a small shift of the arrival times could not be followed.
     spread_ns_ = std::max(spread_ns_, 1e-3 * nominal_ns_);

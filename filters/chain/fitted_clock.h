@@ -5,7 +5,8 @@
 //
 // Growing-memory least squares (E. Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 1.2.10:
 // g-h gains 2(2n+1)/((n+1)(n+2)) and 6/((n+1)(n+2))) up to `memory` samples, then with fixed gains, which
-// follows drift.
+// follows drift. Nothing comes before it was taken: a line that those behind its first sample overtake began
+// with one that was held up, and begins anew.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +30,13 @@ class FittedClock {
   [[nodiscard]] double lateness_s(std::uint64_t steps, std::int64_t arrival_ns) const noexcept;
 
  private:
+  [[nodiscard]] bool overtaken(std::int64_t arrival_ns) const noexcept;
+
   double nominal_ns_;
   double period_ns_;
   std::int64_t origin_ns_ = 0;  // keeps time_ns_ small: a double of ns since the epoch has a grain of 256 ns
   double time_ns_ = 0.0;        // of the last sample, after origin
+  double counted_ns_ = 0.0;     // since the line began, at the nominal period
   double spread_ns_ = 0.0;      // running mean of |arrival − line|
   std::int64_t memory_;
   std::int64_t fitted_ = 0;  // samples in the line

@@ -11,11 +11,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
-constexpr double kPace = 0.75;  // of the period, and samples are not held up any more
-// What comes at once when nothing was held up: adapters hand on what was in portions of more than so few.
-constexpr std::uint32_t kFew = 2;
-constexpr double kUsual = 1.5, kFollows = 0.05;
-constexpr double kSetBack_s = 1.0;  // of the times of arrival: more than any order of delivery
+constexpr double kGapsAreNone = 5.0;  // s of samples that all come behind one
+constexpr double kSetBack_s = 1.0;    // of the times of arrival: more than any order of delivery
 
 int clock_memory(double rate_hz) {
   return static_cast<int>(std::clamp(kClockMemory_s * rate_hz, 64.0, 100000.0));
@@ -59,6 +56,8 @@ double Incrementer::clock_offset_ppm() const noexcept {
 }
 
 double Incrementer::interval_error() const noexcept {
+  if (static_cast<double>(gaps_in_a_row_) >= kGapsAreNone * facts_.nominal_rate_hz + 64.0)
+    return row_s_ / static_cast<double>(gaps_in_a_row_) / period_s_ - 1.0;
   const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
 }
@@ -77,23 +76,20 @@ DeviceTimeline::Frame Incrementer::frame_of(const Reading& reading) const noexce
   return frame;
 }
 
-Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) const noexcept {
-  // Nothing counts, so only a silence that scheduling does not explain is a gap, and only when what ends it
-  // was not held up: it came alone, or what comes behind it does so at its pace.
+Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) noexcept {
   Step step;
   const double elapsed_s = arrivals_.elapsed_s(reading.arrival_ns);
   const double period_s = clock_.period_s();
   const double late_s = clock_.lateness_s(1, reading.arrival_ns);
-  const bool late = elapsed_s >= 0.0 && late_s > std::max(0.25, 20.0 * period_s);
-  const bool alone = reading.at_once > 0 && reading.at_once <= kFew &&
-                     reading.at_once <= kUsual * usually_at_once_ &&
-                     reading.at_once * period_s <= kPrompt_s + period_s;
+  const Silence::Next next{elapsed_s, late_s, reading.at_once};
+  Silence::Ends ends = Silence::Ends::none;
   if (elapsed_s > 0.0 && reopened_)
     step.samples = at_least_one(elapsed_s / period_s);
-  else if (late && (late_s_ > 0.0 ? elapsed_s >= kPace * period_s : alone))
-    step.samples = at_least_one(late_s / period_s + 1.0);
-  else if (late)
-    step.late_s = late_s;
+  else
+    ends = silence_.look(next, period_s);
+  if (ends == Silence::Ends::hole) step.samples = at_least_one(late_s / period_s + 1.0);
+  if (ends == Silence::Ends::hold_up) step.late_s = late_s;
+  silence_.take(next, ends);
   step.gap = step.samples > 1;
   step.dt_s = static_cast<double>(step.samples) * period_s;
   return step;
@@ -102,9 +98,6 @@ Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) const noe
 Incrementer::Step Incrementer::step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept {
   if (timeline_.tells(frame)) return timeline_.next(frame);
   Step step = step_by_arrival(reading);
-  late_s_ = step.late_s;
-  const auto at_once = static_cast<double>(reading.at_once);
-  usually_at_once_ += (usually_at_once_ > 0.0 ? kFollows : 1.0) * (at_once - usually_at_once_);
   step.gap = step.gap || reopened_;
   step.time_ns = timeline_.first(frame);
   return step;
@@ -239,9 +232,16 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     for (PlausibleRate& rate : rate_) rate.forget();
     for (PlausibleAngle& angle : angle_) angle.miss();
     for (PlausibleValue& channel : frame_channel_) channel.forget();
-    ++counts_.gaps;
+    counts_.gaps += now.same_gap ? 0 : 1;
     counts_.missing += now.samples - 1;
     clock_.restart();
+  }
+  const bool in_a_row = now.gap && !now.restarted && frame.clocked && !frame.counts;
+  gaps_in_a_row_ = in_a_row ? gaps_in_a_row_ + 1 : 0;
+  row_s_ = in_a_row ? row_s_ + now.dt_s : 0.0;
+  if (now.clock_set) {
+    out.flags |= kSensorClockSet;
+    ++counts_.sensor_clock_sets;
   }
   if (now.restarted) {
     ++counts_.restarts;

@@ -6,9 +6,7 @@
 // bits, whatever the scheduling did to arrival times, for every device that counts.
 //
 // What is new, came again or late, and how many samples are missing: drivers/ifog/device_timeline.h for a
-// device that counts or has a clock. Of one with neither a silence is a gap before the sample that ends it
-// where that came in no larger portion than usual, or else when what follows comes at its pace; what comes at
-// once was held up on its way, and nothing of it is missing.
+// device that counts or has a clock, drivers/ifog/silence.h for one with neither.
 #pragma once
 
 #include <array>
@@ -16,6 +14,7 @@
 
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/device_timeline.h"
+#include "drivers/ifog/silence.h"
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
@@ -36,6 +35,7 @@ struct IncrementerCounts {
   std::uint64_t implausible = 0;          // of those: marked good, but a value that cannot be
   std::uint64_t channel_implausible = 0;  // values of channels that cannot be; the one before is held
   std::uint64_t clock_steps = 0;          // times the clock of the labels was set: they moved, nothing else
+  std::uint64_t sensor_clock_sets = 0;    // times the device's own clock was set while it measured on
   std::uint64_t pauses = 0;  // times they moved because the device had not counted on for a while
 };
 
@@ -54,16 +54,16 @@ class Incrementer {
   [[nodiscard]] std::uint32_t axes_seen() const noexcept { return axes_seen_; }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
-  // By which part of it the true interval is longer than the one that is used: of a device that counts and
-  // has no clock that is the nominal one, whatever it really sends at. 0 for all others, and until it is
-  // known.
+  // By which part of it the true interval is longer than the nominal one, where that is used: of a device
+  // that counts and has no clock for each, whatever it really sends at; of one with a clock alone to tell how
+  // many are missing, so that every one of them comes behind a gap. 0 for all others, and until it is known.
   [[nodiscard]] double interval_error() const noexcept;
 
  private:
   using Step = DeviceTimeline::Step;
   [[nodiscard]] Step step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept;
   [[nodiscard]] DeviceTimeline::Frame frame_of(const Reading& reading) const noexcept;
-  [[nodiscard]] Step step_by_arrival(const Reading& reading) const noexcept;
+  [[nodiscard]] Step step_by_arrival(const Reading& reading) noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
@@ -82,9 +82,9 @@ class Incrementer {
   };
   Last last_;
   Arrivals arrivals_;
-  // Of a device that does not count:
-  double late_s_ = 0.0;           // the last sample, undecided
-  double usually_at_once_ = 0.0;  // so many come in one portion
+  std::uint64_t gaps_in_a_row_ = 0;  // of a device with a clock alone
+  double row_s_ = 0.0;
+  Silence silence_;  // of a device that does not count
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle

@@ -68,11 +68,12 @@ struct Reading {
 };
 
 enum IncrementFlags : std::uint32_t {
-  kGapBefore = 1,     // samples are missing before this one
-  kMerged = 2,        // several samples in one, because the filter could not keep up
-  kInvalid = 4,       // the device marks an axis invalid, or its value is none that can be
-  kClockStep = 8,     // the wall clock has been set: utime has moved against the sample before, dt has not
-  kAtFullScale = 16,  // the value reaches the end of the sensor's range, or is beyond; also kInvalid
+  kGapBefore = 1,        // samples are missing before this one
+  kMerged = 2,           // several samples in one, because the filter could not keep up
+  kInvalid = 4,          // the device marks an axis invalid, or its value is none that can be
+  kClockStep = 8,        // the wall clock has been set: utime has moved against the sample before, dt has not
+  kAtFullScale = 16,     // the value reaches the end of the sensor's range, or is beyond; also kInvalid
+  kSensorClockSet = 32,  // the device's own clock has been set: device_time_ns has moved, nothing else has
 };
 
 // The angle turned over one step, and what came with it.

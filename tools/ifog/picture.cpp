@@ -13,6 +13,7 @@
 #include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
@@ -26,7 +27,7 @@ namespace {
 
 struct Arguments {
   std::string log, channel, axis, picture;
-  double from_s = 0.0;
+  TimePart part;
 };
 
 void run(const Arguments& a) {
@@ -37,13 +38,13 @@ void run(const Arguments& a) {
     throw std::runtime_error(a.log + ": is no log of lcm-logger");
   const Table table = read_published(log, a.channel);
   const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
-  std::size_t first = 0;
-  while (first < table.time_s.size() && table.time_s[first] < a.from_s) ++first;
-  if (first == table.time_s.size()) throw std::runtime_error(a.log + ": nothing after --from");
-  const auto from_first = [first](const std::vector<double>& values, double scale) {
-    return report::scaled({values.begin() + static_cast<std::ptrdiff_t>(first), values.end()}, scale);
+  const TimePart::Rows rows = a.part.rows(table.time_s, table.origin, a.log);
+  const auto shown = [&rows](const std::vector<double>& values, double scale) {
+    return report::scaled({values.begin() + static_cast<std::ptrdiff_t>(rows.begin),
+                           values.begin() + static_cast<std::ptrdiff_t>(rows.end)},
+                          scale);
   };
-  const report::TimeAxis time(table.time_s[first], table.time_s.back());
+  const report::TimeAxis time(table.time_s[rows.begin], table.time_s[rows.end - 1]);
   report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.", time.axis(),
                      {"rate (°/h)", false, {}, {}});
   std::size_t axes = 0, curves = 0;
@@ -53,14 +54,14 @@ void run(const Arguments& a) {
     if (!raw && !denoised) continue;
     ++curves;
     rate.line_in_time(raw ? report::Role::kRaw : report::Role::kAfter, raw ? "raw" : "denoised",
-                      time(from_first(table.time_s, 1.0)), from_first(column.values, 1.0 / kDegreePerHour));
+                      time(shown(table.time_s, 1.0)), shown(column.values, 1.0 / kDegreePerHour));
   }
   if (curves != 2)
     throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +
                              (axes == 1 ? "none, the sensor has one axis" : "x, y or z"));
   AllanOptions options;
   options.axis = a.axis;
-  options.part.from.whole_s = a.from_s;
+  options.part = a.part;
   options.keep_motion = true;  // what was denoised is shown, moving or not
   std::vector<AllanRecord> records;
   for (AllanRecord& record : allan_records(a.log, long_table(table), options))
@@ -84,8 +85,7 @@ void add_picture(CLI::App& app) {
   command->add_option("log", a->log, "Log of lcm-logger")->required();
   command->add_option("--channel", a->channel, "IFOG_<NAME>, where the log has several");
   command->add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
-  command->add_option("--from", a->from_s, "Leave out what is before this time, s")
-      ->check(CLI::NonNegativeNumber);
+  a->part.add_to(*command);
   command->add_option("--output", a->picture, "Picture, .svg or .png")
       ->required()
       ->check(report::wrong_picture_name, "")

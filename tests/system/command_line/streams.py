@@ -195,6 +195,9 @@ class Checks:
         for command in ('allan "$capture"', "drivers", 'compare "$capture"'):
             result = shell(f'set -o pipefail; "$ifog" {command} | true', capture=self.capture)
             assert result.returncode == 141 and not result.stderr, f"{command} | true: exit {result.returncode}: {result.stderr}"
+        # What has no end is ended by who reads it, though nothing is heard.
+        result = shell('set -o pipefail; timeout 20 "$ifog" monitor --json - --seconds 15 --lcm-url memq:// | true')
+        assert result.returncode == 141 and not result.stderr, f"monitor | true: exit {result.returncode}: {result.stderr}"
         folder = self.fresh("limit")
         result = shell('ulimit -f 8; cd "$folder" && "$ifog" denoise "$capture" --output out.csv', folder=folder, capture=self.capture)
         assert result.returncode == 1 and not os.listdir(folder), f"exit {result.returncode}: {os.listdir(folder)}"

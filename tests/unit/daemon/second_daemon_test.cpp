@@ -59,6 +59,26 @@ TEST_F(SecondDaemon, OneStateFolderIsOneDaemons) {
   EXPECT_EQ(end(), 0) << said();
 }
 
+// A capture may be read by many; its channel is one daemon's.
+TEST_F(SecondDaemon, WhoPublishesOnATakenChannelSaysSo) {
+  write("ifogd.toml", kDaemon + sensor("nose"));
+  start();
+  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; })) << said();
+  EXPECT_EQ(times_said("another daemon publishes"), 0);
+  write("capture.csv", "time_s,rate_radps\n0,0.1\n0.01,0.1\n0.02,0.1\n");
+  for (const std::string name : {"nose", "tail"}) {
+    write("other.toml", std::string(kDaemon) + "[[sensor]]\nname = \"" + name +
+                            "\"\ndriver = \"capture\"\n[sensor.options]\nrate_hz = 100\n" +
+                            "[sensor.transport]\ntype = \"file\"\npath = \"capture.csv\"\n");
+    run_second("other.toml");
+    EXPECT_EQ(
+        second_said().find("another daemon publishes on IFOG_NOSE of this lcm_url") != std::string::npos,
+        name == "nose")
+        << second_said();
+  }
+  EXPECT_EQ(end(), 0) << said();
+}
+
 TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
   write("ifogd.toml", kDaemon + sensor("nose") + "[sensor.record]\nfolder = \"rec\"\n");
   const std::string record = "timeout 60 " IFOG_BINARY_DIR "/tools/ifog/ifog record --seconds 1 --output " +

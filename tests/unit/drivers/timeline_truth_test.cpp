@@ -22,7 +22,7 @@ enum class Comes { one_by_one, in_twos, in_fours, in_eights, untimed, every_16_m
 enum class Trouble { none, lost, twice, exchanged, held_up, clock_set };
 
 struct Stream {
-  int bits = 8;  // of the counter
+  int bits = 8;  // of the counter; 0: it has none
   double rate_hz = 200.0;
   std::int64_t wrap_ns = 0, tick_ns = 0;  // of the clock; tick 0: it has none
   double noise_lsb = 0.0;                 // of the values; 0: none of them is another's
@@ -109,8 +109,10 @@ std::vector<Sent> make(const Stream& stream, double set_s, std::uint32_t seed) {
     const double held_until_s = static_cast<double>(highest / 900 * 900 + 700) / stream.rate_hz + 0.5;
     latest_s = std::max(latest_s, held ? held_until_s : at_s);
     sent.sample.arrival_ns = stream.comes == Comes::untimed ? 0 : kArrive_ns + std::llround(latest_s * 1e9);
-    sent.sample.sequence = static_cast<std::uint32_t>(n % (std::uint64_t{1} << stream.bits));
-    sent.sample.flags = IFOG_SAMPLE_SEQUENCE;
+    if (stream.bits > 0) {
+      sent.sample.sequence = static_cast<std::uint32_t>(n % (std::uint64_t{1} << stream.bits));
+      sent.sample.flags = IFOG_SAMPLE_SEQUENCE;
+    }
     if (stream.tick_ns > 0) {
       const double own_s = 300.0 + static_cast<double>(n) / stream.rate_hz + (n > kSamples / 2 ? set_s : 0.0);
       std::int64_t stamp_ns = std::llround(own_s * 1e9) / stream.tick_ns * stream.tick_ns;
@@ -130,7 +132,7 @@ ifog_description description_of(const Stream& stream) {
   ifog_description out{};
   out.kind = IFOG_RATE;
   out.axes = 1;
-  out.sequence_modulus = 1U << static_cast<unsigned>(stream.bits);
+  out.sequence_modulus = stream.bits > 0 ? 1U << static_cast<unsigned>(stream.bits) : 0;
   out.has_device_time = stream.tick_ns > 0 ? 1 : 0;
   out.nominal_rate_hz = stream.rate_hz;
   return out;
@@ -169,6 +171,8 @@ void expect_truth(const Stream& stream, double set_s = 0.0) {
   EXPECT_NEAR(dt_s, static_cast<double>(last + 1) / stream.rate_hz, 1e-6 + 2.0 * tick_s);
   EXPECT_NEAR(angle, truth, 0.05 * (1e-6 + 6.0 * tick_s));
   EXPECT_EQ(builder.clock_sets(), set_s == 0.0 ? 0U : 1U);
+  EXPECT_EQ(chain.counts().sensor_clock_sets, set_s == 0.0 ? 0U : 1U);
+  EXPECT_EQ(chain.counts().gaps == 0, missing == 0);
   EXPECT_EQ(builder.missing(), missing);
   EXPECT_EQ(builder.restarts(), 0U);
   EXPECT_EQ(builder.repeated(), sent.size() - taken);
@@ -219,6 +223,22 @@ TEST(TimelineTruth, AClockThatIsSetMakesNeitherTimeNorAngle) {
               SCOPED_TRACE(testing::Message() << stream << ", set by " << set_s);
               expect_truth(stream, set_s);
             }
+}
+
+// By less than the arrival times of a read are known to, where counter and clock both go on; and of a device
+// whose clock is all that it has.
+TEST(TimelineTruth, AClockThatIsSetByLittleOrAloneMakesNeitherTimeNorAngle) {
+  for (const int bits : {0, 7, 16})
+    for (const double rate_hz : {200.0, 500.0, 1000.0})
+      for (const std::int64_t wrap_ns : {std::int64_t{0}, std::int64_t{4'294'967'296'000}})
+        for (const Comes comes : {Comes::one_by_one, Comes::in_twos, Comes::in_fours, Comes::every_16_ms})
+          for (const double set_s : {-3.0, -0.5, 0.025, 0.04, 0.1, 0.5, 3.0, 20.0}) {
+            // Short of a portion's length nothing but a counter tells it from samples that are missing.
+            if (bits == 0 && std::abs(set_s) < 0.1) continue;
+            const Stream stream{bits, rate_hz, wrap_ns, 1000, 0.0, comes, Trouble::clock_set};
+            SCOPED_TRACE(testing::Message() << stream << ", set by " << set_s);
+            expect_truth(stream, set_s);
+          }
 }
 
 constexpr const char* kName[] = {"None", "Lost", "Twice", "Exchanged", "HeldUp", "ClockSet"};

@@ -112,16 +112,19 @@ std::vector<std::string> axis_names(std::size_t axes) {
 }
 
 // The sensor's own clock where it has one, from the first message on. One that jumps back while the fitted
-// time goes on has begun anew, and goes on by that. Where that was set, or does not go on either, it is by
-// the message's own step.
+// time goes on has begun anew, or was set, and goes on by that. Where that was set, or does not go on either,
+// it is by the message's own step.
 class SensorSeconds {
  public:
   // Later than the one before, or -1: neither clock goes on.
   double of(const rate_t& message) {
     const std::int64_t fitted_ns = message.utime * 1000;
     std::int64_t now_ns = (message.sensor_time_ns != -1 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
-    const bool set = (message.flags & rate_t::FLAG_CLOCK_STEP) != 0;
-    if (started_ && (now_ns <= last_ns_ || (set && message.sensor_time_ns == -1))) {
+    const bool sensor = message.sensor_time_ns != -1, set = (message.flags & rate_t::FLAG_CLOCK_STEP) != 0;
+    const std::int32_t own =
+        sensor ? std::int32_t{rate_t::FLAG_SENSOR_CLOCK_SET} : std::int32_t{rate_t::FLAG_CLOCK_STEP};
+    const bool own_set = (message.flags & own) != 0;
+    if (started_ && (now_ns <= last_ns_ || own_set)) {
       const bool goes_on = !set && fitted_ns > last_fitted_ns_;
       const std::int64_t step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);
       if (step_ns <= 0) return -1.0;

@@ -34,7 +34,8 @@ void add(const IncrementerCounts& from, const IncrementerCounts& less, Increment
        {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
         &IncrementerCounts::repeated, &IncrementerCounts::restarts, &IncrementerCounts::invalid,
         &IncrementerCounts::saturated, &IncrementerCounts::implausible,
-        &IncrementerCounts::channel_implausible, &IncrementerCounts::clock_steps})
+        &IncrementerCounts::channel_implausible, &IncrementerCounts::clock_steps,
+        &IncrementerCounts::sensor_clock_sets, &IncrementerCounts::pauses})
     to.*count += from.*count - less.*count;
 }
 

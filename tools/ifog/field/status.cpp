@@ -16,6 +16,7 @@
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/hertz.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/books.h"
@@ -122,9 +123,9 @@ void say_live(const status_t& status) {
 // adopt: the command that would.
 void say_sensor(const std::string& name, const status_t* live, const Kept& kept, const std::string& adopt) {
   if (live != nullptr) {
-    say("%s  %s%s%s  %.1f Hz in, %.1f Hz published\n", printable(name).c_str(), state_name(live->state),
-        live->fault.empty() ? "" : ": ", printable(live->fault).c_str(), live->input_rate_hz,
-        live->output_rate_hz);
+    say("%s  %s%s%s  %s in, %s published\n", printable(name).c_str(), state_name(live->state),
+        live->fault.empty() ? "" : ": ", printable(live->fault).c_str(),
+        in_hertz(live->input_rate_hz).c_str(), in_hertz(live->output_rate_hz).c_str());
     say_live(*live);
   } else {
     say("%s  nothing heard\n", printable(name).c_str());

@@ -68,6 +68,8 @@ class Monitor {
   void take(const lcm_recv_buf_t& buffer, const std::string& channel);
   template <typename Message>
   void take_message(const lcm_recv_buf_t& buffer, const std::string& name);
+  void tell(const std::string& line);
+  [[nodiscard]] bool reader_gone() const;
   void end_interval(double seconds);
   void say_what_is_waited_for();
   bool obey(Screen::Key key);  // false: quit
@@ -93,6 +95,22 @@ class Monitor {
   std::size_t lines_drawn_ = 0;
 };
 
+// Lines without an end: who reads them ends it, as with what is said, also while nothing comes.
+bool Monitor::reader_gone() const {
+  if (!json_ || !is_standard_output(options_.json)) return false;
+  pollfd reader{json_->descriptor(), 0, 0};
+  return poll(&reader, 1, 0) > 0 && (reader.revents & POLLERR) != 0;
+}
+
+void Monitor::tell(const std::string& line) {
+  try {
+    json_->write(line);
+  } catch (const std::runtime_error&) {
+    if (reader_gone()) throw ReaderGone();
+    throw;
+  }
+}
+
 template <typename Message>
 void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name) {
   Message message{};
@@ -101,7 +119,7 @@ void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name
     return;
   }
   last_heard_ = Clock::now();
-  if (json_) json_->write(message_json(name, message) + "\n");
+  if (json_) tell(message_json(name, message) + "\n");
   // Increments are for programs: people see the same turn in the rates.
   if constexpr (!std::is_same_v<Message, imu_t>) sensors_[name].take(std::move(message));
 }
@@ -254,6 +272,7 @@ bool Monitor::run() {
   auto drawn = start_;
   for (bool on = true; on;) {
     const int ready = poll(wanted.data(), wanted.size(), 50);
+    if (reader_gone()) throw ReaderGone();
     if (ready > 0 && (wanted[0].revents & POLLIN) != 0) break;
     if (ready > 0 && (wanted[1].revents & POLLIN) != 0) listener_.take();
     const bool pressed = ready > 0 && wanted[2].revents != 0;

@@ -11,6 +11,7 @@
 #include "filters/units/field_units.h"
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
+#include "tools/ifog/console/hertz.h"
 #include "tools/ifog/field/books.h"
 #include "tools/ifog/monitor/spark_line.h"
 
@@ -84,7 +85,7 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
 std::string head_line(std::string_view name, const SensorView& sensor) {
   std::string out = printable(name);
   if (sensor.status()) out += std::string("  ") + state_name(sensor.status()->state);
-  if (sensor.judged()) out += text("  %.1f Hz", sensor.message_rate_hz());
+  if (sensor.judged()) out += "  " + in_hertz(sensor.message_rate_hz());
   out += text("  %lld messages", static_cast<long long>(sensor.messages()));
   if (!sensor.model().empty()) out += "  model " + printable(sensor.model());
   return out;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many come in a second, by a count that is read from time to time: by the last reading alone where many
+// come between two, else over the last ten that came.
+#pragma once
+
+#include <cstdint>
+
+namespace ifog {
+
+class CountedRate {
+ public:
+  // count: never less than before; interval_s: since the reading before, > 0; expected_hz > 0.
+  double of(std::int64_t count, double interval_s, double expected_hz) noexcept {
+    const auto more = static_cast<double>(count - last_count_);
+    last_count_ = count;
+    if (expected_hz * interval_s >= kMany) return more / interval_s;
+    since_s_ += interval_s;
+    quiet_s_ += interval_s;
+    counted_ += more;
+    if (more > 0.0) {
+      // From one that came to one that came; of fewer than ten only while there is nothing better.
+      const bool many = counted_ >= kMany;
+      if (!known_ || many) rate_hz_ = began_ ? counted_ / since_s_ : more / quiet_s_;
+      if (!began_ || many) counted_ = since_s_ = 0.0;
+      known_ = known_ || (began_ && many);
+      began_ = true;
+      quiet_s_ = 0.0;
+    } else if (quiet_s_ * expected_hz > kSilent && quiet_s_ > 2.0) {
+      rate_hz_ = counted_ = since_s_ = 0.0;
+      began_ = known_ = false;
+    }
+    return rate_hz_;
+  }
+
+ private:
+  static constexpr double kMany = 10.0;
+  static constexpr double kSilent = 3.0;  // periods, and none comes any more
+
+  std::int64_t last_count_ = 0;
+  double counted_ = 0.0, since_s_ = 0.0, quiet_s_ = 0.0, rate_hz_ = 0.0;
+  bool began_ = false, known_ = false;
+};
+
+}  // namespace ifog

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rate as people read it: a decimal, and of a slow one as many as it takes to see it.
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace ifog::tools {
+
+inline std::string in_hertz(double rate_hz) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), rate_hz > 0.0 && rate_hz < 1.0 ? "%.2g Hz" : "%.1f Hz", rate_hz);
+  return text.data();
+}
+
+}  // namespace ifog::tools
