@@ -8,7 +8,7 @@
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/lone_outliers.h"
 #include "filters/estimator/motion_pace.h"
-#include "filters/estimator/record_walk.h"
+#include "filters/estimator/rest_likelihood.h"
 #include "filters/estimator/start_up.h"
 
 namespace ifog {
@@ -19,13 +19,8 @@ constexpr double kMostGain = 0.999;
 // Between where a manoeuvre is found forwards and where it is found backwards it is under way; further apart
 // they are two.
 constexpr std::size_t kFurthest = 100'000;
-// Samples at rest that show how loud the noise is there.
-constexpr std::size_t kEnoughRest = 256;
 // A motion is looked at over this many samples at least, however quick the filter at rest is.
 constexpr double kLeastReach = 48.0;
-
-// So many of the samples at rest show it well enough.
-constexpr std::size_t kMostNoises = std::size_t{1} << 20U;
 
 // What one direction finds a sample of one axis to be.
 enum class Found : std::uint8_t { rest, kept_out, motion };
@@ -33,7 +28,6 @@ enum class Found : std::uint8_t { rest, kept_out, motion };
 // One direction of one axis.
 struct Pass {
   FiledVector<Found> found;
-  std::vector<double> noises;  // at rest: R so that the filter's variance comes out
   double least_gain = kMostGain;
 };
 
@@ -44,7 +38,7 @@ struct Axis {
 };
 
 Pass run(const FilterSettings& settings, const Axis& axis, bool backwards) {
-  const std::size_t length = axis.rate.size(), every = 1 + length / kMostNoises;
+  const std::size_t length = axis.rate.size();
   Estimator estimator(settings, 1, axis.period_s);
   EstimatorInput in;
   EstimatorOutput out;
@@ -63,8 +57,6 @@ Pass run(const FilterSettings& settings, const Axis& axis, bool backwards) {
     pass.found[i] = moving ? Found::motion : kept_out ? Found::kept_out : Found::rest;
     const double gain = std::min(out.gain[0], kMostGain);
     if (pass.found[i] != Found::rest || !(gain > 0.0)) continue;
-    // That of a settled filter is K R, its colour included.
-    if (!backwards && i % every == 0) pass.noises.push_back(out.variance_rad2ps2[0] / gain);
     pass.least_gain = std::min(pass.least_gain, gain);
   }
   return pass;
@@ -91,19 +83,6 @@ FiledVector<float> moving(const Pass& forwards, const Pass& backwards) {
   return all;
 }
 
-// R at rest: the median, as the variance is larger where a change of rate was only suspected. Of an axis that
-// hardly rests, what third differences leave of its motion.
-double noise_of(Pass& forwards, std::span<const double> rate, std::span<const double> steps, double told) {
-  std::vector<double>& noises = forwards.noises;
-  if (noises.size() >= kEnoughRest) {
-    const auto middle = noises.begin() + static_cast<std::ptrdiff_t>(noises.size() / 2);
-    std::nth_element(noises.begin(), middle, noises.end());
-    return *middle;
-  }
-  const double rough = roughness(rate, steps);
-  return std::isfinite(rough) && rough > 0.0 ? rough : told;
-}
-
 // Without outliers. The first of a jump is kept out in one direction and of the motion that both find.
 Samples believed(const Axis& axis, const Pass& forwards, const Pass& backwards,
                  std::span<const float> memories, std::span<const double> steps, double noise) {
@@ -124,32 +103,34 @@ Samples believed(const Axis& axis, const Pass& forwards, const Pass& backwards,
   return out;
 }
 
-// Of all that it rests; 0: that is too little.
-double learned_walk(std::span<const double> rate, std::span<const float> memories) {
-  RecordWalk walk;
+// Where it rests. walk: as it is known, 0: to be found.
+RestOfRecord rest_of(std::span<const double> rate, std::span<const float> memories, double walk) {
+  RestLikelihood rest;
   for (std::size_t i = 0; i < rate.size(); ++i) {
-    if (memories[i] > pace::kRest)
-      walk.break_off();
-    else if (std::isfinite(rate[i]))
-      walk.take(rate[i]);
+    if (memories[i] <= pace::kRest && std::isfinite(rate[i])) rest.take(rate[i]);
+    if (memories[i] > pace::kRest && i > 0 && memories[i - 1] <= pace::kRest) rest.break_off();
   }
-  return walk.variance();
+  rest.finish();
+  return rest.fit(walk);
 }
 
 // settings: of this axis; steps: its times, nominal samples.
 Smoothed smooth_axis(const FilterSettings& settings, bool learn_walk, const Axis& axis,
                      std::span<const double> steps) {
   const std::size_t length = axis.rate.size();
-  Pass forwards = run(settings, axis, false);
+  const Pass forwards = run(settings, axis, false);
   const Pass backwards = run(settings, axis, true);
   FiledVector<float> memories = moving(forwards, backwards);
-  const double noise = noise_of(forwards, axis.rate, steps, settings.measurement_noise);
-  const Samples rate = believed(axis, forwards, backwards, memories, steps, noise);
+  const double rough = roughness(axis.rate, steps);
+  const double told = std::isfinite(rough) && rough > 0.0 ? rough : settings.measurement_noise;
+  const Samples rate = believed(axis, forwards, backwards, memories, steps, told);
   // At rest the walk is the model's. One with more states walks as its least gain says.
-  double walked = settings.state == "random-walk" ? settings.process_noise * axis.period_s
-                                                  : walk_of(forwards.least_gain, noise);
-  if (learn_walk)
-    if (const double own = learned_walk(rate, memories); own > 0.0) walked = own;
+  const bool random_walk = settings.state == "random-walk";
+  const double known =
+      random_walk ? settings.process_noise * axis.period_s : walk_of(forwards.least_gain, told);
+  const RestOfRecord rest = rest_of(rate, memories, learn_walk && random_walk ? 0.0 : known);
+  const double noise = rest.noise > 0.0 ? rest.noise : told;
+  const double walked = rest.noise > 0.0 ? rest.walk : known;
   Samples walk(length);
   for (std::size_t i = 0; i < length; ++i) walk[i] = walked * steps[i];
   RateCourse course{rate, walk, steps, {}};
