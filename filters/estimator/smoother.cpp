@@ -19,11 +19,13 @@ constexpr double kMostGain = 0.999;
 // Between where a manoeuvre is found forwards and where it is found backwards it is under way; further apart
 // they are two.
 constexpr std::size_t kFurthest = 100'000;
+// An outlier that is one whatever the other direction says of it, sigma.
+constexpr double kFar = 20.0;
 // A motion is looked at over this many samples at least, however quick the filter at rest is.
 constexpr double kLeastReach = 48.0;
 
 // What one direction finds a sample of one axis to be.
-enum class Found : std::uint8_t { rest, kept_out, motion };
+enum class Found : std::uint8_t { rest, kept_out, far_out, motion };
 
 // One direction of one axis.
 struct Pass {
@@ -36,6 +38,14 @@ struct Axis {
   std::span<const double> rate, dt_s;
   double period_s;
 };
+
+Found found(const EstimatorOutput& out) {
+  if ((out.flags & kManoeuvre) != 0) return Found::motion;
+  if ((out.flags & kGated) == 0) return Found::rest;
+  const double innovation = out.innovation_radps[0];
+  return innovation * innovation > kFar * kFar * out.innovation_variance[0] ? Found::far_out
+                                                                            : Found::kept_out;
+}
 
 Pass run(const FilterSettings& settings, const Axis& axis, bool backwards) {
   const std::size_t length = axis.rate.size();
@@ -53,8 +63,7 @@ Pass run(const FilterSettings& settings, const Axis& axis, bool backwards) {
     in.valid_axes = std::isfinite(axis.rate[i]) ? 1U : 0U;
     in.rate_radps[0] = axis.rate[i];
     estimator.step(in, out);
-    const bool moving = (out.flags & kManoeuvre) != 0, kept_out = (out.flags & kGated) != 0;
-    pass.found[i] = moving ? Found::motion : kept_out ? Found::kept_out : Found::rest;
+    pass.found[i] = found(out);
     const double gain = std::min(out.gain[0], kMostGain);
     if (pass.found[i] != Found::rest || !(gain > 0.0)) continue;
     pass.least_gain = std::min(pass.least_gain, gain);
@@ -83,6 +92,13 @@ FiledVector<float> moving(const Pass& forwards, const Pass& backwards) {
   return all;
 }
 
+// By one direction the scale of the noise may not be known yet.
+bool is_out(Found forwards, Found backwards) {
+  const auto kept_out = [](Found found) { return found == Found::kept_out || found == Found::far_out; };
+  return (kept_out(forwards) && kept_out(backwards)) || forwards == Found::far_out ||
+         backwards == Found::far_out;
+}
+
 // Without outliers. The first of a jump is kept out in one direction and of the motion that both find.
 Samples believed(const Axis& axis, const Pass& forwards, const Pass& backwards,
                  std::span<const float> memories, std::span<const double> steps, double noise) {
@@ -91,8 +107,7 @@ Samples believed(const Axis& axis, const Pass& forwards, const Pass& backwards,
   for (std::size_t i = 0; i < out.size();) {
     std::size_t end = i + 1;
     if (memories[i] <= pace::kRest) {
-      if (forwards.found[i] == Found::kept_out || backwards.found[i] == Found::kept_out)
-        out[i] = std::nan("");
+      if (is_out(forwards.found[i], backwards.found[i])) out[i] = std::nan("");
     } else {
       while (end < out.size() && memories[end] > pace::kRest) ++end;
       find_lone_outliers(axis.rate, steps, noise, i, end, lone);
