@@ -89,8 +89,10 @@ class ChainParts {
   [[nodiscard]] const std::string& model_identity() const { return identity_; }
   // The settings in use, with the noise once it is known.
   [[nodiscard]] const FilterSettings& filter() const { return filter_; }
-  // Of each axis its own driving noise over filter()'s; not known: as its noise.
-  [[nodiscard]] const std::optional<Axes>& walk_share() const { return shares_.walk; }
+  // Of each axis its own noises over filter()'s; the driving one not known: as its noise.
+  [[nodiscard]] const AxisShares& shares() const { return shares_; }
+  // Nobody told the driving noise: it is learned.
+  [[nodiscard]] bool learns_walk() const { return learns_process_noise_; }
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
   // The start-up data were of a sensor that moved: what they say of its noise is too much.
   [[nodiscard]] bool moved_in_start_up() const { return moved_; }

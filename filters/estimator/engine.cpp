@@ -18,6 +18,8 @@ constexpr std::uint64_t kLagEvery = 256;
 constexpr double kUntestedKept = 256.0;
 // Where the noise looks coloured and how slow it is has yet to be found, a test of this many more is blunt.
 constexpr double kColouredUntested = 4096.0;
+// After so many samples that nobody has measured, what is rough by the next one is no noise.
+constexpr double kMostSteps = 16.0;
 // So many lags after it was moved the filter at rest has settled. Of n measurements it takes the mean, with
 // gain 1 / n, until it has.
 constexpr double kSettledLags = 2.0;
@@ -217,12 +219,12 @@ void Engine::hear(const Measurement& m) noexcept {
   const bool alike = m.noise_scale == heard_scale_;
   heard_scale_ = m.noise_scale;
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (!alike) noise_[a].break_off();
-    if (has(m.valid, a)) {
-      noise_[a].take(m.in.rate_radps[a] * scale);
-    } else {
-      noise_[a].break_off();
-    }
+    unheard_s_[a] += m.dt_s;
+    if (!has(m.valid, a)) continue;
+    const double steps = std::max(1.0, std::round(unheard_s_[a] / period_s_));
+    if (!alike || steps > kMostSteps) noise_[a].break_off();
+    noise_[a].take(m.in.rate_radps[a] * scale, steps);
+    unheard_s_[a] = 0.0;
   }
 }
 

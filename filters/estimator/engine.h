@@ -178,6 +178,7 @@ class Engine {
   Axes loudness_{1.0, 1.0, 1.0};    // variance of an axis' noise over the mean of all
   std::optional<Axes> walk_share_;  // its driving noise over the settings'; not known: as its noise
   double heard_scale_ = 1.0;        // Measurement::noise_scale of the last one
+  Axes unheard_s_{};                // since each axis' last measurement
   double lag_s_ = 0.0;
   double longest_lag_ = 0.0;  // samples
   static constexpr std::uint64_t kNoTurn = ~std::uint64_t{0};

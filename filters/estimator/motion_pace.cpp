@@ -15,10 +15,11 @@ constexpr Level kLevels = 12;
 double memory_of(Level level) { return std::pow(10.0, 0.5 * (level - 1)) / 0.7; }
 
 // Half of the window, in the longer memory. Where that is as good as the other the sum of risks over it is
-// -11 +- 3.5 variances of the noise: one in ten thousand is above the bound.
+// -11 +- 3.5 variances of the noise. One that is above the bound by chance makes the memory shorter for as
+// many samples as it takes to grow again, thousands in a slow motion: not one in a million may be.
 constexpr double kHalfWindow = 6.0;
-constexpr double kAsGood = 8.0;
-constexpr double kUsed = 0.5;
+constexpr double kAsGood = 24.0;
+constexpr double kUsed = 0.8;
 // A memory grows by this, a sample, from where the rate is quicker.
 constexpr float kGrows = 0.1F;
 // A long run is looked at in pieces, of which so much at either end is asked twice; and the longest memory

@@ -7,8 +7,8 @@
 // 2 P is the sum of its squared errors and a constant, on average (Mallows, "Some comments on Cp",
 // Technometrics 15(4), 1973), P being its variance. It stops at the first that is not as good, so that what
 // is spoiled by a corner far away is not asked (Lepski, Theory of Probability and its Applications 35(3),
-// 1991). Half of the memory that was found is used: a motion is followed with the twelfth power of it, so
-// that what is left of it is small beside the variance, as that says nothing of it.
+// 1991). Four fifths of the memory that was found are used: what is left of a motion goes, squared, with the
+// twelfth power of it, so that it is small beside the variance, as that says nothing of it.
 #pragma once
 
 #include <span>

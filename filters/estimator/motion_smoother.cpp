@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 namespace ifog {
 namespace {
@@ -17,6 +17,8 @@ using Matrix = Eigen::Matrix3d;
 constexpr double kBandwidth = 1.5;
 // After so many samples that nobody has seen a motion may be any other.
 constexpr double kGap = 16.0;
+// Samples whose filtered states are held at once.
+constexpr std::size_t kPiece = 4096;
 // Beyond what neighbours differ by, in squares.
 constexpr double kAnything = 100.0;
 
@@ -109,6 +111,34 @@ void smooth_back(const Course& course, std::size_t i, State& filtered, const Sta
 // At rest to rest a single state is all there is.
 bool rests(const Course& course, std::size_t i) { return !course.moving(i) && !course.moving(i - 1); }
 
+// The filtered state at i - 1 taken to i.
+void filter(const RateCourse& of, const Course& course, double noise, std::size_t i, State& now) {
+  if (!rests(course, i)) {
+    Matrix transition;
+    course.predict(i, now, transition);
+    course.correct(i, now);
+    return;
+  }
+  now.p(0, 0) += of.walk[i] / noise;
+  if (!std::isfinite(of.rate[i])) return;
+  const double gain = now.p(0, 0) / (now.p(0, 0) + 1.0);
+  now.x[0] += gain * (of.rate[i] / std::sqrt(noise) - now.x[0]);
+  now.p(0, 0) *= 1.0 - gain;
+}
+
+// The filtered state at i made the smoothed one.
+void smooth_one(const RateCourse& of, const Course& course, double noise, std::size_t i, State& filtered,
+                const State& next) {
+  if (!rests(course, i + 1)) {
+    smooth_back(course, i, filtered, next);
+    return;
+  }
+  const double predicted = filtered.p(0, 0) + of.walk[i + 1] / noise;
+  const double share = filtered.p(0, 0) / predicted;
+  filtered.x[0] += share * (next.x[0] - filtered.x[0]);
+  filtered.p(0, 0) += share * share * (next.p(0, 0) - predicted);
+}
+
 }  // namespace
 
 double pace::jerk(double memory) noexcept {
@@ -118,55 +148,37 @@ double pace::jerk(double memory) noexcept {
 
 Smoothed smooth_course(const RateCourse& of, double noise) {
   const std::size_t length = of.rate.size();
-  Smoothed out{std::vector<double>(length, std::nan("")), std::vector<double>(length, std::nan(""))};
-  std::vector<double>&rate = out.rate_radps, &variance = out.variance_rad2ps2;
+  Smoothed out{Samples(length, std::nan("")), Samples(length, std::nan(""))};
+  Samples &rate = out.rate_radps, &variance = out.variance_rad2ps2;
   std::size_t first = 0;
   while (first < length && !std::isfinite(of.rate[first])) ++first;
   if (first == length) return out;
   const Course course(of, noise);
   const double sigma = std::sqrt(noise);
-  std::vector<State> moving;  // filtered
   State now;
   now.x[0] = of.rate[first] / sigma;
   now.p(0, 0) = 1.0;
   if (course.moving(first)) now.p(1, 1) = now.p(2, 2) = course.anything(first);
-  Matrix transition;
-  for (std::size_t i = first; i < length; ++i) {
-    if (i > first && rests(course, i)) {
-      now.p(0, 0) += of.walk[i] / noise;
-      if (std::isfinite(of.rate[i])) {
-        const double gain = now.p(0, 0) / (now.p(0, 0) + 1.0);
-        now.x[0] += gain * (of.rate[i] / sigma - now.x[0]);
-        now.p(0, 0) *= 1.0 - gain;
-      }
-    } else if (i > first) {
-      course.predict(i, now, transition);
-      course.correct(i, now);
-    }
-    rate[i] = now.x[0];
-    variance[i] = now.p(0, 0);
-    if (course.moving(i)) moving.push_back(now);
+  std::vector<State> begun{now};  // filtered, at the beginning of each piece
+  for (std::size_t i = first + 1; i < length; ++i) {
+    filter(of, course, noise, i, now);
+    if ((i - first) % kPiece == 0) begun.push_back(now);
   }
-  for (std::size_t i = length; i-- > first;) {
-    State filtered;
-    if (course.moving(i)) {
-      filtered = moving.back();
-      moving.pop_back();
-    } else {
-      filtered.x[0] = rate[i];
-      filtered.p(0, 0) = variance[i];
+  std::vector<State> piece;
+  for (; !begun.empty(); begun.pop_back()) {
+    const std::size_t begin = first + (begun.size() - 1) * kPiece, end = std::min(length, begin + kPiece);
+    piece.assign(1, begun.back());
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      piece.push_back(piece.back());
+      filter(of, course, noise, i, piece.back());
     }
-    if (i + 1 < length && rests(course, i + 1)) {
-      const double predicted = filtered.p(0, 0) + of.walk[i + 1] / noise;
-      const double share = filtered.p(0, 0) / predicted;
-      filtered.x[0] += share * (now.x[0] - filtered.x[0]);
-      filtered.p(0, 0) += share * share * (now.p(0, 0) - predicted);
-    } else if (i + 1 < length) {
-      smooth_back(course, i, filtered, now);
+    for (std::size_t i = end; i-- > begin;) {
+      State& filtered = piece[i - begin];
+      if (i + 1 < length) smooth_one(of, course, noise, i, filtered, now);
+      now = filtered;
+      rate[i] = now.x[0] * sigma;
+      variance[i] = now.p(0, 0) * noise;
     }
-    now = filtered;
-    rate[i] = now.x[0] * sigma;
-    variance[i] = now.p(0, 0) * noise;
   }
   for (std::size_t i = first; i-- > 0;) {
     rate[i] = rate[first];

@@ -9,12 +9,13 @@
 #pragma once
 
 #include <span>
-#include <vector>
+
+#include "filters/series/samples.h"
 
 namespace ifog {
 
 struct Smoothed {
-  std::vector<double> rate_radps, variance_rad2ps2;
+  Samples rate_radps, variance_rad2ps2;
 };
 
 // How quickly the rate moves at a sample: the memory of what follows it, in nominal samples.
@@ -36,7 +37,8 @@ struct RateCourse {
   std::span<const float> memories;  // empty: all at rest
 };
 
-// noise: R, (rad/s)^2. Allocates. Before the first measurement as there; NaN where there is none.
+// noise: R, (rad/s)^2. Beside what it gives it keeps one filtered state in thousands, and works out the
+// others again. Before the first measurement as there; NaN where there is none.
 [[nodiscard]] Smoothed smooth_course(const RateCourse& course, double noise);
 
 }  // namespace ifog

@@ -26,20 +26,22 @@ double NoiseScale::rounding() const noexcept {
   return hidden < 50.0 ? digit_ * digit_ / (2.0 * kPi * kPi) * exponential(-hidden) : 0.0;
 }
 
-void NoiseScale::take(double rate) noexcept {
+void NoiseScale::take(double rate, double steps) noexcept {
   const double step = std::abs(rate - last_[2]);
   if (step > 0.0) {
     different_ = std::min(different_ + 1, kDifferent);
     if (in_a_row_ > 0) digit_ = std::min(digit_, step);
   }
-  if (in_a_row_ >= 2 && !known_) {
+  const double span = steps_[0] + steps_[1] + steps;
+  const bool asked = in_a_row_ >= 3 && spans_.take(span);
+  if (in_a_row_ >= 2 && !known_ && steps == steps_[1]) {
     const double second = rate - 2.0 * last_[2] + last_[1];
     bent_count_ += 1.0;
     bent_ += (second * second / 6.0 - bent_) / bent_count_;
   }
-  if (in_a_row_ >= 3) {
-    const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
-    const double square = third * third / 20.0;
+  if (asked) {
+    const double square =
+        third_difference_square({last_[0], last_[1], last_[2], rate}, {steps_[0], steps_[1], steps});
     local_ += (std::min(square, kClip * now()) - local_) / std::min(kLocalMemory, kToldCount + rough_count_);
     rough_count_ = std::min(rough_count_ + 1.0, kMemory);
     // Beside the scale, so that a coarse sensor's runs of equal values do not end in a variance of zero that
@@ -49,6 +51,7 @@ void NoiseScale::take(double rate) noexcept {
   }
   in_a_row_ = std::min(in_a_row_ + 1, 3);
   last_ = {last_[1], last_[2], rate};
+  steps_ = {steps_[1], steps};
 }
 
 void NoiseScale::recall(double colour) noexcept {

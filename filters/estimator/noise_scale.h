@@ -12,6 +12,8 @@
 #include <array>
 #include <cstdint>
 
+#include "filters/estimator/third_difference.h"
+
 namespace ifog {
 
 class NoiseScale {
@@ -22,8 +24,9 @@ class NoiseScale {
   // Before the first measurement: colour() as an earlier filter has found it.
   void recall(double colour) noexcept;
 
-  // The next measurement, scaled to the nominal period's noise. Call break_off() where one is missing.
-  void take(double rate) noexcept;
+  // The next measurement, scaled to the nominal period's noise, so many samples after the one before it: more
+  // than one where some are missing. Call break_off() where what lies between is not known.
+  void take(double rate, double steps = 1.0) noexcept;
   void break_off() noexcept { in_a_row_ = 0; }
   // An innovation of the filter at rest, scaled likewise; lag: of that filter, in samples; foreseen: the
   // noise's variance by the tracker that foresees best, while the scale is not known. True when this was the
@@ -104,6 +107,8 @@ class NoiseScale {
   int learned_ = 0, different_ = 0, in_a_row_ = 0;
   bool known_ = false;
   std::array<double, 3> last_{};
+  std::array<double, 2> steps_{};  // between these
+  ShortestSpan spans_;
 };
 
 }  // namespace ifog

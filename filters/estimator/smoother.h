@@ -4,6 +4,8 @@
 // Whether an axis rests or moves is what the estimator finds of it, run over the record forwards and
 // backwards, so that a motion is known from its first sample and not from when it was found. How quickly it
 // moves there the record itself says (motion_pace.h), and with that it is smoothed (motion_smoother.h).
+// Outliers take no part: at rest what the estimator keeps out and does not find to be a jump, in motion what
+// lone_outliers.h finds.
 #pragma once
 
 #include <optional>
@@ -16,12 +18,21 @@
 
 namespace ifog {
 
+// What is known of each axis beside FilterSettings.
+struct AxisNoise {
+  // Its noise and its driving noise over the settings'. Not known: the former as it is rough, the latter as
+  // its noise.
+  std::optional<Axes> noise_share, walk_share;
+  // Nobody told the driving noise: the settings' is what a filter has learned under way, and each axis' is
+  // learned again of all its rest.
+  bool learn_walk = false;
+};
+
 // All axes of a record, as long as each other: rates in rad/s with NaN where missing, dt_s the time each
-// sample covers. settings: with both noises; walk_share: of each axis its driving noise over the settings',
-// not known: as its noise. Throws std::invalid_argument as Estimator does.
-[[nodiscard]] std::vector<Smoothed> smooth(const FilterSettings& settings,
-                                           const std::optional<Axes>& walk_share,
-                                           std::span<const std::vector<double>> rates,
+// sample covers. settings: with both noises. Throws std::invalid_argument as Estimator does,
+// std::runtime_error where a long record finds no room on disk.
+[[nodiscard]] std::vector<Smoothed> smooth(const FilterSettings& settings, const AxisNoise& noise,
+                                           std::span<const std::span<const double>> rates,
                                            std::span<const double> dt_s, double nominal_period_s);
 
 }  // namespace ifog

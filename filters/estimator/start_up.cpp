@@ -2,18 +2,23 @@
 #include "filters/estimator/start_up.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "filters/estimator/octave_fit.h"
+#include "filters/estimator/third_difference.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kLeast = 32;
+// Third differences: whose median says something, of how many, and the samples that one may go over.
+constexpr std::size_t kLeastThirds = 12, kShareOfThirds = 16, kMostSpan = 64;
 // As in rest_noise.cpp; nearer to the best, as these seconds may have been motion.
 constexpr double kNearlyAsWell = 0.3;
 // Median of the square of a standard normal.
@@ -122,13 +127,29 @@ Fit fit(const std::vector<Octave>& all, double n) {
 
 }  // namespace
 
-double roughness(std::span<const double> rate) {
-  std::vector<double> squares;
-  for (std::size_t i = 3; i < rate.size(); ++i) {
-    const double third = rate[i] - 3.0 * rate[i - 1] + 3.0 * rate[i - 2] - rate[i - 3];
-    if (std::isfinite(third)) squares.push_back(third * third / 20.0);
+double roughness(std::span<const double> rate, std::span<const double> steps) {
+  std::array<std::vector<double>, kMostSpan + 1> by_span;
+  std::array<double, 4> rates{};
+  std::array<double, 3> apart{};
+  double since = 0.0;
+  std::size_t known = 0, all = 0;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    since += steps.empty() ? 1.0 : std::max(1.0, std::round(steps[i]));
+    if (!std::isfinite(rate[i])) continue;
+    rates = {rates[1], rates[2], rates[3], rate[i]};
+    apart = {apart[1], apart[2], std::exchange(since, 0.0)};
+    const double span = apart[0] + apart[1] + apart[2];
+    if (++known < rates.size() || span > kMostSpan) continue;
+    ++all;
+    by_span[static_cast<std::size_t>(span)].push_back(third_difference_square(rates, apart));
   }
-  return squares.size() >= 12 ? robust_variance(squares) : std::numeric_limits<double>::infinity();
+  std::vector<double> squares;
+  for (const std::vector<double>& more : by_span) {
+    squares.insert(squares.end(), more.begin(), more.end());
+    if (squares.size() >= std::max<std::size_t>(kLeastThirds, all / kShareOfThirds))
+      return robust_variance(squares);
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s) {

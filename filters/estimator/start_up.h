@@ -31,8 +31,10 @@ struct NoiseEstimate {
 // about 0.1 ms a thousand values. Allocates. Throws std::invalid_argument when no axis has 32 measurements.
 [[nodiscard]] NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_s);
 
-// R of the white noise of one axis, whatever smooth motion there is, by the median of its third differences:
-// rate in rad/s, NaN where missing. Infinite with fewer than 12 of them. Allocates.
-[[nodiscard]] double roughness(std::span<const double> rate);
+// R of the white noise of one axis, whatever smooth motion there is, by the median of its third differences,
+// of four measurements that lie as close to each other as a sixteenth of all do: rate in rad/s, NaN where
+// missing; steps: of each the time since the one before it in nominal samples, empty: 1. Infinite with fewer
+// than 12 of them. Allocates.
+[[nodiscard]] double roughness(std::span<const double> rate, std::span<const double> steps = {});
 
 }  // namespace ifog

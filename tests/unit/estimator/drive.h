@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "filters/estimator/estimator.h"
@@ -78,7 +79,7 @@ inline std::vector<double> told_the_truth(const std::vector<double>& measured, d
   return out;
 }
 
-inline double mean_square_error(const std::vector<double>& estimate, const std::vector<double>& truth,
+inline double mean_square_error(std::span<const double> estimate, const std::vector<double>& truth,
                                 std::size_t from) {
   double sum = 0.0;
   for (std::size_t i = from; i < truth.size(); ++i)

@@ -22,9 +22,10 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 enum class Sample { good, missing, invalid };
 
 struct Seen {
-  double square = 0.0, worst = 0.0, worst_sigmas = 0.0, angle = 0.0;
+  double square = 0.0, normalised = 0.0, worst = 0.0, worst_sigmas = 0.0, angle = 0.0;
   int count = 0, at_rest = 0, not_finite = 0;
   [[nodiscard]] double rms() const { return std::sqrt(square / count); }
+  [[nodiscard]] double nees() const { return normalised / count; }
 };
 
 // `axes` axes that all turn alike; the first one's samples are lost as told, those of the others come (where
@@ -90,6 +91,7 @@ class Turning {
     seen.at_rest += (out_.flags & ifog::kAtRest) != 0 ? 1 : 0;
     if (!valid) return;
     seen.square += error * error;
+    seen.normalised += error * error / out_.variance_rad2ps2[0];
     ++seen.count;
   }
 
@@ -231,6 +233,33 @@ TEST(Holes, AnAxisThatIsNotMeasuredWhileAnotherJumpsStaysWhereItIs) {
       }
     }
     EXPECT_EQ(estimator.health().divergences, 0U);
+  }
+}
+
+// One sample in twenty, whenever: the noise is heard in what lies together.
+TEST(Holes, AMissingSampleIsAsGoodAsAnUnusableOne) {
+  for (const double amplitude : {0.5, 5.0}) {
+    const auto lost = [&](Sample how) {
+      const auto fate = [=](int i) {
+        return (static_cast<std::uint32_t>(i) * 2'654'435'761U >> 16U) % 20 == 0 ? how : Sample::good;
+      };
+      return Turning(1, sine(amplitude, 2.0), fate).go(7000, 65'000, 65'000);
+    };
+    const Seen missing = lost(Sample::missing), invalid = lost(Sample::invalid);
+    EXPECT_LT(invalid.rms(), 1.2 * kNoise) << amplitude;
+    EXPECT_NEAR(missing.rms() / invalid.rms(), 1.0, 0.02) << amplitude;
+    EXPECT_NEAR(missing.nees() / invalid.nees(), 1.0, 0.05) << amplitude;
+  }
+}
+
+// Of an axis that has every n-th sample, while another has all, the noise is heard as well.
+TEST(Holes, TheVarianceOfAnAxisInARhythmIsItsOwn) {
+  for (const int n : {2, 3, 7}) {
+    const auto fate = [=](int i) { return i % n == 0 ? Sample::good : Sample::invalid; };
+    const Seen seen = Turning(2, sine(0.05, 0.1), fate).go(7000, 65'000, 65'000);
+    EXPECT_LT(seen.rms(), kNoise) << n;
+    EXPECT_GT(seen.nees(), 0.3) << n;
+    EXPECT_LT(seen.nees(), 1.5) << n;
   }
 }
 

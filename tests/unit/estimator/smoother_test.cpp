@@ -11,10 +11,11 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/estimator/smooth_one.h"
 
 namespace {
 
@@ -67,9 +68,7 @@ TEST(Smoother, BeatsTheFilterAtRestAndInMotionAndKeepsTheAngle) {
         const Record r = record(seed, kLength, ratio, [moving](int i) {
           return !moving ? 0.0 : i > 30'000 && i < 40'000 ? 20.0 : i > 50'000 ? 2e-2 * (i - 50'000) : 0.0;
         });
-        const std::vector<double> dt(kLength, kPeriod);
-        const std::vector<std::vector<double>> rates{r.measured};
-        const ifog::Smoothed got = ifog::smooth(told(ratio), std::nullopt, rates, dt, kPeriod)[0];
+        const ifog::Smoothed got = smooth_one(told(ratio), r.measured);
         smoothed += mean_square_error(got.rate_radps, r.truth, 1000);
         filtered += mean_square_error(run(told(ratio), r.measured).denoised, r.truth, 1000);
         double owed = 0.0;
@@ -138,6 +137,27 @@ TEST(Smoother, IsTheLeastSquaresSolutionInMotion) {
   EXPECT_NEAR(owed, 0.0, 1e-9);
 }
 
+// Filtered states are worked out again piece by piece: what is smoothed there is what a part of the record
+// about it says, as nothing is remembered for as long.
+TEST(Smoother, IsTheSameWhereItsPiecesMeet) {
+  constexpr std::size_t kLength = 12'000, kAbout = 1000;
+  const Record r = record(35, kLength, 0.01, [](int i) { return 50.0 * std::sin(0.002 * i); });
+  const std::vector<double> walk(kLength, 0.01), steps(kLength, 1.0);
+  for (const float memory : {ifog::pace::kRest, 20.0F}) {
+    const std::vector<float> memories(kLength, memory);
+    const ifog::Smoothed whole = ifog::smooth_course({r.measured, walk, steps, memories}, 1.0);
+    for (const std::size_t at : {std::size_t{4096}, std::size_t{8192}}) {
+      const auto part = [&](const auto& of) { return std::span(of).subspan(at - kAbout, 2 * kAbout); };
+      const ifog::Smoothed got =
+          ifog::smooth_course({part(r.measured), part(walk), part(steps), part(memories)}, 1.0);
+      for (std::size_t i = at - 5; i < at + 5; ++i) {
+        EXPECT_NEAR(got.rate_radps[i + kAbout - at], whole.rate_radps[i], 1e-9) << i;
+        EXPECT_NEAR(got.variance_rad2ps2[i + kAbout - at], whole.variance_rad2ps2[i], 1e-9) << i;
+      }
+    }
+  }
+}
+
 // Where anything may have happened, the measurement is all there is.
 TEST(Smoother, ABrokenSampleIsItsMeasurement) {
   Record r = record(34, 40, 0.1, [](int i) { return i < 20 ? 0.0 : 1000.0 * (i - 20); });
@@ -185,9 +205,7 @@ TEST(Smoother, IsTheBestOfAllInEveryMotion) {
       double smoothed = 0.0, filtered = 0.0, raw = 0.0, normalised = 0.0, moving = 0.0;
       for (std::uint64_t seed = 41; seed < 44; ++seed) {
         const Record r = record(seed, kLength, ratio, motion.rate);
-        const std::vector<double> dt(kLength, kPeriod);
-        const std::vector<std::vector<double>> rates{r.measured};
-        const ifog::Smoothed got = ifog::smooth(told(ratio), std::nullopt, rates, dt, kPeriod)[0];
+        const ifog::Smoothed got = smooth_one(told(ratio), r.measured);
         const std::vector<double> causal = run(told(ratio), r.measured).denoised;
         double owed = 0.0;
         for (std::size_t i = 0; i < kLength; ++i) {
@@ -231,7 +249,8 @@ TEST(Smoother, EachAxisIsItsOwn) {
     settings.process_noise *= mean;
     settings.measurement_noise *= mean;
     const std::vector<double> dt(kLength, kPeriod);
-    const std::vector<ifog::Smoothed> got = ifog::smooth(settings, std::nullopt, rates, dt, kPeriod);
+    const std::vector<std::span<const double>> all(rates.begin(), rates.end());
+    const std::vector<ifog::Smoothed> got = ifog::smooth(settings, {}, all, dt, kPeriod);
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t i = 0; i < kLength; ++i) {
         if (a == 0 && i > 15'000 && i < 30'000) continue;

@@ -11,6 +11,7 @@
 #include <random>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "filters/estimator/first_samples.h"
@@ -142,6 +143,26 @@ TEST(StartUp, RefusesTooShortARecordAndSurvivesAConstantOne) {
   const auto constant = ifog::estimate_noise(std::vector<double>(1000, 0.5), 1, kPeriod);
   EXPECT_GT(constant.measurement_noise, 0.0);
   EXPECT_GT(constant.process_noise, 0.0);
+}
+
+// Of a fast motion, whichever samples of it come; a row that is absent is as good as an empty one.
+TEST(StartUp, HearsRoughnessBetweenMissingSamples) {
+  constexpr int kLength = 20'000;
+  const Record r = record(9, kLength, 0.0, [](int i) { return 1000.0 * std::sin(0.02 * i); });
+  for (const int every : {2, 3, 20}) {
+    std::vector<double> rate, present, steps;
+    double since = 0.0;
+    for (int i = 0; i < kLength; ++i) {
+      const bool lost = every == 20 ? i % every == 7 : i % every != 0;
+      since += 1.0;
+      rate.push_back(lost ? std::nan("") : r.measured[static_cast<std::size_t>(i)]);
+      if (lost) continue;
+      present.push_back(rate.back());
+      steps.push_back(std::exchange(since, 0.0));
+    }
+    EXPECT_NEAR(ifog::roughness(rate), 1.0, 0.1) << every;
+    EXPECT_NEAR(ifog::roughness(present, steps), 1.0, 0.1) << every;
+  }
 }
 
 }  // namespace

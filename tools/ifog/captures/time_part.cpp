@@ -11,7 +11,8 @@
 namespace ifog::tools {
 namespace {
 
-void keep(const TimePart::Rows& rows, std::vector<double>& values) {
+template <class Values>
+void keep(const TimePart::Rows& rows, Values& values) {
   if (values.empty() || (rows.begin == 0 && rows.end == values.size())) return;
   values.erase(values.begin() + static_cast<std::ptrdiff_t>(rows.end), values.end());
   values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows.begin));
@@ -62,11 +63,11 @@ void TimePart::refuse_empty(double first_s, double last_s, const std::string& na
                            told_time(first_s) + " … " + told_time(last_s) + " s");
 }
 
-std::size_t TimePart::cut(std::vector<double>& time_s, const TimeOrigin& origin,
-                          std::span<std::vector<double>* const> columns, const std::string& name) const {
-  const Rows kept = rows(time_s, origin, name);
+std::size_t TimePart::cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
+                          const std::string& name) const {
+  const Rows kept = rows(std::span<const double>(time_s), origin, name);
   keep(kept, time_s);
-  for (std::vector<double>* const column : columns) keep(kept, *column);
+  for (Samples* const column : columns) keep(kept, *column);
   return kept.begin;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 
 namespace CLI {
@@ -41,8 +42,8 @@ struct TimePart {
   // one line when no row is inside.
   std::size_t cut(Capture& capture, const std::string& name) const;
   // columns: as long as the times, or empty.
-  std::size_t cut(std::vector<double>& time_s, const TimeOrigin& origin,
-                  std::span<std::vector<double>* const> columns, const std::string& name) const;
+  std::size_t cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
+                  const std::string& name) const;
 };
 
 }  // namespace ifog::tools

@@ -88,7 +88,8 @@ const Increment* ChainRun::run(const Reading& reading, ChainOutput& out) {
 OfflineResult ChainRun::finish() {
   count(counts_);
   result_.filter = chain_->parts().filter();
-  result_.walk_share = chain_->parts().walk_share();
+  result_.shares = chain_->parts().shares();
+  result_.learns_walk = chain_->parts().learns_walk();
   result_.noise_known = chain_->parts().noise_known();
   result_.moved_in_start_up = chain_->parts().moved_in_start_up();
   return std::move(result_);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/estimator/smoother.h"
+#include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -91,15 +93,19 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
           {"axes", axes}};
 }
 
+std::vector<double> in_degrees_per_hour(const Samples& rate_radps) {
+  return report::scaled({rate_radps.begin(), rate_radps.end()}, 1.0 / kDegreePerHour);
+}
+
 // A row an axis, one more where a model corrects it, with one time axis below all of them.
 void draw(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
           const OfflineResult& result) {
-  std::vector<double> time = columns.time_s;
+  std::vector<double> time(columns.time_s.begin(), columns.time_s.end());
   for (double& t : time) t = origin.told(t);
   const report::TimeAxis axis_of_time(time.front(), time.back());
   time = axis_of_time(std::move(time));
   std::vector<report::PictureRow> rows;
-  const auto row = [&](const std::string& title, const char* noisy, const std::vector<double>& values,
+  const auto row = [&](const std::string& title, const char* noisy, const Samples& values,
                        const DenoisedAxis& axis, bool last) {
     // The same range for raw and compensated, so that they compare at a glance.
     report::Bounds range;
@@ -109,9 +115,8 @@ void draw(const std::string& path, const DenoisedColumns& columns, const TimeOri
     if (range.low < range.high) rate.low = range.low, rate.high = range.high;
     report::Chart chart(title, "The rate before and after the filter, over time.", axis_of_time.axis(last),
                         rate);
-    chart.line_in_time(report::Role::kRaw, noisy, time, report::scaled(values, 1.0 / kDegreePerHour));
-    chart.line_in_time(report::Role::kAfter, "denoised", time,
-                       report::scaled(axis.denoised, 1.0 / kDegreePerHour));
+    chart.line_in_time(report::Role::kRaw, noisy, time, in_degrees_per_hour(values));
+    chart.line_in_time(report::Role::kAfter, "denoised", time, in_degrees_per_hour(axis.denoised));
     rows.push_back({last ? 320.0 : 270.0, {{std::move(chart)}}});
   };
   const bool corrected = !result.model.empty();
@@ -235,10 +240,11 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
     throw std::runtime_error(
         "--smooth: the capture is shorter than the start-up that would show its noise; "
         "expected --process-noise and --measurement-noise");
-  std::vector<std::vector<double>> rates;
-  for (const DenoisedAxis& axis : columns.axes) rates.push_back(axis.compensated);
+  std::vector<std::span<const double>> rates;
+  for (const DenoisedAxis& axis : columns.axes) rates.emplace_back(axis.compensated);
+  const AxisNoise noise{result.shares.noise, result.shares.walk, result.learns_walk};
   std::vector<Smoothed> smoothed =
-      ifog::smooth(result.filter, result.walk_share, rates, columns.dt_s, 1.0 / result.sample_rate_hz);
+      ifog::smooth(result.filter, noise, rates, columns.dt_s, 1.0 / result.sample_rate_hz);
   for (std::size_t a = 0; a < columns.axes.size(); ++a) {
     columns.axes[a].smoothed = std::move(smoothed[a].rate_radps);
     columns.axes[a].smoothed_variance = std::move(smoothed[a].variance_rad2ps2);

@@ -115,7 +115,7 @@ void DenoisedRows::finish(const std::string& name) {
                                   [&](const AxisMoments& axis) { return axis.missing == written_; }))
     refuse_without_rates(name, written_);
   if (keep_) {
-    std::vector<std::vector<double>*> all{&columns_.dt_s};
+    std::vector<Samples*> all{&columns_.dt_s};
     for (DenoisedAxis& axis : columns_.axes)
       all.insert(all.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance, &axis.smoothed,
                              &axis.smoothed_variance});

@@ -11,6 +11,7 @@
 
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
+#include "filters/series/samples.h"
 #include "tools/ifog/captures/column_writer.h"
 #include "tools/ifog/captures/time_part.h"
 
@@ -28,13 +29,13 @@ class Moments {
 };
 
 struct DenoisedAxis {
-  std::vector<double> raw, compensated, denoised, variance;
-  std::vector<double> smoothed, smoothed_variance;  // empty unless asked for
+  Samples raw, compensated, denoised, variance;
+  Samples smoothed, smoothed_variance;  // empty unless asked for
 };
 
 // Whole columns, for a picture and for smoothing.
 struct DenoisedColumns {
-  std::vector<double> time_s, dt_s;
+  Samples time_s, dt_s;
   std::vector<DenoisedAxis> axes;
 };
 

@@ -60,7 +60,8 @@ struct OfflineResult {
   std::vector<std::string> axes;
   IncrementerCounts counts;           // of what counts, see OfflineSink
   FilterSettings filter;              // in force at the end
-  std::optional<Axes> walk_share;     // ChainParts::walk_share()
+  AxisShares shares;                  // ChainParts::shares()
+  bool learns_walk = false;           // ChainParts::learns_walk()
   bool noise_learned = false;         // from the first seconds
   bool moved_in_start_up = false;     // the sensor did in these
   bool noise_known = true;            // false: the record is shorter than the start-up
