@@ -20,7 +20,7 @@ constexpr std::size_t kFurthest = 100'000;
 // Samples at rest that show how loud the noise is there.
 constexpr std::size_t kEnoughRest = 256;
 // A motion is looked at over this many samples at least, however quick the filter at rest is.
-constexpr double kLeastReach = 48.0;
+constexpr double kLeastBehind = 48.0;
 
 // One direction of one axis.
 struct Pass {
@@ -105,7 +105,7 @@ Smoothed smooth_axis(const FilterSettings& settings, std::span<const double> rat
   }
   RateCourse course{rate, walk, steps, {}};
   const double lag = std::sqrt(noise / (settings.process_noise * period_s));
-  find_paces(course, noise, std::max(kLeastReach, lag), memories);
+  find_paces(course, noise, std::max(kLeastBehind, lag), memories);
   course.memories = memories;
   return smooth_course(course, noise);
 }
