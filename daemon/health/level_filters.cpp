@@ -7,7 +7,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kWalk = LevelFilters::kStates - 1;
+constexpr std::size_t kWalkState = LevelFilters::kStates - 1;
 // A product of totals may be so large before its logarithm is taken.
 constexpr double kMuch = 1e100;
 
@@ -27,14 +27,14 @@ LevelFilters::LevelFilters(const std::vector<Ratios>& table)
 // The walk's start is diffuse: after one mean it is that mean, less what the other states and the noise have.
 void LevelFilters::begin(Lanes& at, double mean) noexcept {
   at.state = {};
-  at.state[kWalk].fill(mean);
+  at.state[kWalkState].fill(mean);
   at.covariance = {};
-  at.covariance[pair(kWalk, kWalk)].fill(1.0);
-  for (std::size_t i = 0; i < kWalk; ++i)
+  at.covariance[pair(kWalkState, kWalkState)].fill(1.0);
+  for (std::size_t i = 0; i < kWalkState; ++i)
     for (std::size_t f = 0; f < kLanes; ++f) {
       at.covariance[pair(i, i)][f] = at.instability[f];
-      at.covariance[pair(kWalk, i)][f] = -at.instability[f];
-      at.covariance[pair(kWalk, kWalk)][f] += at.instability[f];
+      at.covariance[pair(kWalkState, i)][f] = -at.instability[f];
+      at.covariance[pair(kWalkState, kWalkState)][f] += at.instability[f];
     }
 }
 
@@ -50,12 +50,12 @@ void LevelFilters::predict(Lanes& at, const Vector& keep, double blocks) noexcep
       Lane& covariance = at.covariance[pair(i, j)];
       for (std::size_t f = 0; f < kLanes; ++f) covariance[f] *= both;
     }
-    if (i == kWalk) continue;
+    if (i == kWalkState) continue;
     const double fresh = 1.0 - keep[i] * keep[i];
     Lane& variance = at.covariance[pair(i, i)];
     for (std::size_t f = 0; f < kLanes; ++f) variance[f] += fresh * at.instability[f];
   }
-  Lane& variance = at.covariance[pair(kWalk, kWalk)];
+  Lane& variance = at.covariance[pair(kWalkState, kWalkState)];
   for (std::size_t f = 0; f < kLanes; ++f) variance[f] += blocks * at.walk[f];
 }
 

@@ -12,7 +12,7 @@ constexpr auto kTurn = std::chrono::milliseconds(250);
 // While increments wait outside a full ring: a source that falls silent must not keep them there.
 constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
 // Between two looks for room on the tape.
-constexpr auto kPause = std::chrono::milliseconds(1);
+constexpr auto kReaderPause = std::chrono::milliseconds(1);
 
 }  // namespace
 
@@ -140,7 +140,8 @@ void Reader::stand_back() noexcept {
 void Reader::record(const Delivery& delivery) noexcept {
   // A source that keeps its bytes until they are read loses none to a recorder that is at work.
   if (transport_->holds_back())
-    while (!transport_->stopped() && tape_->worth_waiting(delivery)) std::this_thread::sleep_for(kPause);
+    while (!transport_->stopped() && tape_->worth_waiting(delivery))
+      std::this_thread::sleep_for(kReaderPause);
   tape_->put(delivery, turn_ns_,
              std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
              reading_.wall_shift_ns, queue_.merged());

@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kNsPerSecond =
+constexpr double kNsPerSecondExact =
     1e9;  // divided by, so that the result is the double nearest to the decimal time
 
 DeviceTimeline timeline_of(const ifog_description& description) {
@@ -72,11 +72,11 @@ void SampleTimes::count_from(const ifog_sample& sample) {
       return;
     }
     // As samples where it is a whole number of them: then no time is a sum of two that were rounded.
-    const double samples = static_cast<double>(since_ns) / kNsPerSecond * description_.nominal_rate_hz;
+    const double samples = static_cast<double>(since_ns) / kNsPerSecondExact * description_.nominal_rate_hz;
     if (samples >= 0.0 && std::abs(samples - std::round(samples)) < 1e-6)
       count_ = static_cast<std::uint64_t>(std::llround(samples));
     else
-      offset_s_ = static_cast<double>(since_ns) / kNsPerSecond;
+      offset_s_ = static_cast<double>(since_ns) / kNsPerSecondExact;
   }
 }
 
@@ -91,9 +91,9 @@ DeviceTimeline::Step SampleTimes::step_to(const ifog_sample& sample) {
 double SampleTimes::seconds(const ifog_sample& sample) const {
   switch (clock_) {
     case Clock::device:
-      return static_cast<double>(ns_since(device_from_, device_ns_)) / kNsPerSecond + offset_s_;
+      return static_cast<double>(ns_since(device_from_, device_ns_)) / kNsPerSecondExact + offset_s_;
     case Clock::arrival:
-      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecond + offset_s_;
+      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecondExact + offset_s_;
     default:
       return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
   }

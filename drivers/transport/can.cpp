@@ -16,12 +16,12 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kBatch = 64;  // frames a system call
+constexpr std::size_t kFramesAtOnce = 64;  // frames a system call
 
 class CanTransport final : public Transport {
  public:
   explicit CanTransport(const CanSettings& settings) : Transport(settings.interface), settings_(settings) {
-    for (std::size_t i = 0; i < kBatch; ++i) {
+    for (std::size_t i = 0; i < kFramesAtOnce; ++i) {
       vectors_[i] = {&raw_[i], sizeof raw_[i]};
       messages_[i].msg_hdr.msg_iov = &vectors_[i];
       messages_[i].msg_hdr.msg_iovlen = 1;
@@ -43,14 +43,14 @@ class CanTransport final : public Transport {
   CanSocket socket_;
   std::uint32_t drops_ = 0;
   bool blocks_ = false;
-  std::size_t filled_ = kBatch;  // messages_ that are to be made ready
+  std::size_t filled_ = kFramesAtOnce;  // messages_ that are to be made ready
   int leaving_ = 0;  // the interface went away with this errno; what waits in the socket is still read
   KernelStamps stamps_;
-  std::array<canfd_frame, kBatch> raw_{};
-  std::array<iovec, kBatch> vectors_{};
-  std::array<ControlRoom, kBatch> control_{};
-  std::array<mmsghdr, kBatch> messages_{};
-  std::array<ifog_can_frame, kBatch> frames_{};
+  std::array<canfd_frame, kFramesAtOnce> raw_{};
+  std::array<iovec, kFramesAtOnce> vectors_{};
+  std::array<ControlRoom, kFramesAtOnce> control_{};
+  std::array<mmsghdr, kFramesAtOnce> messages_{};
+  std::array<ifog_can_frame, kFramesAtOnce> frames_{};
 };
 
 bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
@@ -123,9 +123,9 @@ int CanTransport::receive_batch(int flags) noexcept {
     messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
     messages_[i].msg_hdr.msg_flags = 0;
   }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kBatch, flags, nullptr);
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, flags, nullptr);
   // One that failed may have been begun.
-  filled_ = std::min(kBatch, static_cast<std::size_t>(std::max(n, 0)) + 1);
+  filled_ = std::min(kFramesAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;
 }
 

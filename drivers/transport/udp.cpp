@@ -22,8 +22,8 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kBatch = 16;           // datagrams a system call
-constexpr std::size_t kLongest = 1U << 16U;  // no UDP payload is longer
+constexpr std::size_t kDatagramsAtOnce = 16;  // datagrams a system call
+constexpr std::size_t kLongest = 1U << 16U;   // no UDP payload is longer
 constexpr std::int64_t kInterfacePeriod_ns = 500'000'000;
 
 struct Addresses {
@@ -94,15 +94,15 @@ class UdpTransport final : public Transport {
   std::int64_t next_look_ns_ = 0;
   std::uint32_t drops_ = 0;
   KernelStamps stamps_;
-  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kBatch * kLongest);
-  std::array<iovec, kBatch> vectors_{};
-  std::array<sockaddr_storage, kBatch> senders_{};
-  std::array<ControlRoom, kBatch> control_{};
-  std::array<mmsghdr, kBatch> messages_{};
-  std::array<Arrival, kBatch> arrivals_{};
+  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kDatagramsAtOnce * kLongest);
+  std::array<iovec, kDatagramsAtOnce> vectors_{};
+  std::array<sockaddr_storage, kDatagramsAtOnce> senders_{};
+  std::array<ControlRoom, kDatagramsAtOnce> control_{};
+  std::array<mmsghdr, kDatagramsAtOnce> messages_{};
+  std::array<Arrival, kDatagramsAtOnce> arrivals_{};
   bool blocks_ = false;
-  std::size_t filled_ = kBatch;       // messages_ that are to be made ready
-  std::size_t count_ = 0, next_ = 0;  // read, and handed on of these
+  std::size_t filled_ = kDatagramsAtOnce;  // messages_ that are to be made ready
+  std::size_t count_ = 0, next_ = 0;       // read, and handed on of these
 };
 
 UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
@@ -113,7 +113,7 @@ UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
                                        settings.port)),
       settings_(settings),
       addresses_(std::move(addresses)) {
-  for (std::size_t i = 0; i < kBatch; ++i) {
+  for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
     vectors_[i] = {&bytes_[i * kLongest], kLongest};
     msghdr& header = messages_[i].msg_hdr;
     header.msg_iov = &vectors_[i];
@@ -212,10 +212,10 @@ int UdpTransport::receive_batch(bool may_wait) noexcept {
     messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
     messages_[i].msg_hdr.msg_flags = 0;
   }
-  const int n =
-      recvmmsg(socket_.fd(), messages_.data(), kBatch, may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kDatagramsAtOnce,
+                         may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
   // One that failed may have been begun.
-  filled_ = std::min(kBatch, static_cast<std::size_t>(std::max(n, 0)) + 1);
+  filled_ = std::min(kDatagramsAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;
 }
 

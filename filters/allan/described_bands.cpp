@@ -11,7 +11,7 @@ namespace ifog {
 namespace {
 
 constexpr double kTolerated = 0.1;  // relative departure of the deviation that the error bars may take up
-constexpr double kChance = 0.995;   // of the departures' χ² under the terms alone
+constexpr double kDepartureQuantile = 0.995;  // of the departures' χ² under the terms alone
 constexpr std::size_t kFewestBands = 6;
 
 struct Band {
@@ -65,7 +65,7 @@ double misfit_of(const std::vector<Departure>& found) {
     for (const Departure& d : found) sum += d.value * d.value / (d.variance + extra * extra);
     return sum;
   };
-  if (chi(0.0) <= chi_squared_quantile(kChance, degrees)) return 0.0;
+  if (chi(0.0) <= chi_squared_quantile(kDepartureQuantile, degrees)) return 0.0;
   double low = 0.0, high = 1e6;
   for (int i = 0; i < 100; ++i) (chi(0.5 * (low + high)) > degrees ? low : high) = 0.5 * (low + high);
   return high;

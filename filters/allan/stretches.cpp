@@ -12,7 +12,7 @@ namespace ifog {
 namespace {
 
 constexpr double kGap = 1.5;  // in periods
-constexpr std::size_t kBeside = 2;
+constexpr std::size_t kBesideGap = 2;
 
 // Some steps of the time with the samples around them.
 class Steps {
@@ -26,8 +26,8 @@ class Steps {
   // by the second sample on either side, which what one bad stamp does has no part in.
   [[nodiscard]] bool is_gap(std::size_t i, double period) const {
     if (step(i) <= kGap * period) return false;
-    const std::size_t low = i >= kBeside ? i - kBeside : 0;
-    const std::size_t high = std::min(i + 1 + kBeside, samples_ - 1);
+    const std::size_t low = i >= kBesideGap ? i - kBesideGap : 0;
+    const std::size_t high = std::min(i + 1 + kBesideGap, samples_ - 1);
     const double across = (at(high) - at(low)) / period;
     return across - static_cast<double>(high - low) > kGap - 1.0;
   }
@@ -46,8 +46,8 @@ void for_each_step(const SeriesView& time_s, Use use) {
   std::vector<double> room;
   for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
     const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
-    const std::size_t low = begin - std::min(begin, kBeside);
-    const std::size_t high = std::min(end + 1 + kBeside, samples);
+    const std::size_t low = begin - std::min(begin, kBesideGap);
+    const std::size_t high = std::min(end + 1 + kBesideGap, samples);
     const Steps steps(time_s.piece(low, high - low, room), low, samples);
     for (std::size_t i = begin; i < end; ++i) use(steps, i);
   }

@@ -10,7 +10,7 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kPlaces = 128;
-constexpr std::size_t kShortest = 64;
+constexpr std::size_t kFewestSamples = 64;
 constexpr double kTauOfSpan = 0.75;
 
 // Every term of Thêo1 as four angles with their signs, and its weight.
@@ -97,7 +97,7 @@ std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, do
                              int per_decade) {
   const auto part = std::max_element(sum.parts().begin(), sum.parts().end(),
                                      [](const auto& a, const auto& b) { return a.angles < b.angles; });
-  if (part == sum.parts().end() || part->angles <= kShortest) return {};
+  if (part == sum.parts().end() || part->angles <= kFewestSamples) return {};
   const std::size_t step = std::max<std::size_t>(1, (part->angles - 1) / kPlaces);
   const double scale = static_cast<double>(step);
   std::vector<double> angle;

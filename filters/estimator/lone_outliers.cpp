@@ -9,7 +9,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kFar = 5.5;  // sigma, as in a manoeuvre online
+constexpr double kFarOff = 5.5;  // sigma, as in a manoeuvre online
 // The cubic goes through the others where it is no further from one than so many sigma, or than this part of
 // how far it is from the measurement in question.
 constexpr double kNear = 4.0, kPart = 1.0 / 6.0;
@@ -60,7 +60,7 @@ bool suspect(const Neighbours& n, double sigma) {
     sum += weight * n.rate[i];
     squares += weight * weight;
   }
-  return sum * sum > kFar * kFar * squares * sigma * sigma;
+  return sum * sum > kFarOff * kFarOff * squares * sigma * sigma;
 }
 
 struct Cubic {
@@ -102,7 +102,7 @@ bool lone(Neighbours n, double sigma) {
     const Cubic through = fit(n);
     const double far = std::abs(through.here);
     const double near = std::max(kNear * sigma, kPart * far);
-    if (through.apart <= near) return far > kFar * sigma * std::sqrt(1.0 + through.variance);
+    if (through.apart <= near) return far > kFarOff * sigma * std::sqrt(1.0 + through.variance);
     if (left_out == kMostLeftOut || beside(n, through.worst)) return false;
     n.used[through.worst] = false;
   }

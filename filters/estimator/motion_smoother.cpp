@@ -16,7 +16,7 @@ using Matrix = Eigen::Matrix3d;
 // Bandwidth times memory: the Kalman filter of three integrators has gain 2 w, the fading parabola 3 / M.
 constexpr double kBandwidth = 1.5;
 // After so many samples that nobody has seen a motion may be any other.
-constexpr double kGap = 16.0;
+constexpr double kGapEnds = 16.0;
 // Samples whose filtered states are held at once.
 constexpr std::size_t kPiece = 4096;
 // Beyond what neighbours differ by, in squares.
@@ -72,7 +72,7 @@ class Course {
     const double t = of_.steps.empty() ? 1.0 : of_.steps[i];
     const float now = of_.memories[i], before = of_.memories[i - 1];
     const bool begins = before <= pace::kRest, ends = now <= pace::kRest;
-    if ((!ends && now <= pace::kBroken) || (!begins && before <= pace::kBroken) || t > kGap) {
+    if ((!ends && now <= pace::kBroken) || (!begins && before <= pace::kBroken) || t > kGapEnds) {
       driving.diagonal().setConstant(anything(i));
       return;
     }

@@ -9,7 +9,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kFar = 5.0;  // sigma
+constexpr double kFarOut_sigma = 5.0;  // sigma
 // Where more than one sample in a thousand is far they are the sensor's own, and carry angle: only what is
 // much further out is kept out.
 constexpr double kTails = 1e-3;
@@ -17,8 +17,8 @@ constexpr double kFarInTails = 20.0;
 constexpr double kMemory = 8192.0;
 // Before any was seen; and what is assumed of samples to come.
 constexpr double kLeastShare = 1e-9;
-// The log-likelihood ratio a sample of kFar sigma has at most.
-constexpr double kMostEvidence = 0.5 * kFar * kFar;
+// The log-likelihood ratio a sample of kFarOut_sigma has at most.
+constexpr double kMostEvidence = 0.5 * kFarOut_sigma * kFarOut_sigma;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
     if ((now.valid >> a & 1U) == 0) continue;
     const double own = now.innovation[a] * now.innovation[a] / (now.rest_factor * now.scale[a]);
     farthest = std::max(farthest, own);
-    if (own > kFar * kFar) far_axes |= 1U << a;
+    if (own > kFarOut_sigma * kFarOut_sigma) far_axes |= 1U << a;
     square += own;
     ++axes;
     if (length_ == 0 || (measured_ >> a & 1U) == 0) continue;
@@ -55,7 +55,7 @@ void OutlierRun::take(const Surprise& now, double lag) noexcept {
     apart += step * step / now.scale[a];
   }
   samples_ = std::min(samples_ + 1.0, kMemory);
-  if (farthest <= kFar * kFar) {
+  if (farthest <= kFarOut_sigma * kFarOut_sigma) {
     // Of the axes that are far it says nothing where it has none of them. But those may be gone for good, and
     // what comes long after is no part of the row.
     if (length_ > 0 && (now.valid & far_axes_) == 0 && ++waited_ <= kMost) return;

@@ -13,7 +13,7 @@ constexpr int kBlock = 4;  // samples: in as many the quickest walk that is lear
 // Left out of an end of a stretch, blocks at most.
 constexpr std::size_t kMostTrimmed = 256;
 // Blocks: that something is said of, and that R is known well by.
-constexpr std::size_t kLeast = 64, kMany = 2048;
+constexpr std::size_t kLeastMeans = 64, kManyMeans = 2048;
 // Lags of the walk, in blocks, below which these are too long for it.
 constexpr double kLeastLag = 4.0;
 // Squares of innovations at most, in variances.
@@ -139,8 +139,8 @@ void RestLikelihood::end(bool motion_comes) {
 
 RestOfRecord RestLikelihood::fit(double walk) const {
   std::vector<Stretches> levels{{{blocks_.begin(), blocks_.end()}, ends_}};
-  if (levels.front().means.size() < kLeast) return {};
-  while (levels.back().means.size() >= 2 * kLeast) levels.push_back(levels.back().halved());
+  if (levels.front().means.size() < kLeastMeans) return {};
+  while (levels.back().means.size() >= 2 * kLeastMeans) levels.push_back(levels.back().halved());
   const auto samples = [](std::size_t level) { return std::ldexp(double{kBlock}, static_cast<int>(level)); };
   RestOfRecord out;
   for (std::size_t k = levels.size(); k-- > 0;) {
@@ -158,7 +158,7 @@ RestOfRecord RestLikelihood::fit(double walk) const {
   // With that walk R of shorter blocks, which are many.
   for (std::size_t k = levels.size(); k-- > 0;) {
     const double block = samples(k), ratio = out.walk * block * block / out.noise;
-    if (levels[k].means.size() < kMany && k > 0) continue;
+    if (levels[k].means.size() < kManyMeans && k > 0) continue;
     if (ratio <= kMostRatio) out.noise = block * judge(levels[k], ratio, out.noise / block).noise;
     break;
   }

@@ -15,7 +15,7 @@ constexpr double kSurely = 6.0;
 constexpr double kIndependent = 0.5;
 // Trials of the ratio of walk to noise: a factor apart, up to a walk that is all there is.
 constexpr double kStep = 1.2;
-constexpr double kMostRatio = 10.0;
+constexpr double kMostNoiseRatio = 10.0;
 // Of ratios that fit nearly as well as the best, a standard error wide, the quickest walk is taken: a filter
 // that is a little too quick is a little louder, one that is too slow takes the walk for motion, and finds no
 // rest to learn better from.
@@ -37,7 +37,7 @@ bool RestNoise::RatioSearch::advance(const OctaveSums& sums) noexcept {
   }
   if (here <= lowest_ + kNearlyAsWell) quickest_ = next_;
   next_ *= kStep;
-  return !(next_ < kMostRatio);
+  return !(next_ < kMostNoiseRatio);
 }
 
 void RestNoise::recall(const OctaveSums& known) noexcept {

@@ -20,9 +20,9 @@ constexpr double kMostGain = 0.999;
 // they are two.
 constexpr std::size_t kFurthest = 100'000;
 // An outlier that is one whatever the other direction says of it, sigma.
-constexpr double kFar = 20.0;
+constexpr double kFarAway = 20.0;
 // A motion is looked at over this many samples at least, however quick the filter at rest is.
-constexpr double kLeastReach = 48.0;
+constexpr double kLeastBehind = 48.0;
 
 // What one direction finds a sample of one axis to be.
 enum class Found : std::uint8_t { rest, kept_out, far_out, motion };
@@ -43,7 +43,7 @@ Found found(const EstimatorOutput& out) {
   if ((out.flags & kManoeuvre) != 0) return Found::motion;
   if ((out.flags & kGated) == 0) return Found::rest;
   const double innovation = out.innovation_radps[0];
-  return innovation * innovation > kFar * kFar * out.innovation_variance[0] ? Found::far_out
+  return innovation * innovation > kFarAway * kFarAway * out.innovation_variance[0] ? Found::far_out
                                                                             : Found::kept_out;
 }
 
@@ -149,7 +149,7 @@ Smoothed smooth_axis(const FilterSettings& settings, bool learn_walk, const Axis
   Samples walk(length);
   for (std::size_t i = 0; i < length; ++i) walk[i] = walked * steps[i];
   RateCourse course{rate, walk, steps, {}};
-  find_paces(course, noise, std::max(kLeastReach, std::sqrt(noise / walked)), memories);
+  find_paces(course, noise, std::max(kLeastBehind, std::sqrt(noise / walked)), memories);
   course.memories = memories;
   return smooth_course(course, noise);
 }

@@ -16,11 +16,11 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kLeast = 32;
+constexpr std::size_t kLeastMeasured = 32;
 // Third differences: whose median says something, of how many, and the samples that one may go over.
 constexpr std::size_t kLeastThirds = 12, kShareOfThirds = 16, kMostSpan = 64;
 // As in rest_noise.cpp; nearer to the best, as these seconds may have been motion.
-constexpr double kNearlyAsWell = 0.3;
+constexpr double kNearlyAsLikely = 0.3;
 // Median of the square of a standard normal.
 constexpr double kMedianSquare = 0.4549364;
 
@@ -120,7 +120,7 @@ Fit fit(const std::vector<Octave>& all, double n) {
     const double ratio = std::exp(lowest + (highest - lowest) * i / kGrid);
     const OctaveFit here = fit_octaves(squares, counts, ratio);
     least = std::min(least, here.misfit);
-    if (here.misfit <= least + kNearlyAsWell) taken = {ratio, here};
+    if (here.misfit <= least + kNearlyAsLikely) taken = {ratio, here};
   }
   return taken;
 }
@@ -165,7 +165,7 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
     const auto present = static_cast<std::size_t>(
         std::count_if(rate.begin(), rate.end(), [](double r) { return std::isfinite(r); }));
     most = std::max(most, present);
-    if (present < kLeast) continue;
+    if (present < kLeastMeasured) continue;
     ++measured;
     for (const double r : rate)
       if (std::isfinite(r)) greatest = std::max(greatest, std::abs(r));
@@ -179,7 +179,7 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
   }
   if (measured == 0) {
     throw std::invalid_argument("start-up data: " + std::to_string(most) +
-                                " measurements, expected at least " + std::to_string(kLeast));
+                                " measurements, expected at least " + std::to_string(kLeastMeasured));
   }
   const auto n = static_cast<double>(most);
   const double last_digit = std::max(greatest * std::numeric_limits<float>::epsilon(), 1e-12);

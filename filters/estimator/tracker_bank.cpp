@@ -11,7 +11,7 @@ namespace {
 
 // The shortest is the measurement itself: theta = 0. The next has theta = 0.3.
 constexpr double kShortest = 1.0 / 0.7;
-const double kApart = std::sqrt(10.0);
+const double kPaceRatio = std::sqrt(10.0);
 // A motion is looked for over this many samples at least, however short the filter at rest is.
 constexpr double kLeastReach = 48.0;
 // A parabola is prolonged by so many lengths of what it goes through: behind them, whatever it was that it
@@ -30,7 +30,7 @@ constexpr double kUnknown = 1e6;
 
 TrackerBank::TrackerBank() {
   memory_[0] = 1.0;
-  for (std::size_t j = 1; j < kMost; ++j) memory_[j] = j == 1 ? kShortest : memory_[j - 1] * kApart;
+  for (std::size_t j = 1; j < kMost; ++j) memory_[j] = j == 1 ? kShortest : memory_[j - 1] * kPaceRatio;
   for (std::size_t j = 0; j < kMost; ++j) {
     const double theta = 1.0 - 1.0 / memory_[j], m = 1.0 / memory_[j];
     Gains& g = fading_[j];

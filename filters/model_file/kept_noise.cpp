@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kSchema = "ifog.noise/1";
 // Of a variance in (rad/s)^2, of a square or a count: beyond it no figure of a sensor lies.
-constexpr double kMost = 1e18;
+constexpr double kMostKept = 1e18;
 
 class Reader {
  public:
@@ -43,8 +43,8 @@ class Reader {
  private:
   [[nodiscard]] double plausible(const char* key, std::optional<double> value, double least) const {
     // Written so that NaN fails.
-    if (!value || !(*value >= least && *value <= kMost))
-      fail(key, "expected a number from " + toml_number(least) + " to " + toml_number(kMost));
+    if (!value || !(*value >= least && *value <= kMostKept))
+      fail(key, "expected a number from " + toml_number(least) + " to " + toml_number(kMostKept));
     return *value;
   }
 

@@ -60,7 +60,7 @@ std::vector<FormFound> by_form(std::span<const FoundInGyro> found) {
   return forms;
 }
 
-double median_of(std::vector<double> values) {
+double geometric_median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   return n % 2 == 1 ? values[n / 2] : std::sqrt(values[n / 2 - 1] * values[n / 2]);
@@ -72,7 +72,7 @@ Effect typical(const FormFound& form) {
   for (ModelParameter& each : effect.parameters) each.value = each.std_error = 0.0;
   for (const auto& [name, values] : form.further)
     if (2 * values.size() > form.gyros.size())
-      effect.parameters.push_back({name, median_of(values), 0.0, "s"});
+      effect.parameters.push_back({name, geometric_median(values), 0.0, "s"});
   return effect;
 }
 

@@ -6,12 +6,12 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kLeast = 64, kMostRuns = 4096;
+constexpr std::size_t kLeastHeld = 64, kMostRuns = 4096;
 
 }  // namespace
 
 HeldApart apart_from_held(const SeriesView& rate, const std::vector<Stretch>& parts) {
-  const std::size_t least = std::max(kLeast, rate.size() / kMostRuns);
+  const std::size_t least = std::max(kLeastHeld, rate.size() / kMostRuns);
   HeldApart out;
   std::size_t steps = 0, changes = 0;  // where it moves
   for (const Stretch& part : parts) {
@@ -44,7 +44,7 @@ HeldApart apart_from_held(const SeriesView& rate, const std::vector<Stretch>& pa
     });
     if (!close(part.end)) move_until(part.end, here);
   }
-  if (out.held.empty() || steps < kLeast || 2 * changes < steps) return {{}, parts};
+  if (out.held.empty() || steps < kLeastHeld || 2 * changes < steps) return {{}, parts};
   return out;
 }
 

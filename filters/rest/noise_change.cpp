@@ -36,7 +36,7 @@ constexpr double kMostTimes = 5.0;
 constexpr double kUsual = 128.0;
 // Of the values, what differs by less does not differ: their rounding. Of a coarse sensor most neighbours are
 // the same; what is usual is said by those that are not.
-constexpr double kRounding = 1e-13;
+constexpr double kRoundedAway = 1e-13;
 // Beyond, what is loud or quiet stands against next to nothing.
 constexpr double kMostLoud = 1e6;
 // A step of so many usual ones is a spike if it is back within so many samples.
@@ -70,7 +70,7 @@ class Pyramid {
       if (++level.count < 4 || level.count % 2 == 1) return;
       const auto& x = level.last;
       add(k, at, kHigh[0] * x[0] + kHigh[1] * x[1] + kHigh[2] * x[2] + kHigh[3] * x[3],
-          kRounding * (std::abs(x[2]) + std::abs(x[3])));
+          kRoundedAway * (std::abs(x[2]) + std::abs(x[3])));
       value = kHigh[3] * x[0] - kHigh[2] * x[1] + kHigh[1] * x[2] - kHigh[0] * x[3];
     }
   }
@@ -88,7 +88,7 @@ class Pyramid {
     }
     replaced_ = 0;
     accepted_ = rate;
-    if (first || step <= kRounding * std::abs(rate)) return rate;
+    if (first || step <= kRoundedAway * std::abs(rate)) return rate;
     steps_ = std::min(steps_ + 1.0, kUsual);
     usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
     return rate;

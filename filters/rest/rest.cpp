@@ -24,7 +24,7 @@ constexpr double kLeastTurn = 1e-3;  // rad/s
 constexpr double kShaken = 4.0;
 constexpr double kQuieter = 0.3;          // share of the windows taken to be quiet
 constexpr std::size_t kShortestRest = 8;  // windows between two that move
-constexpr double kEnough = 0.5;           // of the record
+constexpr double kEnoughOfRecord = 0.5;   // of the record
 
 enum class State : unsigned char { kResting, kShaking, kTurning };
 
@@ -243,7 +243,7 @@ std::string in_words(const Rest& rest, double period_s, double first_s) {
 
 void require_rest(const Rest& rest, double period_s, double first_s) {
   if (rest.turned == 0) return;
-  if (static_cast<double>(rest.resting()) >= kEnough * static_cast<double>(rest.samples)) return;
+  if (static_cast<double>(rest.resting()) >= kEnoughOfRecord * static_cast<double>(rest.samples)) return;
   throw std::invalid_argument("the sensor was " + in_words(rest, period_s, first_s) +
                               "; expected a record that is mostly at rest");
 }

@@ -23,7 +23,7 @@
 namespace ifog::tools {
 namespace {
 
-struct Options {
+struct RecordOptions {
   std::string folder, sensor, url = "udpm://239.255.76.67:7667?ttl=0";
   std::vector<std::string> channels;  // others
   double seconds = 0.0;               // 0: until interrupted
@@ -34,7 +34,7 @@ constexpr int kTurn_ms = 50;
 
 class LcmRecorder {
  public:
-  explicit LcmRecorder(const Options& options)
+  explicit LcmRecorder(const RecordOptions& options)
       : options_(options),
         listener_(options.url, [this](const lcm_recv_buf_t& message,
                                       const std::string& channel) { take(message, channel); }),
@@ -48,14 +48,14 @@ class LcmRecorder {
   void run();
 
  private:
-  static ArchiveLimits limits(const Options& options) {
+  static ArchiveLimits limits(const RecordOptions& options) {
     ArchiveLimits out;
     out.bytes = static_cast<std::uint64_t>(options.bytes);
     out.age_ns = static_cast<std::int64_t>(options.days * 86'400e9);
     out.file_bytes = static_cast<std::uint64_t>(options.file_bytes);
     return out;
   }
-  static FlightHeader header(const Options& options) {
+  static FlightHeader header(const RecordOptions& options) {
     FlightHeader out;
     out.program = IFOG_VERSION;
     out.sensor = options.sensor;
@@ -70,7 +70,7 @@ class LcmRecorder {
   void tell_trouble();
   void tell_books() const;
 
-  const Options& options_;
+  const RecordOptions& options_;
   LcmListener listener_;
   MessageArchive messages_;
   bool troubled_ = false;
@@ -126,7 +126,7 @@ void LcmRecorder::run() {
 void add_record(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("record", "Record what the daemon publishes on LCM, for every command to read");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   command->add_option("--output", options->folder, "Folder of the recordings; made if it is not there")
       ->required()
       ->type_name("FOLDER");

@@ -36,7 +36,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct TuneArguments {
   CaptureInput input;
   TimePart part;
   std::string capture, model, json_file;
@@ -256,7 +256,7 @@ Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string
   return model;
 }
 
-json tuning_json(const Options& options, const Tuning& tuning, std::size_t left, double period,
+json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t left, double period,
                  const NoiseByAxis& noise, const std::vector<std::string>& axes) {
   json models = json::array();
   for (const TunedModel& model : tuning.models) models.push_back(model_json(model, axes));
@@ -271,7 +271,7 @@ json tuning_json(const Options& options, const Tuning& tuning, std::size_t left,
               {"models", models}};
 }
 
-void run(const Options& options) {
+void run(const TuneArguments& options) {
   options.input.will_read("capture", options.capture);
   will_write("--json", options.json_file, kJsonEndings);
   will_write("--write-model", options.model, kModelEndings);
@@ -329,7 +329,7 @@ void run(const Options& options) {
 void add_tune(CLI::App& app) {
   auto* command =
       app.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneArguments>();
   command->add_option("capture", options->capture, "a capture at rest")->required();
   command->add_option("--write-model", options->model, "model file that ifogd and denoise read");
   command->add_option("--json", options->json_file, "write the figures as JSON");

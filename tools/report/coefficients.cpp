@@ -20,7 +20,7 @@ std::string padded(std::string s, std::size_t width) {
   return s;
 }
 
-std::string with_error(double value, double error) {
+std::string value_and_error(double value, double error) {
   // As many digits as the error has to say: two of its own.
   const int digits =
       error > 0.0 && value > 0.0
@@ -65,7 +65,7 @@ std::string coefficient_lines(const NoiseCoefficients& found) {
     if (c.present)
       std::snprintf(line.data(), line.size(), "  %s  %s %s %s  (%.4g ± %.2g %s)\n", named.letter,
                     meaning.c_str(),
-                    padded(with_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
+                    padded(value_and_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
                     padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit);
     else
       std::snprintf(line.data(), line.size(), "  %s  %s not seen; below %s %s\n", named.letter,

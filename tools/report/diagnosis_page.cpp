@@ -11,18 +11,13 @@
 #include "tools/report/account.h"
 #include "tools/report/diagnosis_pictures.h"
 #include "tools/report/interaction.h"
+#include "tools/report/section.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"
 #include "tools/report/words.h"
 
 namespace ifog::report {
 namespace {
-
-std::string section(const std::string& id, const std::string& heading, const std::string& body) {
-  if (body.empty()) return "";
-  return "<section aria-labelledby=\"" + id + "\">\n<h2 id=\"" + id + "\">" + heading + "</h2>\n" + body +
-         "</section>\n";
-}
 
 std::string parameter_rows(const Effect& e) {
   std::string out;

@@ -10,6 +10,7 @@
 #include "filters/units/field_units.h"
 #include "tools/report/account.h"
 #include "tools/report/chart.h"
+#include "tools/report/section.h"
 #include "tools/report/text.h"
 #include "tools/report/time_axis.h"
 #include "tools/report/traced.h"
@@ -29,11 +30,6 @@ Series centred(Series x, double scale) {
   for (double& value : x)
     value = (value - sum / static_cast<double>(std::max<std::size_t>(count, 1))) * scale;
   return x;
-}
-
-std::string figure_html(const std::string& svg, const std::string& caption) {
-  if (svg.empty()) return "";
-  return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
 }
 
 // As the captures' columns say them.

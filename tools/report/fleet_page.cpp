@@ -11,6 +11,7 @@
 #include "tools/report/account.h"
 #include "tools/report/chart.h"
 #include "tools/report/interaction.h"
+#include "tools/report/section.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"
 #include "tools/report/words.h"
@@ -19,17 +20,6 @@ namespace ifog::report {
 namespace {
 
 constexpr std::size_t kMostDrawn = 7;  // parameters of one picture: a colour each
-
-std::string section(const std::string& id, const std::string& heading, const std::string& body) {
-  if (body.empty()) return "";
-  return "<section aria-labelledby=\"" + id + "\">\n<h2 id=\"" + id + "\">" + heading + "</h2>\n" + body +
-         "</section>\n";
-}
-
-std::string figure_html(const std::string& svg, const std::string& caption) {
-  if (svg.empty()) return "";
-  return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
-}
 
 std::string table(const std::string& caption, const std::vector<std::string>& heads,
                   const std::string& rows) {

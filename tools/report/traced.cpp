@@ -13,7 +13,7 @@
 namespace ifog::report {
 namespace {
 
-using Series = Samples;
+using Trace = Samples;
 
 std::span<const double> column(const Record& record, const std::string& name) {
   if (is_reference_rate(name)) return record.reference_radps;
@@ -28,12 +28,12 @@ double step_s(const Record& r, std::size_t k) {
 }
 
 // The error with every effect but one taken away, about its mean.
-Series error_without(const Record& record, const Diagnosis& diagnosis, std::size_t kept) {
+Trace error_without(const Record& record, const Diagnosis& diagnosis, std::size_t kept) {
   Model others;
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
     if (i != kept) others.effects.push_back(diagnosis.effects[i].effect);
   for (Effect& e : others.effects) e.axis.clear();
-  Series error = compensated_error(record, others);
+  Trace error = compensated_error(record, others);
   double sum = 0.0;
   std::size_t count = 0;
   for (const double value : error) {
@@ -46,11 +46,11 @@ Series error_without(const Record& record, const Diagnosis& diagnosis, std::size
 }
 
 // The shape's value at each sample, per unit of its coefficient; for a table the channel itself.
-Series abscissa(const Record& record, const Effect& effect) {
+Trace abscissa(const Record& record, const Effect& effect) {
   const bool table = form_named(effect.form) == Form::kLookup;
   const std::span<const double> x = column(record, effect.channel),
                                 with = column(record, effect.with_channel);
-  Series out(record.rate_radps.size(), std::nan(""));
+  Trace out(record.rate_radps.size(), std::nan(""));
   if (x.size() != out.size() || (!effect.with_channel.empty() && with.size() != out.size())) return out;
   // A polynomial without a partner is drawn over the channel, where its curve shows.
   const bool plain = table || (effect.with_channel.empty() && power_of(*form_named(effect.form)) > 0);
@@ -73,8 +73,8 @@ Series abscissa(const Record& record, const Effect& effect) {
 }
 
 // Angle errors wander with the integrated noise; within a few wraps of the channel they do not.
-Series integrated(const Record& record, const Series& error, const Series& x, double period) {
-  Series angle(error.size());
+Trace integrated(const Record& record, const Trace& error, const Trace& x, double period) {
+  Trace angle(error.size());
   double sum = 0.0;
   for (std::size_t k = 0; k < error.size(); ++k)
     angle[k] = sum += std::isfinite(error[k]) ? error[k] * step_s(record, k) : 0.0;
@@ -82,9 +82,9 @@ Series integrated(const Record& record, const Series& error, const Series& x, do
   for (std::size_t k = 1; k < x.size(); ++k)
     if (std::abs(x[k] - x[k - 1]) > 0.5 * period) ++wraps;
   const std::size_t half = std::clamp<std::size_t>(2 * x.size() / wraps, 32, 10000);
-  Series cumulative(angle.size() + 1, 0.0);
+  Trace cumulative(angle.size() + 1, 0.0);
   std::partial_sum(angle.begin(), angle.end(), cumulative.begin() + 1);
-  Series out(angle.size());
+  Trace out(angle.size());
   for (std::size_t k = 0; k < angle.size(); ++k) {
     const std::size_t from = k > half ? k - half : 0, to = std::min(k + half + 1, angle.size());
     out[k] = angle[k] - (cumulative[to] - cumulative[from]) / static_cast<double>(to - from);
@@ -93,7 +93,7 @@ Series integrated(const Record& record, const Series& error, const Series& x, do
 }
 
 // Means of x and y over so many bins of x.
-void bin(const Series& x, const Series& y, std::size_t bins, Traced& out) {
+void bin(const Trace& x, const Trace& y, std::size_t bins, Traced& out) {
   FiledVector<std::size_t> order;
   for (std::size_t k = 0; k < x.size(); ++k)
     if (std::isfinite(x[k]) && std::isfinite(y[k])) order.push_back(k);
@@ -124,10 +124,10 @@ Traced trace(const std::vector<Record>& records, const Diagnosis& diagnosis, std
   const std::optional<Form> form = form_named(effect.form);
   if (!form || !has_channel(*form) || describes_noise(*form) || effect.channel.empty()) return out;
   out.angle = *form == Form::kLookup && effect.angle;
-  Series all_x, all_y;
+  Trace all_x, all_y;
   for (const Record& record : records) {
-    const Series x = abscissa(record, effect);
-    Series y = error_without(record, diagnosis, index);
+    const Trace x = abscissa(record, effect);
+    Trace y = error_without(record, diagnosis, index);
     if (out.angle) y = integrated(record, y, x, effect.period);
     all_x.insert(all_x.end(), x.begin(), x.end());
     all_y.insert(all_y.end(), y.begin(), y.end());

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kChunk = 65'536;  // rows
 constexpr unsigned kGzip = 6;
-constexpr std::int64_t kMostSeconds = 9'000'000'000;  // that 64 bits hold in ns
-constexpr std::size_t kStep = 4U << 20U;              // bytes by which the file in memory grows
+constexpr std::int64_t kMostSecondsInNs = 9'000'000'000;  // that 64 bits hold in ns
+constexpr std::size_t kStep = 4U << 20U;                  // bytes by which the file in memory grows
 
 // As a person writes the unit that a column's name ends in.
 std::string unit_of(const std::string& name) {
@@ -130,7 +130,7 @@ void Hdf5Writer::rows(std::span<const std::span<const double>> columns, const Ti
 // They are the last that are held.
 void Hdf5Writer::take_large_times(std::span<const double> since_s, const TimeOrigin& origin) {
   times_are_large_ =
-      std::abs(origin.s) < kMostSeconds && !std::count(names_.begin(), names_.end(), kHdf5ExactTime);
+      std::abs(origin.s) < kMostSecondsInNs && !std::count(names_.begin(), names_.end(), kHdf5ExactTime);
   std::vector<double>& time = held_.front();
   std::transform(since_s.begin(), since_s.end(), time.end() - static_cast<std::ptrdiff_t>(since_s.size()),
                  [&](double since) { return origin.told(since); });

@@ -11,12 +11,12 @@
 namespace ifog {
 namespace {
 
-constexpr double kCertain = 4.0;    // standard errors
-constexpr double kVisible = 5.0;    // standard deviations, of what is predicted
-constexpr double kUncertain = 0.2;  // of the prediction's square, the most that may be doubt of it
-constexpr double kMoves = 1e-6;     // of the regressors' square here, the least in the others
-constexpr double kAsMuch = 0.25;    // of the regressors' squares in all others together
-constexpr double kUnseen = 9.0;     // twice the log-likelihood that a capture gains by the law of all
+constexpr double kCertainlyOff = 4.0;  // standard errors
+constexpr double kVisible = 5.0;       // standard deviations, of what is predicted
+constexpr double kUncertain = 0.2;     // of the prediction's square, the most that may be doubt of it
+constexpr double kMoves = 1e-6;        // of the regressors' square here, the least in the others
+constexpr double kAsMuch = 0.25;       // of the regressors' squares in all others together
+constexpr double kUnseen = 9.0;        // twice the log-likelihood that a capture gains by the law of all
 
 struct Split {
   Columns columns;         // measurement, all else, the group in the other records, the group in this one
@@ -80,7 +80,7 @@ bool prediction_fails(const Whitened& of, DeniedEffects& found) {
   found.share = predicted.dot(of.error) / square;
   const Eigen::VectorXd slope = of.here.transpose() * (of.error - 2.0 * found.share * predicted) / square;
   found.share_error = std::sqrt(of.variance / square + slope.dot(covariance * slope));
-  return found.share + kCertain * found.share_error < 0.5;
+  return found.share + kCertainlyOff * found.share_error < 0.5;
 }
 
 // Seen by the others, not by this one, though it was tried as hard here.

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/diagnosis/record/carrier.h"
+
 namespace ifog {
 namespace {
 
 using Complex = std::complex<double>;
 
 constexpr std::size_t kPieces = 512;
-
-Complex carrier_of(double cycles) {
-  return std::polar(1.0, 2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
-}
 
 }  // namespace
 

@@ -10,15 +10,15 @@
 namespace ifog {
 namespace {
 
-constexpr double kCertain =
+constexpr double kCertainlyAnother =
     60.0;  // twice the log-likelihood, of the harmonics there and over those that stand
 // The rate as measured has a bias, which the loop's ramp need not share, and another one from capture to
 // capture: k is as uncertain.
 constexpr double kBiased = 0.02;
-constexpr double kApart = 2.0;      // such reaches, between where lines would move and where they would stand
-constexpr double kAlike = 3.0;      // factor of the amplitude, in angle, from capture to capture
-constexpr std::size_t kMost = 8;    // harmonics
-constexpr double kOneCentre = 4.0;  // widths of a line to either side
+constexpr double kApart = 2.0;  // such reaches, between where lines would move and where they would stand
+constexpr double kAlike = 3.0;  // factor of the amplitude, in angle, from capture to capture
+constexpr std::size_t kComparedHarmonics = 8;  // harmonics
+constexpr double kOneCentre = 4.0;             // widths of a line to either side
 
 struct Best {
   double cycles_per_rad = 0.0, energy = 0.0;
@@ -72,7 +72,7 @@ RampBetween follow_comb(const UnbrokenPart& first, const RampComb& comb, const U
   const double k = comb.cycles_per_rad;
   const VisibleCycles visible = visible_cycles(other);
   if (!(visible.least < k && k < visible.most)) return found;
-  const std::size_t harmonics = std::min(comb.harmonics, kMost);
+  const std::size_t harmonics = std::min(comb.harmonics, kComparedHarmonics);
   const double width = 1.0 / span_of(other);
   const double narrow = width + 1.0 / span_of(first);
   const double reach = narrow + kBiased * k;
@@ -88,8 +88,8 @@ RampBetween follow_comb(const UnbrokenPart& first, const RampComb& comb, const U
   found.gain = (best.energy - best.usual) / one;
   found.over_standing = (best.energy - fixed.energy) / one;
   const double size = as_angle(best.energy, other) / std::max(as_angle(here.energy, first), 1e-300);
-  found.moves = found.gain > kCertain && found.over_standing > kCertain && size < kAlike * kAlike &&
-                size > 1.0 / (kAlike * kAlike);
+  found.moves = found.gain > kCertainlyAnother && found.over_standing > kCertainlyAnother &&
+                size < kAlike * kAlike && size > 1.0 / (kAlike * kAlike);
   return found;
 }
 

@@ -7,6 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "filters/diagnosis/record/carrier.h"
+
 namespace ifog {
 namespace {
 
@@ -15,17 +17,13 @@ using Complex = std::complex<double>;
 constexpr Eigen::Index kRows = 512;  // summed at a time
 constexpr std::size_t kStep = 4;     // harmonics more at each trial
 constexpr std::size_t kPhasePieces = 32;
-constexpr Eigen::Index kFirst = 8;  // harmonics that any table has
-constexpr double kWalkSeen = 0.1;   // of the phase that blurs the table: a smaller walk is not told
+constexpr Eigen::Index kFirstHarmonics = 8;  // harmonics that any table has
+constexpr double kWalkSeen = 0.1;            // of the phase that blurs the table: a smaller walk is not told
 
-struct Sums {
+struct TableSums {
   Eigen::MatrixXd gram;
   Eigen::VectorXd moment;
 };
-
-Complex carrier_of(double cycles) {
-  return std::polar(1.0, 2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
-}
 
 // Rates that cosine and sine of each harmonic of one radian make, one sample.
 template <class Row>
@@ -43,13 +41,14 @@ void fill(Row&& row, double k, double before_rad, double now_rad, double sample_
   }
 }
 
-std::array<Sums, kRampParts> sums_by_part(const UnbrokenPart& part, double k, Eigen::Index columns) {
-  std::array<Sums, kRampParts> sums;
-  for (Sums& each : sums) each = {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
+std::array<TableSums, kRampParts> sums_by_part(const UnbrokenPart& part, double k, Eigen::Index columns) {
+  std::array<TableSums, kRampParts> sums;
+  for (TableSums& each : sums)
+    each = {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
   Eigen::MatrixXd rows(columns, kRows);
   Eigen::VectorXd error(kRows);
   Eigen::Index filled = 0;
-  const auto add_to = [&](Sums& into) {
+  const auto add_to = [&](TableSums& into) {
     if (filled == 0) return;
     into.gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.leftCols(filled));
     into.moment += rows.leftCols(filled) * error.head(filled);
@@ -62,7 +61,7 @@ std::array<Sums, kRampParts> sums_by_part(const UnbrokenPart& part, double k, Ei
     const bool last = i + 1 == part.size() || ramp_part(i + 1, part.size()) != now;
     if (last || filled == kRows) add_to(sums[now]);
   }
-  for (Sums& each : sums) {
+  for (TableSums& each : sums) {
     each.gram = each.gram.selfadjointView<Eigen::Lower>();
     for (Eigen::Index i = 0; i < columns; ++i) {
       if (!part.stroboscopic(k, static_cast<std::size_t>(i / 2 + 1))) continue;
@@ -77,8 +76,8 @@ std::array<Sums, kRampParts> sums_by_part(const UnbrokenPart& part, double k, Ei
 // Variance of a sample over that of the harmonics' angles times their squared order, which is much the same
 // for all harmonics of anything with an edge. At a constant rate a harmonic may stand still from sample to
 // sample: without this its angle is anything, and at another rate a large error.
-double stiffness(const Sums& sums, double variance) {
-  const Eigen::Index columns = std::min<Eigen::Index>(sums.moment.size(), 2 * kFirst);
+double stiffness(const TableSums& sums, double variance) {
+  const Eigen::Index columns = std::min<Eigen::Index>(sums.moment.size(), 2 * kFirstHarmonics);
   const Eigen::VectorXd first =
       sums.gram.topLeftCorner(columns, columns).ldlt().solve(sums.moment.head(columns));
   double square = 0.0;
@@ -89,7 +88,7 @@ double stiffness(const Sums& sums, double variance) {
   return variance / std::max(square, 1e-300);
 }
 
-Eigen::VectorXd solved(const Sums& sums, Eigen::Index columns, double stiff) {
+Eigen::VectorXd solved(const TableSums& sums, Eigen::Index columns, double stiff) {
   Eigen::MatrixXd gram = sums.gram.topLeftCorner(columns, columns);
   for (Eigen::Index i = 0; i < columns; ++i) {
     const auto order = static_cast<double>(i / 2 + 1);
@@ -100,17 +99,17 @@ Eigen::VectorXd solved(const Sums& sums, Eigen::Index columns, double stiff) {
   return gram.ldlt().solve(sums.moment.head(columns));
 }
 
-double explained(const Sums& sums, const Eigen::VectorXd& table) {
+double explained(const TableSums& sums, const Eigen::VectorXd& table) {
   const Eigen::Index n = table.size();
   return table.dot(2.0 * sums.moment.head(n) - sums.gram.topLeftCorner(n, n) * table);
 }
 
 // What tables without each part explain of that part, all together.
-double held_out_gain(const std::array<Sums, kRampParts>& parts, const Sums& all, Eigen::Index columns,
-                     double stiff, std::array<Eigen::VectorXd, kRampParts>& without) {
+double held_out_gain(const std::array<TableSums, kRampParts>& parts, const TableSums& all,
+                     Eigen::Index columns, double stiff, std::array<Eigen::VectorXd, kRampParts>& without) {
   double gain = 0.0;
   for (std::size_t p = 0; p < kRampParts; ++p) {
-    const Sums others{all.gram - parts[p].gram, all.moment - parts[p].moment};
+    const TableSums others{all.gram - parts[p].gram, all.moment - parts[p].moment};
     without[p] = solved(others, columns, stiff);
     gain += explained(parts[p], without[p]);
   }
@@ -191,9 +190,9 @@ RampTable RampTable::without(std::size_t part) const {
 std::optional<RampTable> fit_ramp_table(const UnbrokenPart& part, const RampComb& comb) {
   const std::size_t most = std::min(
       {kMostHarmonics, comb.harmonics + comb.harmonics / 4 + 2 * kStep, part.size() / (40 * kRampParts)});
-  const std::array<Sums, kRampParts> parts =
+  const std::array<TableSums, kRampParts> parts =
       sums_by_part(part, comb.cycles_per_rad, static_cast<Eigen::Index>(2 * most));
-  Sums all = parts[0];
+  TableSums all = parts[0];
   for (std::size_t p = 1; p < kRampParts; ++p) {
     all.gram += parts[p].gram;
     all.moment += parts[p].moment;

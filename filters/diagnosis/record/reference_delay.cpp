@@ -26,8 +26,8 @@ constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
 constexpr std::size_t kLeast = 200;       // and the fewest that tell
 constexpr std::size_t kOrder = 16;        // of the autoregression
 constexpr int kRounds = 20;
-constexpr double kSettled = 1e-3;  // of a step
-constexpr double kCertain = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
+constexpr double kSettled = 1e-3;       // of a step
+constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPowers = 4;  // of the reference: constant to cubic
 using Series = std::vector<double>;
@@ -314,7 +314,7 @@ AlignedRecords align_references(const std::vector<Record>& records) {
     if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
     const std::optional<Delay> delay = refined(*pair, coarse_delay(*pair));
     const double tries = 2.0 * static_cast<double>(longest_lag(*pair)) + 1.0;
-    if (!delay || delay->gain < kCertain + 2.0 * std::log(tries)) continue;
+    if (!delay || delay->gain < kCertainDelay + 2.0 * std::log(tries)) continue;
     ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};
     record.reference_radps = aligned.references.emplace_back(moved_reference(record, found.delay_s));
     aligned.remarks.push_back(in_words(found, record.reference_name, records.size() > 1));

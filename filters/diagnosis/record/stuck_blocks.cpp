@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kMostOfRecord = 0.25;
+constexpr double kMostStuck = 0.25;
 
 bool is_made_of(const std::string& channel, const std::string& column) {
   const auto [of, less] = names_in(channel);
@@ -42,7 +42,7 @@ std::vector<std::string> leave_out_stuck(const std::vector<StuckStretch>& stuck,
       return is_made_of(channel, stretch.channel);
     });
     const auto blocks = static_cast<double>(grid.records[stretch.record].size());
-    if (!used || length_s > kMostOfRecord * blocks * grid.block_s || !leave_out(stretch, grid)) continue;
+    if (!used || length_s > kMostStuck * blocks * grid.block_s || !leave_out(stretch, grid)) continue;
     std::array<char, 240> text{};
     std::snprintf(text.data(), text.size(),
                   "what %s was while it was stuck is not known: effects were fitted without these %.4g s",

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kLeastSamples = 4096;
 constexpr std::size_t kMostSamples = 131072;
-constexpr double kSlowSamples = 512.0;
+constexpr double kSlowerThan = 512.0;
 constexpr double kStroboscope = 0.01;  // cycles a sample
 constexpr double kHole = 1.5;          // steps
 
@@ -58,7 +58,7 @@ UnbrokenPart unbroken_part(const Record& record) {
     if (i > where.begin) angle += record.rate_radps[i] * (record.time_s[i] - record.time_s[i - 1]);
     part.angle_rad.push_back(angle);
     part.error_radps.push_back(i > where.begin ? error - slow : 0.0);
-    weight = std::min(weight + 1.0, kSlowSamples);
+    weight = std::min(weight + 1.0, kSlowerThan);
     slow += (error - slow) / weight;
   }
   return part;

@@ -19,7 +19,7 @@ constexpr double kLeastPeriods = 64.0;  // in the longest record
 constexpr double kLeastDecay = 1.0;
 constexpr double kMostDecays = 16.0;  // a record has at least so many
 constexpr std::size_t kFewestBlocks = 512;
-constexpr std::size_t kMost = 6;
+constexpr std::size_t kMostOrders = 6;
 constexpr double kOfHarmonic = 3.0;  // parameters
 constexpr double kOfMarkov = 2.0;
 constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
@@ -160,7 +160,7 @@ NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const Noi
   const HarmonicLimits limits = harmonic_limits(grid);
   NoiseFit best = fit;
   if (!fit.shape.harmonics.empty()) best = climb(grid, columns, fit.shape, kRough, true);
-  while (best.shape.harmonics.size() < kMost) {
+  while (best.shape.harmonics.size() < kMostOrders) {
     const std::optional<Hump> hump = highest_hump(of_innovations(grid, columns, best.shape), limits);
     if (!hump || hump->gain < cost(grid, kOfHarmonic)) break;
     const NoiseFit more = add_one(grid, columns, best, *hump);

@@ -14,10 +14,10 @@ namespace {
 // Noise parameters are tried from where they change nothing (their part in the mean of the record a
 // hundredth of the white noise's) to where nothing white is left, evenly in the logarithm.
 constexpr double kNegligible = 0.03;
-constexpr double kMost = 1e4;
+constexpr double kMostRatio = 1e4;
 constexpr double kCoarse = 6.0;    // factor between the values of the first grid
 constexpr double kFarBelow = 8.0;  // log-likelihood below the best at which a value no longer counts
-constexpr int kFine = 9;           // values a parameter of the second grid
+constexpr int kFineGrid = 9;       // values a parameter of the second grid
 // Before looking at the data a time constant is known to about this, natural logarithm: the search's range.
 constexpr double kLogRange = 2.0;
 constexpr double kLogStep = 0.05;
@@ -162,8 +162,8 @@ template <class Evaluate>
 std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Evaluate&& evaluate) {
   if (grid.dwells) return {Tried{best, evaluate(best)}};
   const auto n = static_cast<double>(grid.used());
-  const std::pair<double, double> walks{kNegligible / (n * n), kMost};
-  const std::pair<double, double> flickers{kNegligible / n, kMost};
+  const std::pair<double, double> walks{kNegligible / (n * n), kMostRatio};
+  const std::pair<double, double> flickers{kNegligible / n, kMostRatio};
   const auto coarse = [](const std::pair<double, double>& limits) {
     const int count =
         1 + static_cast<int>(std::ceil(std::log(limits.second / limits.first) / std::log(kCoarse)));
@@ -173,8 +173,8 @@ std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Eval
   for (const double factor : {kCoarse, 1.5}) {
     const auto walk = span_of(tried, &NoiseShape::walk, factor, walks);
     const auto flicker = span_of(tried, &NoiseShape::flicker, factor, flickers);
-    tried = try_all(best, logarithmic(walk.first, walk.second, kFine),
-                    logarithmic(flicker.first, flicker.second, kFine), evaluate);
+    tried = try_all(best, logarithmic(walk.first, walk.second, kFineGrid),
+                    logarithmic(flicker.first, flicker.second, kFineGrid), evaluate);
   }
   return tried;
 }

@@ -13,8 +13,8 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMeans = 1000;
-constexpr double kCertain = 40.0;    // twice the log-likelihood, for three more parameters
-constexpr double kLeastApart = 2.0;  // standard deviations of a mean between the levels
+constexpr double kCertainlyTwo = 40.0;  // twice the log-likelihood, for three more parameters
+constexpr double kLeastApart = 2.0;     // standard deviations of a mean between the levels
 constexpr std::size_t kFewestJumps = 4;
 constexpr int kRounds = 60;
 
@@ -149,7 +149,7 @@ std::optional<TwoStates> find_two_states(std::span<const double> left, double pe
   found.ratio = 2.0 * (passed.log_likelihood - best_walk(y, all));
   for (std::size_t i = 1; i < y.size(); ++i)
     found.jumps += (passed.share[i][0] > 0.5) != (passed.share[i - 1][0] > 0.5) ? 1 : 0;
-  if (found.ratio < kCertain || found.jumps < kFewestJumps) return std::nullopt;
+  if (found.ratio < kCertainlyTwo || found.jumps < kFewestJumps) return std::nullopt;
   const double step_s = static_cast<double>(count) * period_s;
   found.low_s = step_s / chain.leave[0];
   found.high_s = step_s / chain.leave[1];

@@ -25,7 +25,7 @@ constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is fo
 // form about a known point.
 constexpr double kSecondOfPair = 6.0;
 constexpr std::size_t kPairsTried = 2;  // beside the shortlist
-constexpr double kDependent = 0.2;      // correlation of two coefficients
+constexpr double kCorrelated = 0.2;     // correlation of two coefficients
 constexpr double kAlike = 0.98;         // or this correlation of the whitened regressors
 
 bool is_event(const Candidate& candidate) {
@@ -284,7 +284,7 @@ class EffectSearch {
     solve(data_.grid, noise_.shape, design(data_, model_), &covariance);
     const Eigen::Index a = column_of(data_.grid, model_, i) - 1;
     const Eigen::Index b = column_of(data_.grid, model_, j) - 1;
-    return std::abs(covariance(a, b)) > kDependent * std::sqrt(covariance(a, a) * covariance(b, b));
+    return std::abs(covariance(a, b)) > kCorrelated * std::sqrt(covariance(a, a) * covariance(b, b));
   }
 
   // Empty when the best two are the two there are.

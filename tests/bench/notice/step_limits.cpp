@@ -16,10 +16,10 @@
 namespace ifog::bench {
 namespace {
 
-constexpr double kBlock_s = SensorWatch::kBlock_s, kLook_s = 600.0, kMonth_s = 30.0 * 86400.0;
+constexpr double kLimitBlock_s = SensorWatch::kBlock_s, kLimitLook_s = 600.0, kMonth_s = 30.0 * 86400.0;
 constexpr double kFine = 20.0;  // blocks of a twentieth: as good as none
-constexpr std::size_t kLooks = static_cast<std::size_t>(kLook_s / kBlock_s), kTrials = 20000;
-constexpr double kTimes = 5.0, kAllowed = kBlock_s / kMonth_s;
+constexpr std::size_t kLooks = static_cast<std::size_t>(kLimitLook_s / kLimitBlock_s), kTrials = 20000;
+constexpr double kTimes = 5.0, kAllowed = kLimitBlock_s / kMonth_s;
 
 std::vector<StepScan::Window> of_the_test() {
   std::vector<StepScan::Window> out;
@@ -31,10 +31,10 @@ std::vector<StepScan::Window> of_the_test() {
 void print_limits(const NoiseKind& kind, std::size_t blocks, unsigned seed) {
   std::mt19937_64 random(seed);
   const double step = kTimes * bias_instability(kind);
-  const std::vector<double> left = left_of_step(kind, step, kBlock_s, kLooks);
+  const std::vector<double> left = left_of_step(kind, step, kLimitBlock_s, kLooks);
   const double d = deviations(left);
   const double finely =
-      deviations(left_of_step(kind, step, kBlock_s / kFine, kLooks * static_cast<std::size_t>(kFine)));
+      deviations(left_of_step(kind, step, kLimitBlock_s / kFine, kLooks * static_cast<std::size_t>(kFine)));
   StepScan one_sided(left, {{kLooks, 1.0}}, false), one(left, {{kLooks, 1.0}}, true),
       test(left, of_the_test(), true);
   for (StepScan* scan : {&one_sided, &one, &test}) scan->watch_nothing(blocks, random);
@@ -42,14 +42,14 @@ void print_limits(const NoiseKind& kind, std::size_t blocks, unsigned seed) {
     const std::size_t looks = anywhere ? kLooks - 1 : kLooks;
     return 100.0 * scan.found(level, looks, anywhere, kTrials, random);
   };
-  const double designed = kBlock_s / SensorWatch::kAlarmEvery_s * SensorWatch::kForStep;
+  const double designed = kLimitBlock_s / SensorWatch::kAlarmEvery_s * SensorWatch::kForStep;
   std::printf(
       "%-18s d %.2f (%.2f without blocks); all known %.1f %%; time unknown %.1f %%; and the sign %.1f %%; "
       "windows "
       "of the test %.1f %%, step anywhere in a block %.1f %%; its formula %.1f %%; its margin %.1f %%; "
       "alarms "
       "by the formula, of those there are: one window %.2f, all %.2f\n",
-      kind.name.c_str(), d, finely, 100.0 * best_share(d, kLook_s, kMonth_s),
+      kind.name.c_str(), d, finely, 100.0 * best_share(d, kLimitLook_s, kMonth_s),
       share(one_sided, one_sided.level(kAllowed), false), share(one, one.level(kAllowed), false),
       share(test, test.level(kAllowed), false), share(test, test.level(kAllowed), true),
       share(test, kAllowed, false), share(test, designed, false), kAllowed / one.alarms_per_block(kAllowed),

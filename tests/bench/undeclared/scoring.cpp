@@ -24,7 +24,7 @@ double rms(const Series& x, double about = 0.0) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-const ModelParameter* parameter(const Effect& e, const std::string& name) {
+const ModelParameter* parameter_named(const Effect& e, const std::string& name) {
   for (const ModelParameter& p : e.parameters)
     if (p.name == name) return &p;
   return nullptr;
@@ -54,7 +54,7 @@ bool same_names(const TrueEffect& truth, const Effect& found) {
 // A line elsewhere or a step at another time is another effect.
 bool same_place(const TrueEffect& truth, const Effect& found, double record_s) {
   const char* name = shape_name(truth);
-  const ModelParameter* p = name == nullptr ? nullptr : parameter(found, name);
+  const ModelParameter* p = name == nullptr ? nullptr : parameter_named(found, name);
   if (p == nullptr) return true;
   if (truth.form == "line") return std::abs(p->value - truth.shape) < 2.0 / record_s;
   if (truth.form == "step") return std::abs(p->value - truth.shape) < 0.05 * record_s;
@@ -63,7 +63,7 @@ bool same_place(const TrueEffect& truth, const Effect& found, double record_s) {
 
 void add_parameter(Score& s, const std::string& effect, const Effect& found, const char* name, double truth,
                    double oracle = 0.0) {
-  const ModelParameter* p = parameter(found, name);
+  const ModelParameter* p = parameter_named(found, name);
   if (p == nullptr || !(p->std_error > 0.0)) return;
   s.parameters.push_back(
       {effect + " " + name, (p->value - truth) / p->std_error, oracle > 0.0 ? p->std_error / oracle : 0.0});

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "tests/unit/allan/nist_set.h"
 #include "tools/simulate/noise.h"
 
 namespace {
 
 using ifog::AngleSum;
 using ifog::Deviation;
+using ifog::nist_set;
 using ifog::Stretch;
 
 std::vector<double> allan(const std::vector<double>& rate, const std::vector<std::size_t>& m,
@@ -23,17 +25,6 @@ std::vector<double> allan(const std::vector<double>& rate, const std::vector<std
   std::vector<double> out;
   for (const auto& p : ifog::deviation(AngleSum(rate, all), m, kind)) out.push_back(std::sqrt(p.variance));
   return out;
-}
-
-// NIST SP 1065, section 12.4: 1000 frequency values by a linear congruence.
-std::vector<double> nist_set() {
-  std::vector<double> y;
-  std::uint64_t n = 1234567890;
-  for (int i = 0; i < 1000; ++i) {
-    y.push_back(static_cast<double>(n) / 2147483647.0);
-    n = 16807 * n % 2147483647;
-  }
-  return y;
 }
 
 void expect_digits(const std::vector<double>& found, const std::vector<double>& published) {

@@ -7,22 +7,12 @@
 #include <limits>
 
 #include "filters/allan/deviation.h"
+#include "tests/unit/allan/nist_set.h"
 
 namespace ifog {
 namespace {
 
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-// The 1000-point test set of NIST Special Publication 1065, section 12.4.
-std::vector<double> nist_set() {
-  std::vector<double> values;
-  double n = 1234567890.0;
-  for (int i = 0; i < 1000; ++i) {
-    values.push_back(n / 2147483647.0);
-    n = std::fmod(16807.0 * n, 2147483647.0);
-  }
-  return values;
-}
 
 TEST(GappedDeviation, IsThePublishedOneWithoutAGap) {
   const std::vector<std::size_t> m = {1, 10, 100, 400};

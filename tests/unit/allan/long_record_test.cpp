@@ -21,7 +21,7 @@ using ifog::LongSeries;
 using ifog::SeriesView;
 using ifog::Stretch;
 
-constexpr double kRate = 100.0;
+constexpr double kSampled_hz = 100.0;
 constexpr std::size_t kSamples = 300000;
 
 struct Record {
@@ -31,7 +31,7 @@ struct Record {
 
 Record record() {
   Record out;
-  out.rate = ifog::simulate::noise({.Q = 1e-8, .N = 1e-6, .B = 1e-7, .K = 1e-8}, kRate, kSamples, 5);
+  out.rate = ifog::simulate::noise({.Q = 1e-8, .N = 1e-6, .B = 1e-7, .K = 1e-8}, kSampled_hz, kSamples, 5);
   for (double& rate : out.rate) rate += 7.29e-5;
   std::mt19937 random(2);
   double now = 3.0;

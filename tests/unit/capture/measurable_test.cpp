@@ -25,7 +25,7 @@ std::string capture(const char* columns, int width, int row, int column, const s
   return text;
 }
 
-std::string refusal(const std::string& text, const CsvLayout& layout = {}) {
+std::string refusal_of(const std::string& text, const CsvLayout& layout = {}) {
   try {
     parse_capture(text, "a.csv", layout);
   } catch (const std::runtime_error& error) {
@@ -103,15 +103,15 @@ TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
   std::string text = "time_s,rate_radps\n";
   for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 20 == 7 ? ",1e30\n" : ",0\n");
   EXPECT_EQ(
-      refusal(text),
+      refusal_of(text),
       "a.csv:9: rate_radps is '1e30', which no sensor measures, expected -10000 to 10000; nor 4 more of "
       "its cells");
-  EXPECT_EQ(refusal(capture("rate_radps,t_degC", 2, 5, 1, "warm")),
+  EXPECT_EQ(refusal_of(capture("rate_radps,t_degC", 2, 5, 1, "warm")),
             "a.csv:7: t_degC is 'warm', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal(capture("rate_radps,t_degC", 2, 5, 1, "inf")),
+  EXPECT_EQ(refusal_of(capture("rate_radps,t_degC", 2, 5, 1, "inf")),
             "a.csv:7: t_degC is infinite, expected a finite number, 'nan' or nothing");
   // A time is not to be guessed.
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1e30,1\n").substr(0, 49),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1e30,1\n").substr(0, 49),
             "a.csv:3: time_s is '1e30', which no sensor measur");
 }
 

@@ -139,7 +139,7 @@ std::string stamp(std::int64_t ns, std::int64_t of_second) {
   return text + "." + behind;
 }
 
-struct Gathered final : ifog::RowSink {
+struct Stamped final : ifog::RowSink {
   TimeOrigin origin;
   std::vector<double> time_s, rate;
   void begin(const std::vector<std::string>&) override {}
@@ -151,7 +151,7 @@ struct Gathered final : ifog::RowSink {
 };
 
 // An angle, whose cells are the same whatever the times.
-Gathered turned(std::int64_t start_ns, std::int64_t of_second, const std::string& unit, std::size_t piece) {
+Stamped turned(std::int64_t start_ns, std::int64_t of_second, const std::string& unit, std::size_t piece) {
   constexpr int kRows = 400;
   std::string text = "t,angle\n";
   for (int i = 0; i < kRows; ++i)
@@ -160,7 +160,7 @@ Gathered turned(std::int64_t start_ns, std::int64_t of_second, const std::string
   layout.time = ifog::CsvTime::parse("t:" + unit);
   layout.columns = {ifog::CsvColumn::parse("rate_radps=angle:rad")};
   std::size_t at = 0;
-  Gathered out;
+  Stamped out;
   ifog::read_csv_rows(
       [&](char* to, std::size_t most) {
         const std::size_t n = std::min(most, text.size() - at);
@@ -173,7 +173,7 @@ Gathered turned(std::int64_t start_ns, std::int64_t of_second, const std::string
 }
 
 TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
-  const Gathered from_0 = turned(0, 1, "s", 1U << 20U);
+  const Stamped from_0 = turned(0, 1, "s", 1U << 20U);
   ASSERT_EQ(from_0.rate.size(), 400U);
   EXPECT_EQ(from_0.time_s[3], 0.03);
   struct Unit {
@@ -185,7 +185,7 @@ TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
     for (const Unit unit : {Unit{"s", 1}, {"ms", 1000}, {"us", 1'000'000}, {"ns", 1'000'000'000}})
       // The second reads it in forty pieces, each by itself.
       for (const std::size_t piece : {1U << 20U, 256U}) {
-        const Gathered got = turned(start_ns, unit.of_second, unit.name, piece);
+        const Stamped got = turned(start_ns, unit.of_second, unit.name, piece);
         ASSERT_EQ(got.rate.size(), from_0.rate.size());
         for (std::size_t i = 1; i < got.rate.size(); ++i) {
           ASSERT_EQ(got.rate[i], from_0.rate[i]) << start_ns << " " << unit.name << " row " << i;

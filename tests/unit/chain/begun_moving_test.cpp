@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "filters/chain/signal_chain.h"
+#include "tests/unit/sanitized.h"
 
 namespace ifog {
 namespace {
@@ -28,7 +29,7 @@ constexpr unsigned kSeeds = 5;
 
 double noise_of(double rate_hz) { return kRandomWalk * kRandomWalk * rate_hz; }
 
-ChainSettings settings(double rate_hz, bool told) {
+ChainSettings settings_of(double rate_hz, bool told) {
   ChainSettings out;
   out.facts.nominal_rate_hz = rate_hz;
   out.axes = {""};
@@ -126,8 +127,8 @@ TEST(BegunMoving, EveryRateAndSwingIsFollowedFromTheFirstSample) {
       for (const double amplitude : kAmplitudes) {
         SCOPED_TRACE((told ? "told, " : "untold, ") + std::to_string(rate_hz) + " Hz, " +
                      std::to_string(amplitude) + " °/s");
-        for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-          Simulated run(settings(rate_hz, told), seed);
+        for (unsigned seed = 1; seed <= test::fewer(kSeeds, 1U); ++seed) {
+          Simulated run(settings_of(rate_hz, told), seed);
           run.go(120.0, rolling(amplitude * kDegree));
           EXPECT_LT(worst(run.errors.normalised), kMost) << seed;
           const auto minute = static_cast<std::size_t>(60.0 * rate_hz);
@@ -141,7 +142,7 @@ TEST(BegunMoving, AtRestNothingIsTakenForAManoeuvre) {
   for (const bool told : {true, false})
     for (const double rate_hz : {10.0, 200.0})
       for (unsigned seed = 1; seed <= 200; ++seed) {
-        Simulated run(settings(rate_hz, told), seed);
+        Simulated run(settings_of(rate_hz, told), seed);
         run.go(500.0 / rate_hz, [](double) { return 1e-4; });
         EXPECT_EQ(run.errors.manoeuvres, 0U) << told << " " << rate_hz << " " << seed;
       }
@@ -152,7 +153,7 @@ TEST(BegunMoving, AtRestLittleIsLostByIt) {
   constexpr int kRecords = 400, kLength = 256;
   std::vector<double> square(kLength), normalised(kLength);
   for (unsigned seed = 1; seed <= kRecords; ++seed) {
-    Simulated run(settings(100.0, true), seed);
+    Simulated run(settings_of(100.0, true), seed);
     run.go((kLength - 0.5) / 100.0, [](double) { return 0.0; });
     for (std::size_t i = 0; i < kLength; ++i) {
       square[i] += run.errors.published[i] * run.errors.published[i] / noise_of(100.0) / kRecords;
@@ -171,7 +172,7 @@ TEST(BegunMoving, WhatAMotionTaughtIsUnlearnedAtRest) {
   for (const double rate_hz : {10.0, 50.0})
     for (const double amplitude : {1.0, 10.0}) {
       const auto rolls = rolling(amplitude * kDegree);
-      Simulated run(settings(rate_hz, false), 5);
+      Simulated run(settings_of(rate_hz, false), 5);
       run.go(60.0, [&](double t) { return t < 60.0 ? rolls(t) : 0.0; });
       EXPECT_TRUE(run.moved_in_start_up());
       run.go(8192.0 / rate_hz, [](double) { return 0.0; });
@@ -180,7 +181,7 @@ TEST(BegunMoving, WhatAMotionTaughtIsUnlearnedAtRest) {
           << rate_hz << " " << amplitude;
       EXPECT_LT(worst(run.errors.normalised), kMost) << rate_hz << " " << amplitude;
     }
-  Simulated still(settings(10.0, false), 5);
+  Simulated still(settings_of(10.0, false), 5);
   still.go(60.0, [](double) { return 1e-3; });
   EXPECT_FALSE(still.moved_in_start_up());
 }
@@ -191,12 +192,12 @@ TEST(BegunMoving, AJumpIsFollowedAndASingleOutlierPassedOver) {
   for (const int at : {24, 40, 60, 100})
     for (unsigned seed = 1; seed <= 20; ++seed) {
       const double since = (at - 0.5) / 100.0;
-      Simulated jump(settings(100.0, true), seed);
+      Simulated jump(settings_of(100.0, true), seed);
       jump.go(3.0, [&](double t) { return t < since ? 0.0 : 20.0 * sigma; });
       for (std::size_t i = static_cast<std::size_t>(at) + 10; i < jump.errors.published.size(); ++i)
         ASSERT_LT(std::abs(jump.errors.published[i]), 6.0 * sigma) << at << " " << seed << " " << i;
       EXPECT_LT(worst(jump.errors.normalised), kMost) << at << " " << seed;
-      Simulated outlier(settings(100.0, true), seed);
+      Simulated outlier(settings_of(100.0, true), seed);
       outlier.go(since, [](double) { return 0.0; });
       outlier.add_once(50.0 * sigma);
       outlier.go(2.0, [](double) { return 0.0; });
@@ -241,18 +242,18 @@ TEST(BegunMoving, AGapAReloadOrAPullingAwayIsFollowedToo) {
       const auto motion = rolling(amplitude * kDegree);
       const std::function<double(double)> still = [](double) { return 0.0; };
       for (const bool rests : {false, true}) {
-        Simulated gap(settings(rate_hz, true), 2);
+        Simulated gap(settings_of(rate_hz, true), 2);
         gap.go(30.0, rests ? still : motion);
         gap.skip(7.0);
         gap.go(60.0, motion);
         EXPECT_LT(worst(gap.errors.normalised), kMost) << "gap, " << rests;
-        Simulated reload(settings(rate_hz, true), 3);
+        Simulated reload(settings_of(rate_hz, true), 3);
         reload.go(30.0, rests ? still : motion);
-        reload.reload(settings(rate_hz, true));
+        reload.reload(settings_of(rate_hz, true));
         reload.go(60.0, motion);
         EXPECT_LT(worst(reload.errors.normalised), kMost) << "reload, " << rests;
       }
-      Simulated away(settings(rate_hz, true), 4);
+      Simulated away(settings_of(rate_hz, true), 4);
       away.go(30.0, [&](double t) { return 20.0 * amplitude * kDegree * std::clamp(t - 0.3, 0.0, 1.0); });
       EXPECT_LT(worst(away.errors.normalised), kMost) << "pulls away";
     }

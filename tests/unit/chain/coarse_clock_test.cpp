@@ -7,12 +7,10 @@
 
 #include "drivers/ifog/device_timeline.h"
 #include "filters/chain/incrementer.h"
+#include "tests/unit/chain/sent_times.h"
 
 namespace ifog {
 namespace {
-
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
-constexpr double kTurning = 0.1;  // rad/s
 
 // Of a tick that is a period or several: nothing is lost, and what has passed is what the clock's sum says.
 TEST(DevicesClock, ThatTicksHardlyMoreOftenThanItSamplesLosesNothing) {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/unit/chain/sent_times.h"
+
 namespace ifog {
 namespace {
-
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 TEST(FittedClock, FollowsAPeriodThatIsNotTheNominalOneAndSmoothsJitter) {
   FittedClock clock(1e-3, 5000);

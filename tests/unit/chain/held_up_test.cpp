@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "filters/chain/incrementer.h"
+#include "tests/unit/chain/sent_times.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kRate_hz = 100.0;
-constexpr double kPeriod_s = 0.01;
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
-constexpr double kTurning = 0.1;  // rad/s
+constexpr double kNominal_s = 0.01;
 
 enum class Tells { nothing, counter, counter_and_clock };
 
@@ -44,7 +43,7 @@ SensorFacts facts_of(Tells tells, std::uint32_t modulus) {
 std::vector<Sent> on_time(std::uint64_t samples, std::uint32_t modulus = 128) {
   std::vector<Sent> out;
   for (std::uint64_t n = 0; n < samples; ++n) {
-    const double at = static_cast<double>(n) * kPeriod_s;
+    const double at = static_cast<double>(n) * kNominal_s;
     const double jitter_s = 1e-4 * static_cast<double>(n * 7919 % 101) / 101.0;
     out.push_back({n, at + jitter_s, at, static_cast<std::uint32_t>(n % modulus)});
   }
@@ -107,8 +106,8 @@ TEST_P(HeldUp, WhatComesLateAndAtOnceIsNotMissing) {
     const Got got = run(frames, GetParam());
     EXPECT_EQ(got.counts.missing, 0U) << held_s;
     EXPECT_EQ(got.counts.gaps, 0U) << held_s;
-    EXPECT_NEAR(got.angle_rad, 3000 * kPeriod_s * kTurning, 1e-4 * kTurning) << held_s;
-    EXPECT_NEAR(got.dt_s, 3000 * kPeriod_s, 1e-4) << held_s;
+    EXPECT_NEAR(got.angle_rad, 3000 * kNominal_s * kTurning, 1e-4 * kTurning) << held_s;
+    EXPECT_NEAR(got.dt_s, 3000 * kNominal_s, 1e-4) << held_s;
     EXPECT_FALSE(got.backwards) << held_s;
     EXPECT_LT(got.worst_label_s, 2e-3) << held_s;
   }
@@ -124,13 +123,13 @@ TEST_P(Counting, WhatDrainsSlowlyIsNotMissing) {
       for (Sent& frame : frames) {
         const double from_s =
             frame.arrives_s >= 70.0 ? std::max(frame.arrives_s, 70.0 + held_s) : frame.arrives_s;
-        free_s = std::max(from_s, free_s + kPeriod_s / faster);
+        free_s = std::max(from_s, free_s + kNominal_s / faster);
         // By an adapter that collects for 16 ms.
         frame.arrives_s = std::ceil(free_s / 0.016) * 0.016;
       }
       const Got got = run(frames, GetParam());
       EXPECT_EQ(got.counts.missing, 0U) << faster << ' ' << held_s;
-      EXPECT_NEAR(got.angle_rad, 20000 * kPeriod_s * kTurning, 1e-4 * kTurning);
+      EXPECT_NEAR(got.angle_rad, 20000 * kNominal_s * kTurning, 1e-4 * kTurning);
       EXPECT_EQ(got.clock_steps, 0U) << faster << ' ' << held_s;
     }
   }
@@ -145,8 +144,8 @@ TEST_P(HeldUp, WhatWasLostIsCounted) {
     EXPECT_NEAR(static_cast<double>(got.counts.missing), static_cast<double>(lost),
                 GetParam() == Tells::nothing ? 1.0 : 0.0);
     EXPECT_EQ(got.counts.gaps, 1U) << lost;
-    EXPECT_NEAR(got.dt_s, 4000 * kPeriod_s, 2e-2) << lost;
-    EXPECT_NEAR(got.covered_s, static_cast<double>(4000 - lost) * kPeriod_s, 1e-3) << lost;
+    EXPECT_NEAR(got.dt_s, 4000 * kNominal_s, 2e-2) << lost;
+    EXPECT_NEAR(got.covered_s, static_cast<double>(4000 - lost) * kNominal_s, 1e-3) << lost;
     EXPECT_FALSE(got.backwards) << lost;
     EXPECT_LT(got.worst_label_s, 2e-3) << lost;
   }
@@ -159,7 +158,7 @@ TEST_P(Counting, WhatIsLostOfWhatWasHeldUpIsCounted) {
   lose(frames, 800, 40);
   const Got got = run(frames, GetParam());
   EXPECT_EQ(got.counts.missing, 40U);
-  EXPECT_NEAR(got.dt_s, 3000 * kPeriod_s, 1e-4);
+  EXPECT_NEAR(got.dt_s, 3000 * kNominal_s, 1e-4);
 }
 
 TEST_P(Counting, OfTwoThatChangePlacesOneIsLeftOutAndNoRoundIsMade) {
@@ -178,7 +177,7 @@ TEST_P(Counting, OfTwoThatChangePlacesOneIsLeftOutAndNoRoundIsMade) {
     EXPECT_EQ(got.counts.repeated, 29U);
     EXPECT_EQ(got.counts.restarts, 0U);
     EXPECT_EQ(got.counts.samples + got.counts.repeated, 3000U);
-    EXPECT_NEAR(got.dt_s, 3000 * kPeriod_s, 1e-6);
+    EXPECT_NEAR(got.dt_s, 3000 * kNominal_s, 1e-6);
   }
 }
 
@@ -190,7 +189,7 @@ TEST_P(Counting, ABlockThatCameTwiceIsLeftOut) {
   EXPECT_EQ(got.counts.repeated, 50U);
   EXPECT_EQ(got.counts.restarts, 0U);
   EXPECT_EQ(got.counts.missing, 0U);
-  EXPECT_NEAR(got.angle_rad, 2000 * kPeriod_s * kTurning, 1e-9);
+  EXPECT_NEAR(got.angle_rad, 2000 * kNominal_s * kTurning, 1e-9);
 }
 
 // The value tells each sample from the one before.
@@ -342,7 +341,7 @@ TEST(Recorded, AClockThatWasSetWhileItWasRecordedLosesNothing) {
     for (std::size_t i = 1000; i < frames.size(); ++i) frames[i].arrives_s += set_s;
     const Got got = run(frames, Tells::counter, 65536, true);
     EXPECT_EQ(got.counts.missing, 0U) << set_s;
-    EXPECT_NEAR(got.dt_s, 2000 * kPeriod_s, 1e-9) << set_s;
+    EXPECT_NEAR(got.dt_s, 2000 * kNominal_s, 1e-9) << set_s;
     EXPECT_EQ(got.clock_steps, 1U) << set_s;
     EXPECT_LT(got.worst_label_s, 2e-3) << set_s;
   }
@@ -353,8 +352,8 @@ TEST(DevicesClock, AJumpOfItAloneLosesNothing) {
   for (std::size_t i = 1000; i < frames.size(); ++i) frames[i].device_s += 10.0;
   const Got got = run(frames, Tells::counter_and_clock);
   EXPECT_EQ(got.counts.missing, 0U);
-  EXPECT_NEAR(got.covered_s, 2000 * kPeriod_s, 1e-9);
-  EXPECT_NEAR(got.dt_s, 2000 * kPeriod_s, 1e-9);
+  EXPECT_NEAR(got.covered_s, 2000 * kNominal_s, 1e-9);
+  EXPECT_NEAR(got.dt_s, 2000 * kNominal_s, 1e-9);
 }
 
 TEST(DevicesClock, ARestartIsAsLongAsTheSilence) {

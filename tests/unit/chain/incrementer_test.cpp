@@ -9,17 +9,18 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/unit/chain/sent_times.h"
+
 namespace ifog {
 namespace {
 
-constexpr double kRate_hz = 1000.0;
+constexpr double kNominal_hz = 1000.0;
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 SensorFacts counting_rate_sensor() {
   SensorFacts facts;
   facts.sequence_modulus = 128;
-  facts.nominal_rate_hz = kRate_hz;
+  facts.nominal_rate_hz = kNominal_hz;
   return facts;
 }
 
@@ -185,7 +186,7 @@ TEST(Incrementer, AWrappingAngleIsFollowedThroughWrapsAndGaps) {
     ASSERT_TRUE(incrementer.next(sample(n, angle), increment));
     if (n > 0) {
       EXPECT_NEAR(increment.covered_s[0], increment.dt_s, 1e-15);
-      EXPECT_NEAR(increment.rate_radps[0], step * kRate_hz, 1e-9);
+      EXPECT_NEAR(increment.rate_radps[0], step * kNominal_hz, 1e-9);
     }
     sum += increment.delta_theta_rad[0];
     last = n;

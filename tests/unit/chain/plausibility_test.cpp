@@ -15,7 +15,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
+constexpr double kMillisecond_s = 1e-3;
 constexpr double kFullScale = 8.55;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -24,7 +24,7 @@ SensorFacts facts(SensorKind kind, double full_scale_radps) {
   SensorFacts out;
   out.kind = kind;
   out.sequence_modulus = 128;
-  out.nominal_rate_hz = 1.0 / kPeriod_s;
+  out.nominal_rate_hz = 1.0 / kMillisecond_s;
   out.full_scale_radps.fill(full_scale_radps);
   out.frame_channels = out.channels = 1;
   return out;
@@ -180,11 +180,11 @@ TEST(Plausibility, ACorrectionThatIsNoRateIsRefused) {
   ChainOutput out;
   chain.process(feed.next(0.5, 26.0), out);
   EXPECT_EQ(out.flags & kNotCompensated, 0U);
-  EXPECT_NEAR(out.angle_rad[0], (0.5 - 1e-6) * kPeriod_s, 1e-15);
+  EXPECT_NEAR(out.angle_rad[0], (0.5 - 1e-6) * kMillisecond_s, 1e-15);
   chain.process(feed.next(0.5, 1e19), out);  // a channel that nobody limits
   EXPECT_NE(out.flags & kNotCompensated, 0U);
   EXPECT_EQ(out.compensated_radps[0], 0.5);
-  EXPECT_NEAR(out.angle_rad[0], (1.0 - 1e-6) * kPeriod_s, 1e-15);
+  EXPECT_NEAR(out.angle_rad[0], (1.0 - 1e-6) * kMillisecond_s, 1e-15);
 }
 
 // A device that turns at 2300 °/s for longer than half a turn, unheard; and one that rests through a gap.

@@ -10,6 +10,7 @@
 
 #include "filters/chain/incrementer.h"
 #include "tests/unit/chain/one_axis.h"
+#include "tests/unit/sanitized.h"
 
 namespace ifog {
 namespace {
@@ -123,6 +124,7 @@ TEST(SignalChain, ColourOfOneAxisThatNobodyToldMakesNoAxisLouder) {
   unknown.axes = {"x", "y", "z"};
   constexpr double kNoise = 1e-4, kRatio = 1e-6, kColour = 0.5;
   for (const unsigned seed : {1U, 2U, 3U}) {
+    if (test::kSanitized && seed > 1) continue;
     SignalChain chain(std::make_unique<ChainParts>(unknown));
     std::mt19937_64 engine(seed);
     std::normal_distribution<double> normal;
@@ -184,6 +186,7 @@ double apart_after_a_turn(const ChainSettings& each, int at, unsigned seed) {
 TEST(SignalChain, NewPartsInATurnKeepTheDenoisedAngle) {
   for (const double q : {1e-10, 0.0})  // noise given, and learned anew from the first 0.3 s
     for (const int at : {3'000, 3'002, 3'010, 3'100, 3'400, 3'900}) {
+      if (test::kSanitized && at > 3'010) continue;
       ChainSettings each = settings(q);
       each.start_up_s = 0.3;
       const int seeds = q > 0.0 ? 1 : 9;

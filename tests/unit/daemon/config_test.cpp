@@ -9,6 +9,7 @@
 
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/transport/clock.h"
+#include "tests/unit/daemon/config_complaint.h"
 
 namespace ifog {
 namespace {
@@ -21,15 +22,6 @@ driver = "kvh1750"
 type = "file"
 path = "a.kvh"
 )";
-
-std::string complaint(const std::string& text) {
-  try {
-    parse_config(text, "f.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(Config, ReadsWhatIsThereAndFillsInTheRest) {
   const Config config = parse_config(std::string(kGood) + R"(

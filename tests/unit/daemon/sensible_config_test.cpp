@@ -9,18 +9,10 @@
 
 #include "daemon/config/config.h"
 #include "daemon/config/lcm_url.h"
+#include "tests/unit/daemon/config_complaint.h"
 
 namespace ifog {
 namespace {
-
-std::string complaint(const std::string& text) {
-  try {
-    parse_config(text, "f.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 std::string sensor(const std::string& name, const std::string& transport, const std::string& more = "") {
   return "[[sensor]]\nname = \"" + name + "\"\ndriver = \"x\"\n[sensor.transport]\n" + transport + more;

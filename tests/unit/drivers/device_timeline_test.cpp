@@ -13,12 +13,12 @@
 #include "drivers/capture/capture_builder.h"
 #include "filters/chain/incrementer.h"
 #include "tests/unit/drivers/disturbed_stream.h"
+#include "tests/unit/drivers/start_time.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::int64_t kMicroseconds_ns = 4'294'967'296'000, kDay_ns = 86'400'000'000'000;
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 // A bus of one axis: with a counter of so many bits, with a stamp of 16 bits of 100 µs, or both.
 std::string bus(const std::string& name, const std::string& more) {

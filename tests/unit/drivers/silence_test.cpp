@@ -13,12 +13,12 @@
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "filters/chain/incrementer.h"
+#include "tests/unit/drivers/start_time.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kPeriod_s = 0.01, kDegree = std::numbers::pi / 180.0;
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 class Line {
  public:

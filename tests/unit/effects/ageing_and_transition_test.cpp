@@ -23,7 +23,7 @@ Model ageing() {
   return model;
 }
 
-CompensatorOutput step(Compensator& compensator, double dt_s, std::vector<double> channels = {}) {
+CompensatorOutput step_of(Compensator& compensator, double dt_s, std::vector<double> channels = {}) {
   CompensatorInput in;
   in.dt_s = dt_s;
   in.channels = channels;
@@ -39,7 +39,7 @@ TEST(Ageing, ASlopeGoesOnForOneMoreSpan) {
   EXPECT_TRUE(compensator.left_out().empty());
   double before = -1.0;
   for (int i = 0; i <= 300; ++i) {
-    const CompensatorOutput out = step(compensator, 1.0);
+    const CompensatorOutput out = step_of(compensator, 1.0);
     EXPECT_NEAR(out.correction_radps[0], kSlope * std::min(i, 200), 1e-15) << i;
     EXPECT_EQ((out.flags & kOutOfRange) != 0, i > 100) << i;
     if (i > 200) {
@@ -51,8 +51,8 @@ TEST(Ageing, ASlopeGoesOnForOneMoreSpan) {
 
 TEST(Ageing, AGapIsPartOfTheTime) {
   Compensator compensator(ageing(), {""});
-  step(compensator, 1.0);
-  EXPECT_NEAR(step(compensator, 60.0).correction_radps[0], 60.0 * kSlope, 1e-18);
+  step_of(compensator, 1.0);
+  EXPECT_NEAR(step_of(compensator, 60.0).correction_radps[0], 60.0 * kSlope, 1e-18);
 }
 
 TEST(Ageing, WithoutTheTimeItWasFittedItIsLeftOut) {
@@ -60,16 +60,16 @@ TEST(Ageing, WithoutTheTimeItWasFittedItIsLeftOut) {
   model.ranges.clear();
   Compensator compensator(model, {""});
   EXPECT_EQ(compensator.left_out().size(), 1U);
-  step(compensator, 1.0);
-  EXPECT_EQ(step(compensator, 1.0).correction_radps[0], 0.0);
+  step_of(compensator, 1.0);
+  EXPECT_EQ(step_of(compensator, 1.0).correction_radps[0], 0.0);
 }
 
 TEST(Ageing, AReloadGoesOnWhereItWas) {
   Compensator first(ageing(), {""});
-  for (int i = 0; i < 50; ++i) step(first, 1.0);
+  for (int i = 0; i < 50; ++i) step_of(first, 1.0);
   Compensator second(ageing(), {""});
   second.take_over(first);
-  EXPECT_NEAR(step(second, 1.0).correction_radps[0], 50.0 * kSlope, 1e-18);
+  EXPECT_NEAR(step_of(second, 1.0).correction_radps[0], 50.0 * kSlope, 1e-18);
 }
 
 Effect transition(double half_width) {
@@ -87,7 +87,7 @@ TEST(Transition, EndsAtItsLevelsWhereverTheChannelGoes) {
   model.ranges = {{"temperature_degC", 25.0, 36.0}};
   Compensator compensator(model, {""});
   for (const double at : {-1e6, 10.0, 27.0, 31.0, 34.5, 40.0, 1e6}) {
-    const CompensatorOutput out = step(compensator, 0.1, {at});
+    const CompensatorOutput out = step_of(compensator, 0.1, {at});
     EXPECT_NEAR(out.correction_radps[0], 4e-7 * std::tanh((at - 31.0) / 3.0), 1e-20) << at;
     EXPECT_EQ((out.flags & kOutOfRange) != 0, at < 25.0 || at > 36.0) << at;
     // Of its two levels the farther one was not seen: no more than that may be wrong.

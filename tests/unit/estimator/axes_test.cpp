@@ -17,7 +17,7 @@ using test::kPeriod;
 
 constexpr std::size_t kAxes = 3;
 constexpr Axes kLoud{1.0, 3.0, 10.0};  // standard deviations
-constexpr int kStartUp = 5000, kSettled = 20'000, kEnd = 80'000;
+constexpr int kStartUp = 5000, kSettledAt = 20'000, kEnd = 80'000;
 
 struct Said {
   Axes squares{};  // mean of error^2 over the published variance
@@ -50,8 +50,8 @@ Said filter(std::uint64_t seed, const Axes& walk) {
     in.sequence = i;
     for (std::size_t a = 0; a < kAxes; ++a) in.rate_radps[a] = axes[a].measured[i];
     estimator.step(in, out);
-    for (std::size_t a = 0; i >= kSettled && a < kAxes; ++a) {
-      const double square = std::pow(out.denoised_radps[a] - axes[a].truth[i], 2) / (kEnd - kSettled);
+    for (std::size_t a = 0; i >= kSettledAt && a < kAxes; ++a) {
+      const double square = std::pow(out.denoised_radps[a] - axes[a].truth[i], 2) / (kEnd - kSettledAt);
       said.errors[a] += square;
       said.squares[a] += square / out.variance_rad2ps2[a];
     }

@@ -32,7 +32,7 @@ double root_mean_square(const std::vector<double>& estimate, const std::vector<d
   return std::sqrt(mean_square_error(estimate, truth, from));
 }
 
-constexpr double kWalk = 1e-6;
+constexpr double kWalkStep = 1e-6;
 constexpr int kLength = 60'000;
 constexpr std::size_t kSettled = 10'000;
 
@@ -42,17 +42,18 @@ TEST(Published, LeavesTheColourInside) {
   constexpr double kPhi = 0.9, kShock = 0.19;  // unit variance
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
-  Record made = record(12, kLength, kWalk);
+  Record made = record(12, kLength, kWalkStep);
   double colour = normal(random);
   for (double& z : made.measured) {
     z += colour;
     colour = kPhi * colour + std::sqrt(kShock) * normal(random);
   }
-  ifog::FilterSettings settings = told(kWalk);
+  ifog::FilterSettings settings = told(kWalkStep);
   settings.state = "random-walk + ar(1)";
-  settings.state_parameters = {kPhi, kShock / kWalk};
-  const double ideal = level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(),
-                                   Eigen::Vector2d(kWalk, kShock).asDiagonal(), Eigen::Vector2d(1.0, 1.0));
+  settings.state_parameters = {kPhi, kShock / kWalkStep};
+  const double ideal =
+      level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(), Eigen::Vector2d(kWalkStep, kShock).asDiagonal(),
+                  Eigen::Vector2d(1.0, 1.0));
   for (const char* rule : {"ckf", "irwe-akfg", "mmae"}) {
     settings.rule = rule;
     EXPECT_LT(root_mean_square(run(settings, made.measured).denoised, made.truth, kSettled), 1.6 * ideal)
@@ -67,11 +68,11 @@ TEST(Published, LeavesTheColourInside) {
 // A line of ten sigma: the output moves by less than a thousandth of it.
 TEST(Published, LeavesALineInside) {
   constexpr double kFrequency = 4.17;
-  Record made = record(5, kLength, kWalk);
+  Record made = record(5, kLength, kWalkStep);
   for (int i = 0; i < kLength; ++i)
     made.measured[static_cast<std::size_t>(i)] +=
         10.0 * std::sin(2.0 * std::numbers::pi * kFrequency * kPeriod * i + 0.3);
-  ifog::FilterSettings settings = told(kWalk);
+  ifog::FilterSettings settings = told(kWalkStep);
   settings.rule = "ckf";
   settings.state = "random-walk + harmonic";
   settings.state_parameters = {kFrequency, 1e-3};
@@ -89,10 +90,10 @@ TEST(Published, LeavesALineInside) {
 // The error that the filter announces is the level's, too.
 TEST(Published, VarianceIsTheLevels) {
   constexpr double kPhi = 0.5, kShock = 0.75;
-  ifog::FilterSettings settings = told(kWalk);
+  ifog::FilterSettings settings = told(kWalkStep);
   settings.rule = "ckf";
   settings.state = "random-walk + ar(1)";
-  settings.state_parameters = {kPhi, kShock / kWalk};
+  settings.state_parameters = {kPhi, kShock / kWalkStep};
   ifog::Estimator estimator(settings, 1, kPeriod);
   ifog::EstimatorInput in;
   ifog::EstimatorOutput out;
@@ -105,8 +106,9 @@ TEST(Published, VarianceIsTheLevels) {
     in.rate_radps[0] = normal(random);
     estimator.step(in, out);
   }
-  const double ideal = level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(),
-                                   Eigen::Vector2d(kWalk, kShock).asDiagonal(), Eigen::Vector2d(1.0, 1.0));
+  const double ideal =
+      level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(), Eigen::Vector2d(kWalkStep, kShock).asDiagonal(),
+                  Eigen::Vector2d(1.0, 1.0));
   EXPECT_NEAR(std::sqrt(out.variance_rad2ps2[0]) / ideal, 1.0, 1e-3);
 }
 

@@ -37,17 +37,17 @@ double dense_log_likelihood(const Eigen::MatrixXd& covariance, const Eigen::Vect
                  white.squaredNorm());
 }
 
-struct Case {
+struct ArmaCase {
   const char* name;
   std::vector<double> phi, theta;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const ArmaCase& c, std::ostream* out) { *out << c.name; }
 
-class ArmaLikelihood : public testing::TestWithParam<Case> {};
+class ArmaLikelihood : public testing::TestWithParam<ArmaCase> {};
 
 TEST_P(ArmaLikelihood, IsThatOfTheDenseCovariance) {
-  const Case& c = GetParam();
+  const ArmaCase& c = GetParam();
   constexpr int kLength = 120;
   constexpr double kProcess = 3e-6, kMeasurement = 2e-8;
   const std::vector<double> gamma = autocovariance(c.phi, c.theta, kLength);
@@ -86,10 +86,10 @@ TEST_P(ArmaLikelihood, IsThatOfTheDenseCovariance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, ArmaLikelihood,
-                         testing::Values(Case{"ar(1)", {0.9}, {}}, Case{"ar(2)", {1.5, -0.7}, {}},
-                                         Case{"arma(1,1)", {0.8}, {-0.4}},
-                                         Case{"arma(2,2)", {0.6, 0.2}, {0.5, 0.3}},
-                                         Case{"arma(0,2)", {}, {0.7, -0.2}}));
+                         testing::Values(ArmaCase{"ar(1)", {0.9}, {}}, ArmaCase{"ar(2)", {1.5, -0.7}, {}},
+                                         ArmaCase{"arma(1,1)", {0.8}, {-0.4}},
+                                         ArmaCase{"arma(2,2)", {0.6, 0.2}, {0.5, 0.3}},
+                                         ArmaCase{"arma(0,2)", {}, {0.7, -0.2}}));
 
 TEST(GaussMarkovLikelihood, IsThatOfTheDenseCovariance) {
   constexpr int kLength = 100;

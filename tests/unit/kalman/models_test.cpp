@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr double kPeriod = 0.01;
+constexpr double kPeriod_s = 0.01;
 
 using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
@@ -34,19 +34,19 @@ long double dense_given_first(const Matrix& covariance, const Vector& record, lo
 // Covariance between samples i and j of each kind of term, for driving noise q, from its definition. A
 // wandering one starts with variance `start`.
 long double walk(int i, int j, long double q, long double start) {
-  return start + q * kPeriod * std::min(i, j);
+  return start + q * kPeriod_s * std::min(i, j);
 }
 // In-phase and quadrature state turned by the same angle at each step, both driven: what entered at step m
 // reaches i and j turned apart by the angle between them.
 long double line(int i, int j, long double frequency, long double q, long double start) {
-  return (start + q * kPeriod * std::min(i, j)) *
-         std::cos(2 * std::numbers::pi_v<long double> * frequency * kPeriod * (j - i));
+  return (start + q * kPeriod_s * std::min(i, j)) *
+         std::cos(2 * std::numbers::pi_v<long double> * frequency * kPeriod_s * (j - i));
 }
 long double markov(int i, int j, long double tau, long double q) {
-  return 0.5L * q * tau * std::exp(-std::abs(i - j) * static_cast<long double>(kPeriod) / tau);
+  return 0.5L * q * tau * std::exp(-std::abs(i - j) * static_cast<long double>(kPeriod_s) / tau);
 }
 long double autoregression(int i, int j, long double phi, long double q) {
-  return q * kPeriod * std::pow(phi, static_cast<long double>(std::abs(i - j))) / (1 - phi * phi);
+  return q * kPeriod_s * std::pow(phi, static_cast<long double>(std::abs(i - j))) / (1 - phi * phi);
 }
 
 constexpr double kQ = 3e-7, kR = 4e-8;
@@ -77,8 +77,8 @@ TEST_P(ModelLikelihood, IsThatOfTheDenseCovariance) {
     record.push_back(3e-4 * std::sin(0.8 * i + 0.3) + 1e-3 + 2e-4 * normal(random));
   const Vector dense_record = Eigen::Map<const Eigen::VectorXd>(record.data(), kLength).cast<long double>();
 
-  const auto model = ifog::make_state_model(c.name, c.parameters, kPeriod);
-  const auto terms = ifog::likelihood(*model, kQ, kR, record, kPeriod);
+  const auto model = ifog::make_state_model(c.name, c.parameters, kPeriod_s);
+  const auto terms = ifog::likelihood(*model, kQ, kR, record, kPeriod_s);
   EXPECT_EQ(terms.count, kLength - c.diffuse);
   // Either side is off the diffuse limit by some 1e-9 of itself a state.
   EXPECT_NEAR(terms.log_likelihood(),
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The state turns by 2 pi f dt, and as a turn keeps an isotropic covariance, integral of A(s) A(s)' ds is dt
 // times the identity (the Lyapunov equation P' = W P + P W' + I of a skew W).
 TEST(Harmonic, TurnsByItsFrequencyAndGathersNoiseInTime) {
-  const auto model = ifog::make_state_model("harmonic", std::vector{3.3}, kPeriod);
+  const auto model = ifog::make_state_model("harmonic", std::vector{3.3}, kPeriod_s);
   Eigen::MatrixXd transition(2, 2), driving(2, 2);
   for (const double dt : {0.01, 0.1, 7.0}) {
     model->discretise(dt, transition, driving);
@@ -121,10 +121,10 @@ TEST(Harmonic, TurnsByItsFrequencyAndGathersNoiseInTime) {
 // Blocks of the terms on the diagonal, nothing beside them, noise by each one's ratio, measurement the sum.
 TEST(Sum, IsBlockDiagonal) {
   const auto sum = ifog::make_state_model("integrated-random-walk + gauss-markov + harmonic",
-                                          std::vector{0.5, 0.1, 3.3, 0.25}, kPeriod);
-  const auto first = ifog::make_state_model("integrated-random-walk", {}, kPeriod);
-  const auto second = ifog::make_state_model("gauss-markov", std::vector{0.5}, kPeriod);
-  const auto third = ifog::make_state_model("harmonic", std::vector{3.3}, kPeriod);
+                                          std::vector{0.5, 0.1, 3.3, 0.25}, kPeriod_s);
+  const auto first = ifog::make_state_model("integrated-random-walk", {}, kPeriod_s);
+  const auto second = ifog::make_state_model("gauss-markov", std::vector{0.5}, kPeriod_s);
+  const auto third = ifog::make_state_model("harmonic", std::vector{3.3}, kPeriod_s);
   Eigen::MatrixXd transition(5, 5), driving(5, 5);
   sum->discretise(0.03, transition, driving);
   Eigen::MatrixXd expected_transition = Eigen::MatrixXd::Zero(5, 5), expected_driving = expected_transition;
@@ -147,7 +147,7 @@ TEST(Sum, IsBlockDiagonal) {
 // The rate is what carries the level; without a term made for that, the first.
 TEST(Sum, PublishesTheTermsThatCarryTheLevel) {
   const auto rate = [](const char* name, std::vector<double> parameters) {
-    return ifog::make_state_model(name, parameters, kPeriod)->rate();
+    return ifog::make_state_model(name, parameters, kPeriod_s)->rate();
   };
   EXPECT_EQ(rate("gauss-markov + random-walk + harmonic", {0.5, 1.0, 3.3, 0.25}),
             (Eigen::Vector4d(0.0, 1.0, 0.0, 0.0)));

@@ -28,7 +28,7 @@ KeptNoise some() {
   return kept;
 }
 
-std::string complaint(const std::string& text) {
+std::string noise_complaint(const std::string& text) {
   try {
     (void)parse_kept_noise(text, "f.toml");
   } catch (const std::runtime_error& error) {
@@ -37,7 +37,7 @@ std::string complaint(const std::string& text) {
   return "";
 }
 
-std::string with(const std::string& from, const std::string& to) {
+std::string noise_with(const std::string& from, const std::string& to) {
   std::string text = kept_noise_text(some());
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -61,19 +61,22 @@ TEST(KeptNoise, ReadsBackToTheBit) {
 }
 
 TEST(KeptNoise, RefusesByLineWhatIsNone) {
-  EXPECT_EQ(complaint(with("ifog.noise/1", "ifog.noise/2")), "f.toml:2: schema: expected \"ifog.noise/1\"");
-  EXPECT_EQ(complaint(with("axes = 2", "axes = 4")), "f.toml:5: axes: expected 1 to 3");
-  EXPECT_EQ(complaint(with("axes = 2", "axes = 3")).rfind("f.toml:10: colour: expected a list of 3", 0), 0U);
+  EXPECT_EQ(noise_complaint(noise_with("ifog.noise/1", "ifog.noise/2")),
+            "f.toml:2: schema: expected \"ifog.noise/1\"");
+  EXPECT_EQ(noise_complaint(noise_with("axes = 2", "axes = 4")), "f.toml:5: axes: expected 1 to 3");
+  EXPECT_EQ(
+      noise_complaint(noise_with("axes = 2", "axes = 3")).rfind("f.toml:10: colour: expected a list of 3", 0),
+      0U);
   for (const char* wrong : {"nan", "inf", "-1", "0", "\"1\"", "[1]"})
-    EXPECT_EQ(complaint(with("samples = 8192", std::string("samples = ") + wrong))
+    EXPECT_EQ(noise_complaint(noise_with("samples = 8192", std::string("samples = ") + wrong))
                   .rfind("f.toml:11: samples: expected a number from 1", 0),
               0U)
         << wrong;
-  EXPECT_EQ(complaint(with("sensor = \"nose\"\n", "")), "f.toml: sensor: expected a string");
+  EXPECT_EQ(noise_complaint(noise_with("sensor = \"nose\"\n", "")), "f.toml: sensor: expected a string");
   // Cut off anywhere it is no shorter record of noise.
   const std::string whole = kept_noise_text(some());
   for (std::size_t length = 0; length + 2 < whole.size(); length += 7)
-    EXPECT_NE(complaint(whole.substr(0, length)), "") << length;
+    EXPECT_NE(noise_complaint(whole.substr(0, length)), "") << length;
 }
 
 }  // namespace

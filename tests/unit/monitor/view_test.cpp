@@ -29,7 +29,7 @@ rate_t rate(std::int64_t seq, std::vector<double> denoised) {
   return out;
 }
 
-status_t status() {
+status_t status_message() {
   status_t out{};
   out.state = status_t::STATE_RUNNING;
   out.axes = 3;
@@ -78,7 +78,7 @@ TEST(MonitorView, FlagsAndLossesInWords) {
   message.flags = 8192 + 4;  // at rest, stale channel
   view.take(message);
   view.take(rate(14, {0.0}));  // 11 to 13 were lost on the way
-  status_t health = status();
+  status_t health = status_message();
   health.frames_crc = 7;
   view.take(health);
   view.end_interval(1.0);
@@ -100,7 +100,7 @@ TEST(MonitorView, EachCountSaysOfWhen) {
   rate_t message = rate(10, {0.0});
   message.flags = 32;  // invalid
   view.take(message);
-  status_t health = status();
+  status_t health = status_message();
   health.invalid_samples = 400;
   view.take(health);
   std::string text = joined(view_lines("NOSE", view, {}));
@@ -121,7 +121,7 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
     view.take(rate(i, {1e-5 * i, -3.0, 1e-9}));
     view.end_interval(1.0);
   }
-  view.take(status());
+  view.take(status_message());
   for (std::size_t width = 60; width < 200; ++width)
     for (const RateUnit unit :
          {RateUnit::automatic, RateUnit::degree_per_hour, RateUnit::radian_per_second}) {
@@ -158,7 +158,7 @@ TEST(MonitorJson, EveryFieldByTheNameOfItsType) {
   EXPECT_EQ(json["flag_words"], nlohmann::json({"gap", "invalid"}));
   EXPECT_EQ(json["raw"][0], 1.5);
   EXPECT_TRUE(json["raw"][1].is_null());
-  const std::string line = message_json("NOSE", status());
+  const std::string line = message_json("NOSE", status_message());
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const auto health = nlohmann::json::parse(line);
   EXPECT_EQ(health["state_name"], "running");

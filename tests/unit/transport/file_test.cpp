@@ -19,16 +19,17 @@
 #include "drivers/capture/text_file.h"
 #include "drivers/transport/byte_file.h"
 #include "drivers/transport/sole_reader.h"
+#include "tests/unit/transport/forever.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using ifog::FileSettings;
+using ifog::kForever;
 using ifog::TransportState;
 
 // Long enough that a test which waits for it has failed.
-constexpr auto kForever = 60s;
 
 class FileTransport : public testing::Test {
  protected:

@@ -18,13 +18,14 @@
 #include <cstdlib>
 #include <thread>
 
+#include "tests/unit/transport/forever.h"
+
 namespace {
 
 using namespace std::chrono_literals;
+using ifog::kForever;
 using ifog::SerialSettings;
 using ifog::TransportState;
-
-constexpr auto kForever = 60s;
 
 class Terminal final : public ifog::SerialPort {
  public:

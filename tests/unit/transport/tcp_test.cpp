@@ -11,14 +11,13 @@
 #include <string>
 #include <thread>
 
+#include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 
 namespace ifog {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr auto kForever = 60s;
 
 // A sensor that listens on a port of its own.
 class Server {

@@ -12,14 +12,13 @@
 #include <string>
 #include <thread>
 
+#include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 
 namespace ifog {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr auto kForever = 60s;
 
 std::string text_of(const Delivery& d) { return {d.bytes.begin(), d.bytes.end()}; }
 

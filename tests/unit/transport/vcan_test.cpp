@@ -18,14 +18,14 @@
 #include "drivers/transport/can.h"
 #include "drivers/transport/can_socket.h"
 #include "drivers/transport/clock.h"
+#include "tests/unit/transport/forever.h"
 
 namespace {
 
 using namespace std::chrono_literals;
 using ifog::CanSettings;
+using ifog::kForever;
 using ifog::TransportState;
-
-constexpr auto kForever = 60s;
 
 void ip(const std::string& what) { ASSERT_EQ(std::system(("ip link " + what).c_str()), 0) << what; }
 

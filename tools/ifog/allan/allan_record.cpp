@@ -30,7 +30,7 @@ std::string number(double value) {
   return text.data();
 }
 
-const char* name_of(Deviation kind) {
+const char* words_for(Deviation kind) {
   return kind == Deviation::kModified   ? "the modified deviation"
          : kind == Deviation::kHadamard ? "the Hadamard deviation"
                                         : "the overlapping deviation";
@@ -62,7 +62,7 @@ std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOpt
     const std::size_t most = longest_average(options.kind, samples);
     if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most)))
       throw std::runtime_error(name + ": --tau " + number(tau) + " s is outside what " +
-                               name_of(options.kind) + " can tell of the longest stretch, expected " +
+                               words_for(options.kind) + " can tell of the longest stretch, expected " +
                                number(period) + " to " + number(static_cast<double>(most) * period) + " s");
     m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
   }

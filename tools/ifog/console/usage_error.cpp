@@ -19,7 +19,7 @@ std::vector<std::string> commands_of(const CLI::App& app) {
 }
 
 // With their dashes.
-std::vector<std::string> options_of(const CLI::App& command) {
+std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* const option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -30,7 +30,7 @@ std::vector<std::string> options_of(const CLI::App& command) {
 
 // The parser tells of an option that is missing before one that it does not know: mostly the same one.
 std::string unknown_option(const CLI::App& command, int argc, const char* const* argv) {
-  const std::vector<std::string> known = options_of(command);
+  const std::vector<std::string> known = option_names(command);
   for (int i = 2; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--") break;

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json named(const Effect& effect) {
+Json name_json(const Effect& effect) {
   Json json;
   json["form"] = effect.form;
   const ChannelNames names = names_in(effect.channel);
@@ -41,7 +41,7 @@ Json noise_json(const NoiseTerms& noise) {
 }
 
 Json effect_json(const FoundEffect& found) {
-  Json json = named(found.effect);
+  Json json = name_json(found.effect);
   json["meaning"] = found.effect.meaning;
   if (found.effect.shown_only) json["subtracted"] = false;
   Json parameters = Json::object();
@@ -71,7 +71,7 @@ Json effect_json(const FoundEffect& found) {
 Json alternative_json(const Indistinguishable& each) {
   Json json;
   json["effects"] = Json::array();
-  for (const Effect& effect : each.effects) json["effects"].push_back(named(effect));
+  for (const Effect& effect : each.effects) json["effects"].push_back(name_json(effect));
   json["correlation"] = number(each.correlation);
   json["separate_by"] = each.separate_by;
   return json;

@@ -20,7 +20,7 @@
 namespace ifog::tools {
 namespace {
 
-struct Arguments {
+struct AdoptArguments {
   FieldOptions field;
   std::string sensor, json;
   double watch_s = 600.0;
@@ -92,7 +92,7 @@ void tell_innovations(const Watched& watched) {
   if (!watched.noticed.empty()) say("  noticed: %s\n", printable(watched.noticed, kLongestMessage).c_str());
 }
 
-void adopt(const Arguments& arguments) {
+void adopt(const AdoptArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
@@ -151,7 +151,7 @@ void adopt(const Arguments& arguments) {
   }
 }
 
-void revert(const Arguments& arguments) {
+void revert(const AdoptArguments& arguments) {
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
@@ -187,7 +187,7 @@ void revert(const Arguments& arguments) {
 }  // namespace
 
 void add_adopt(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AdoptArguments>();
   CLI::App* command =
       app.add_subcommand("adopt", "Put a proposed model into use, and say whether its promise comes true");
   command->add_option("sensor", arguments->sensor, "name in the daemon's configuration")->required();
@@ -201,7 +201,7 @@ void add_adopt(CLI::App& app) {
 }
 
 void add_revert(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AdoptArguments>();
   CLI::App* command = app.add_subcommand("revert", "Take the last adoption back");
   command->add_option("sensor", arguments->sensor, "name in the daemon's configuration")->required();
   arguments->field.add_to(*command, true);

@@ -8,7 +8,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr const char* kSchema = "ifog.night/1";
+constexpr const char* kNightSchema = "ifog.night/1";
 
 std::string path_of(const std::string& state, const std::string& sensor) {
   return (std::filesystem::path(state) / (sensor + ".night.json")).string();
@@ -18,7 +18,7 @@ std::string path_of(const std::string& state, const std::string& sensor) {
 
 std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor) {
   const std::string path = path_of(state, sensor);
-  const std::optional<nlohmann::json> file = read_state_json(path, kSchema);
+  const std::optional<nlohmann::json> file = read_state_json(path, kNightSchema);
   if (!file) return std::nullopt;
   return with_keys(path, [&]() -> std::optional<Bookmark> {
     return Bookmark{file->at("until").get<std::uint64_t>(), file->at("when").get<std::string>(),
@@ -27,7 +27,7 @@ std::optional<Bookmark> read_bookmark(const std::string& state, const std::strin
 }
 
 void write_bookmark(const std::string& state, const std::string& sensor, const Bookmark& bookmark) {
-  const nlohmann::ordered_json file{{"schema", kSchema},
+  const nlohmann::ordered_json file{{"schema", kNightSchema},
                                     {"sensor", sensor},
                                     {"until", bookmark.until},
                                     {"when", bookmark.when},

@@ -13,26 +13,26 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* kSchema = "ifog.history/1";
+constexpr const char* kHistorySchema = "ifog.history/1";
 constexpr const char* kAdopt = "adopt";
 
 ordered_json name_json(const ModelName& name) {
   return {{"identity", name.identity}, {"sha256", name.sha256}};
 }
 
-ModelName name_from(const json& from) {
+ModelName changed_name(const json& from) {
   return {from.at("identity").get<std::string>(), from.at("sha256").get<std::string>()};
 }
 
 }  // namespace
 
 History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
-  const std::optional<json> file = read_state_json(path(), kSchema);
+  const std::optional<json> file = read_state_json(path(), kHistorySchema);
   if (!file) return;
   with_keys(path(), [&] {
     for (const json& each : file->at("changes"))
       changes_.push_back({each.at("what").get<std::string>(), each.at("when").get<std::string>(),
-                          name_from(each.at("model")), name_from(each.at("replaced")),
+                          changed_name(each.at("model")), changed_name(each.at("replaced")),
                           each.at("why").get<std::string>(), gain_of(each.at("gain")),
                           each.at("outcome").get<std::string>()});
   });
@@ -93,7 +93,7 @@ void History::write() const {
                        {"why", each.why},
                        {"gain", gain_json(each.gain)},
                        {"outcome", each.outcome}});
-  const ordered_json file = {{"schema", kSchema}, {"sensor", sensor_}, {"changes", changes}};
+  const ordered_json file = {{"schema", kHistorySchema}, {"sensor", sensor_}, {"changes", changes}};
   write_state_file(path(), file.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 

@@ -29,7 +29,7 @@
 namespace ifog::tools {
 namespace {
 
-struct Arguments {
+struct NightArguments {
   FieldOptions field;
   std::vector<std::string> sensors;
   double least_rest_s = 1800.0;
@@ -87,7 +87,7 @@ std::string effects_text(const std::vector<AxisDiagnosis>& found) {
 // The night of one sensor. What is said of it is one line.
 class Night {
  public:
-  Night(const Arguments& arguments, const Field& field, const SensorConfig& sensor)
+  Night(const NightArguments& arguments, const Field& field, const SensorConfig& sensor)
       : arguments_(arguments), field_(field), sensor_(sensor) {}
 
   std::string run();
@@ -106,7 +106,7 @@ class Night {
                const std::vector<AxisDiagnosis>& found, const std::string& name,
                const std::vector<std::string>& hashes);
 
-  const Arguments& arguments_;
+  const NightArguments& arguments_;
   const Field& field_;
   const SensorConfig& sensor_;
   bool gone_through_ = false;  // not to be looked at again
@@ -270,7 +270,7 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   write_proposal(field_.state(), proposal, model, report);
 }
 
-void run(const Arguments& arguments) {
+void run(const NightArguments& arguments) {
   share_with_the_group();
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
@@ -304,7 +304,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_night(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<NightArguments>();
   CLI::App* command = app.add_subcommand(
       "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
   arguments->field.add_to(*command, false);

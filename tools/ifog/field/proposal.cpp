@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* kSchema = "ifog.proposal/1";
+constexpr const char* kProposalSchema = "ifog.proposal/1";
 constexpr std::string_view kEnding = ".proposal.json";
 
 std::string index_path(const std::string& state, const std::string& sensor) {
@@ -149,7 +149,7 @@ std::optional<Proposal> waiting(const std::string& state, const std::string& sen
 
 void write_proposal(const std::string& state, const Proposal& proposal, const Model& model,
                     const std::string& report) {
-  const ordered_json index = {{"schema", kSchema},
+  const ordered_json index = {{"schema", kProposalSchema},
                               {"sensor", proposal.sensor},
                               {"made", proposal.made},
                               {"why", proposal.why},
@@ -173,7 +173,7 @@ void write_proposal(const std::string& state, const Proposal& proposal, const Mo
 
 std::optional<Proposal> read_proposal(const std::string& state, const std::string& sensor) {
   const std::string path = index_path(state, sensor);
-  const std::optional<json> index = read_state_json(path, kSchema);
+  const std::optional<json> index = read_state_json(path, kProposalSchema);
   if (!index) return std::nullopt;
   return with_keys(path, [&]() -> std::optional<Proposal> {
     Proposal out;

@@ -15,7 +15,7 @@
 namespace ifog::tools {
 namespace {
 
-struct Arguments {
+struct ProposalsArguments {
   FieldOptions field;
   std::string json;
 };
@@ -28,7 +28,7 @@ bool is_stale(const Field& field, const Proposal& proposal) {
   return true;
 }
 
-void run(const Arguments& arguments) {
+void run(const ProposalsArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
@@ -68,7 +68,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_proposals(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ProposalsArguments>();
   CLI::App* command = app.add_subcommand("proposals", "List the models that the nights have proposed");
   arguments->field.add_to(*command, false);
   command->add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");

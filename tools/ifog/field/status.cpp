@@ -29,7 +29,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct StatusArguments {
   FieldOptions field;
   std::string json;
   double wait_s = 2.5;  // a status comes every second
@@ -218,7 +218,7 @@ pid_t daemon_of(const Field& field) {
   }
 }
 
-void run(const Arguments& arguments) {
+void run(const StatusArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
@@ -254,7 +254,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_status(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<StatusArguments>();
   CLI::App* command =
       app.add_subcommand("status", "All sensors of this computer's daemon: state, losses, model, proposal");
   arguments->field.add_to(*command, true);

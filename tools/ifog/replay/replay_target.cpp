@@ -28,7 +28,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr int kPatience_ms = 100;         // between two looks at whether the user wants to stop
+constexpr int kLook_ms = 100;             // between two looks at whether the user wants to stop
 constexpr std::size_t kHeld = 1U << 16U;  // bytes collected when nothing is due at a time of its own
 
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
@@ -214,7 +214,7 @@ IpSocket served_tcp(const std::string& name) {
     if (interrupted()) return served;
     if (error != EAGAIN && error != EINTR && error != ECONNABORTED) fail(name, "cannot serve", error);
     pollfd ask{listener.fd(), POLLIN, 0};
-    poll(&ask, 1, kPatience_ms);
+    poll(&ask, 1, kLook_ms);
   }
 }
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of a configuration that is refused; nothing of a good one.
+#pragma once
+
+#include <string>
+
+#include "daemon/config/config.h"
+
+namespace ifog {
+
+inline std::string complaint(const std::string& text) {
+  try {
+    parse_config(text, "f.toml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace ifog
