@@ -35,8 +35,9 @@ class Silence {
   }
   void take(const Next& next, Ends ends) noexcept {
     const bool goes_on = std::exchange(held_, ends == Ends::hold_up) && held_;
-    came_s_ = goes_on ? came_s_ + next.elapsed_s : 0.0;
-    came_ = goes_on ? came_ + 1.0 : 0.0;
+    const bool judged = came_s_ + next.elapsed_s >= kWhile_s;  // and the next while begins
+    came_s_ = goes_on && !judged ? came_s_ + next.elapsed_s : 0.0;
+    came_ = goes_on && !judged ? came_ + 1.0 : 0.0;
     const auto at_once = static_cast<double>(next.at_once);
     usually_at_once_ += (usually_at_once_ > 0.0 ? kFollows : 1.0) * (at_once - usually_at_once_);
   }
@@ -44,13 +45,13 @@ class Silence {
  private:
   static constexpr double kLate_s = 0.25, kLatePeriods = 20.0;  // less is scheduling's
   static constexpr double kPace = 0.75;  // of the period, and samples are not held up any more
-  static constexpr double kWhile_s = 0.1;
+  static constexpr double kWhile_s = kPrompt_s;
   // What comes at once when nothing was held up: adapters hand on what was in portions of more than so few.
   static constexpr std::uint32_t kFew = 2;
   static constexpr double kUsual = 1.5, kFollows = 0.05;
 
   bool held_ = false;
-  double came_s_ = 0.0, came_ = 0.0;  // time and samples behind the first that was held up
+  double came_s_ = 0.0, came_ = 0.0;  // in the present while
   double usually_at_once_ = 0.0;      // so many come in one portion
 };
 
