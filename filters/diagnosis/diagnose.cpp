@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -13,7 +12,9 @@
 #include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/record/stuck_blocks.h"
+#include "filters/diagnosis/record/turned.h"
 #include "filters/diagnosis/record/unused_channels.h"
+#include "filters/diagnosis/report/balanced_shares.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/grown_figures.h"
@@ -39,24 +40,10 @@ namespace ifog {
 namespace {
 
 constexpr double kOfLines = 1.0 / 200.0;  // of the significance: every frequency is tried
-constexpr double kLate =
-    24.0;  // twice the log-likelihood that a channel's delay has to gain, its tries included
+// Twice the log-likelihood that a channel's delay has to gain, its tries included.
+constexpr double kLate = 24.0;
 constexpr std::size_t kMostDelays = 2;    // channels
 constexpr std::size_t kMoreOnDwells = 4;  // effects: a scale factor comes with its powers and products
-
-// By the reference, by more than the Earth's rate.
-bool was_turned(const std::vector<Record>& records) {
-  constexpr double kTurned_radps = 1e-4;
-  return std::any_of(records.begin(), records.end(), [](const Record& record) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const double rate : record.reference_radps) {
-      if (!std::isfinite(rate)) continue;
-      least = std::min(least, rate);
-      most = std::max(most, rate);
-    }
-    return most - least > kTurned_radps;
-  });
-}
 
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
@@ -283,13 +270,15 @@ class Run {
     report_effects();
     count_rates_from_the_bias(errors_, result_.effects);
     run_written_model(records_, result_, data_.grid.sample_s, errors_);
+    if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
   }
 
-  // Of the effects as they are now written, by the run of the daemon's own correction and on blocks that were
-  // left out of the fit: index of the one to leave out, none when they make neither error larger.
+  // Of the effects as they are now written, by runs of the daemon's own correction and on blocks that were
+  // left out of the fit: index of the one to leave out, none when they make no error larger.
   std::optional<std::size_t> what_makes_it_worse() {
     if (holds(reconstructed_, found_, errors_, &EvenError::written) &&
-        holds(reconstructed_, found_, errors_, &EvenError::held_out)) {
+        holds(reconstructed_, found_, errors_, &EvenError::held_out) &&
+        (!as_logged_ || holds(reconstructed_, found_, errors_, &EvenError::logged))) {
       write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_);
       if (!grows_over_many(result_, errors_)) return std::nullopt;
     }
@@ -318,7 +307,6 @@ class Run {
   void report_figures() {
     result_.series =
         series_of(data_, errors_, found_.chosen, result_.effects, parts_, periodograms_, angles_);
-    if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_);
     write_noise(records_, errors_, data_.grid, found_.noise, angles_, result_);
     add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, angles_, result_.series);
@@ -333,7 +321,7 @@ class Run {
     report_changes_of_size();
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
-    say(grown_in_words(result_, errors_));
+    say(grown_in_words(result_, samples_of(errors_)));
     if (as_logged_) say(faults_in_words(result_, errors_));
     if (moving_)
       describe_moving(*moving_, result_.unexplained);
@@ -343,6 +331,7 @@ class Run {
       describe_hysteresis(*result_.hysteresis, result_.unexplained);
     else
       describe_two_states(errors_, data_.grid, was_turned(records_), result_.unexplained);
+    balance_shares(parts_.size(), result_);
     say(slow_beside(errors_, data_.grid, result_.unexplained));
     if (!moving_ && !data_.grid.dwells)
       say(resonances_in_words(find_resonances(longest_of(errors_).after, data_.grid.sample_s)));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/allan/noise_coefficients.h"
 #include "filters/diagnosis/record.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/noise_change.h"
@@ -121,6 +122,7 @@ struct Diagnosis {
   double sample_rate_hz = 0.0;
   NoiseTerms noise;                             // after the effects, as noise_coefficients finds it at rest
   NoiseTerms noise_error;                       // standard deviations of those
+  std::optional<MarkovNoise> markov;            // a bias that comes back; K is then no law of long times
   std::vector<NoiseChangeIn> noise_changes;     // which make noise an average of unlike parts
   std::vector<FoundEffect> effects;             // traced to channels, then ramps, then lines of the samples
   std::vector<double> covariance;               // of all parameters of all effects in order, row-major

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/effects/arc.h"
 
 namespace ifog {
 namespace {
@@ -53,9 +54,8 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
       of_rate_(axes.size(), 0),
       stale_after_s_(stale_after_s),
       since_power_up_s_(since_power_up_s) {
-  if (axes.empty() || axes.size() > kMaxAxes) {
+  if (axes.empty() || axes.size() > kMaxAxes)
     throw std::invalid_argument("a compensator has 1 to 3 axes, not " + std::to_string(axes.size()));
-  }
   for (const Effect& effect : model.effects) {
     add_effect(effect, parameters_, axes, model.ranges);
     parameters_ += effect.parameters.size();
@@ -63,6 +63,10 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
   if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
   held_.resize(channels_.size());
   for (const std::string& name : channels_) ranges_.push_back(range_of(name, model.ranges));
+  // Where an angle is in its arc, each effect of it says.
+  for (const Term& term : terms_)
+    for (const Factor& factor : term.factors)
+      if (factor.turn > 0.0) ranges_[factor.channel] = range_of("", {});
   for (const Term& term : terms_) of_rate_[term.axis] |= term.of_rate ? 1 : 0;
 }
 
@@ -84,13 +88,9 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
     left_out_.push_back(label_of(effect) + " (for how long it was fitted is not known)");
     return;
   }
-  if (*form == Form::kRebuiltRamp) {
-    add_ramp(effect, axes);
-    return;
-  }
-  if (has_channel(*form) && effect.channel.empty()) {
+  if (*form == Form::kRebuiltRamp) return add_ramp(effect, axes);
+  if (has_channel(*form) && effect.channel.empty())
     throw std::invalid_argument(place_of(effect) + " names no channel");
-  }
   Term term;
   term.coefficient = *form == Form::kLookup ? 1.0 : parameter(effect, "coefficient");
   term.parameter = kNone;
@@ -165,6 +165,8 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
   if (!rate && !is_of_time(factor.shape.settings().form)) {
     factor.channel = channel_index(names.of);
     if (!names.less.empty()) factor.less = channel_index(names.less);
+    if (is_of_angle(factor.shape.settings().form))
+      factor.turn = turn_of(channel, factor.shape.settings().period);
   }
   term.of_rate |= rate;
   term.factors.push_back(std::move(factor));
@@ -196,8 +198,9 @@ void Compensator::hold_channels(const CompensatorInput& in, CompensatorOutput& o
     Held& held = held_[i];
     const double value = i < in.channels.size() ? in.channels[i] : std::numeric_limits<double>::quiet_NaN();
     const double age = i < in.age_s.size() ? in.age_s[i] : 0.0;
-    held.stale = !std::isfinite(value) || age > stale_after_s_;
-    if (std::isfinite(value)) {
+    const bool told = held.readings.step(value, in.dt_s, ranges_[i]);
+    held.stale = !told || age > stale_after_s_;
+    if (told) {
       held.seen = true;
       held.value = value;
       held.reach = reach_of(value, ranges_[i]);
@@ -216,9 +219,22 @@ void Compensator::Value::times(double factor, const Shape& shape, const Reach& r
   value *= factor;
 }
 
-Reach Compensator::reach_of_factor(const Factor& factor) const noexcept {
+Reach Compensator::reach_of_factor(Factor& factor, double dt_s, std::uint32_t& flags) const noexcept {
   const Held& held = held_[factor.channel];
-  return factor.less == kNone ? held.reach : reach_of(held.value - held_[factor.less].value, factor.range);
+  if (factor.less == kNone && !(factor.turn > 0.0)) return held.reach;
+  double value = 0.0;
+  if (factor.less == kNone) {
+    value = beside_arc(held.value, factor.range, factor.turn);
+  } else {
+    const double difference = held.value - held_[factor.less].value;
+    const bool told = factor.readings.step(difference, dt_s, factor.range);
+    if (told) factor.difference = difference;
+    if (!told) flags |= kStaleChannel;
+    value = factor.difference;
+  }
+  const Reach reach = reach_of(value, factor.range);
+  if (reach.outside()) flags |= kOutOfRange;
+  return reach;
 }
 
 void Compensator::evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept {
@@ -238,8 +254,7 @@ void Compensator::evaluate(Term& term, double dt_s, std::uint32_t& flags) noexce
       term.usable = false;
       return;
     }
-    const Reach reach = reach_of_factor(factor);
-    if (factor.less != kNone && reach.outside()) flags |= kOutOfRange;
+    const Reach reach = reach_of_factor(factor, dt_s, flags);
     term.channels.times(factor.shape.step(reach, dt_s), factor.shape, reach);
   }
 }
@@ -343,7 +358,10 @@ void Compensator::begin(double since_power_up_s) noexcept {
 void Compensator::restart() noexcept {
   for (Held& held : held_) held = {};
   for (Term& term : terms_) {
-    for (Factor& factor : term.factors) factor.shape.restart();
+    for (Factor& factor : term.factors) {
+      factor.shape.restart();
+      factor.readings = {};
+    }
   }
   for (Ramp& ramp : ramps_) ramp.tracker.restart();
 }
@@ -358,6 +376,7 @@ void Compensator::take_over(const Compensator& previous) noexcept {
       if (channels_[i] != previous.channels_[j] || !previous.held_[j].seen) continue;
       held_[i].seen = true;
       held_[i].value = previous.held_[j].value;
+      held_[i].readings = previous.held_[j].readings;
       held_[i].reach = reach_of(held_[i].value, ranges_[i]);
     }
   }

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/effects/plausible_reading.h"
 #include "filters/effects/ramp_tracker.h"
 #include "filters/effects/shape.h"
 #include "filters/model_file/model.h"
@@ -24,7 +25,9 @@
 namespace ifog {
 
 enum CompensatorFlags : std::uint32_t {
-  kStaleChannel = 1,  // a channel is missing or older than allowed: held at its last value
+  // A channel is missing, older than allowed or no reading of it (plausible_reading.h): held at its last
+  // value.
+  kStaleChannel = 1,
   kOutOfRange = 2,  // a channel is outside the range the model was fitted on: see reach.h; variance inflated
   kNoChannelYet = 4,  // a channel has never had a value: its effects are left out
   kRampUnknown = 8,   // the phase of a rebuilt feedback ramp is not known: its effect is left out
@@ -77,10 +80,13 @@ class Compensator {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   struct Factor {
     Shape shape;
-    std::size_t channel;  // kNone: a rate, or time
-    std::size_t less;     // of a difference of two channels the second; kNone
-    std::size_t rate;     // the axis whose rate it is a function of; kNone
-    ChannelRange range;   // of a rate or a difference
+    std::size_t channel;          // kNone: a rate, or time
+    std::size_t less;             // of a difference of two channels the second; kNone
+    std::size_t rate;             // the axis whose rate it is a function of; kNone
+    ChannelRange range;           // of a rate or a difference
+    PlausibleReading readings{};  // of a difference
+    double difference = 0.0;      // the last that was believed
+    double turn = 0.0;            // of an angle: what its wraps are
   };
   // A product of shapes, and by how much it may be wrong outside the range, as Shape has it.
   struct Value {
@@ -108,6 +114,7 @@ class Compensator {
   struct Held {
     double value = 0.0;
     Reach reach;
+    PlausibleReading readings;
     bool seen = false;
     bool stale = false;
   };
@@ -123,7 +130,7 @@ class Compensator {
   void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
   void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   // Where a factor's channel is, which has had a value.
-  [[nodiscard]] Reach reach_of_factor(const Factor& factor) const noexcept;
+  [[nodiscard]] Reach reach_of_factor(Factor& factor, double dt_s, std::uint32_t& flags) const noexcept;
   // The whole term at these rates of the axes; the channels' part alone for a term that does not depend on
   // them. Zero while another axis it depends on has no value.
   [[nodiscard]] Value at_rates(const Term& term, const Axes& rates) const noexcept;

@@ -97,9 +97,24 @@ std::string_view time_constant_name(Form form) {
   return form == Form::kWarmUp ? "time_constant_s" : "bandwidth_s";
 }
 
+namespace {
+
+Form form_with_memory(const Effect& effect) {
+  return form_named(effect.with_form.empty() ? effect.form : effect.with_form).value_or(Form::kRate);
+}
+
+}  // namespace
+
 std::string_view time_constant_name(const Effect& effect) {
-  const std::string& name = effect.with_form.empty() ? effect.form : effect.with_form;
-  return time_constant_name(form_named(name).value_or(Form::kRate));
+  return time_constant_name(form_with_memory(effect));
+}
+
+std::string_view second_time_constant_name(Form form) {
+  return form == Form::kBandPower ? "average_s" : "second_lag_s";
+}
+
+std::string_view second_time_constant_name(const Effect& effect) {
+  return second_time_constant_name(form_with_memory(effect));
 }
 
 std::string rate_of_axis(std::string_view axis) {

@@ -84,6 +84,9 @@ inline constexpr std::string_view kHalfWidth = "half_width";
 [[nodiscard]] std::string_view time_constant_name(Form form);
 // Of a product: of its second factor.
 [[nodiscard]] std::string_view time_constant_name(const Effect& effect);
+// Of a form that may have a second one: "average_s" of band_power, "second_lag_s" of lagged.
+[[nodiscard]] std::string_view second_time_constant_name(Form form);
+[[nodiscard]] std::string_view second_time_constant_name(const Effect& effect);
 
 // The measured rate of an axis of the same sensor as a channel: "rate_y_radps" for "y".
 [[nodiscard]] std::string rate_of_axis(std::string_view axis);

@@ -17,8 +17,8 @@ double share(double dt, double time_constant) {
   return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }
 
-// Mean square is an average; a second is short against what the filter behind it follows and long against
-// vibration.
+// Mean square is an average; where a model does not say of how long, a second is short against what the
+// filter behind it follows and long against vibration.
 constexpr double kPowerAverage_s = 1.0;
 
 bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSine; }
@@ -67,7 +67,7 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.reference = effect.reference;
   if (*form == Form::kProduct) return settings;
   settings.time_constant_s = parameter(effect, time_constant_name(*form));
-  settings.second_time_constant_s = parameter(effect, "second_lag_s");
+  settings.second_time_constant_s = parameter(effect, second_time_constant_name(*form));
   settings.table_x = effect.table_x;
   settings.table_y = effect.table_y;
   settings.period = effect.period;
@@ -87,7 +87,7 @@ ShapeSettings with_shape_settings(const Effect& effect) {
   settings.form = *form;
   settings.reference = effect.with_reference;
   settings.time_constant_s = parameter(effect, time_constant_name(*form));
-  settings.second_time_constant_s = parameter(effect, "second_lag_s");
+  settings.second_time_constant_s = parameter(effect, second_time_constant_name(*form));
   if (power_of(*form) > 1) settings.half_width = parameter(effect, kCurveReach);
   return settings;
 }
@@ -142,14 +142,19 @@ double Shape::at(double value) const noexcept {
   return power(c, settings_.form);
 }
 
-double Shape::step(double value, double dt_s) noexcept {
-  if (!has_memory(settings_.form) && !is_of_time(settings_.form) && !settings_.angle) return at(value);
+double Shape::step(double value, double dt_s) noexcept { return step_over(value, 0.0, dt_s); }
+
+double Shape::step_over(double value, double scatter, double dt_s) noexcept {
+  if (!has_memory(settings_.form) && !is_of_time(settings_.form) && !settings_.angle)
+    return settings_.form == Form::kQuadratic ? at(value) + scatter : at(value);
   if (dt_s != dt_) {
     dt_ = dt_s;
     alpha_ = share(dt_s, settings_.time_constant_s);
-    beta_ = share(dt_s, settings_.form == Form::kSecondRate  ? settings_.time_constant_s
-                        : settings_.form == Form::kBandPower ? kPowerAverage_s
-                                                             : settings_.second_time_constant_s);
+    const bool second = settings_.form == Form::kSecondRate;
+    const bool usual = settings_.form == Form::kBandPower && settings_.second_time_constant_s == 0.0;
+    beta_ = share(dt_s, second  ? settings_.time_constant_s
+                        : usual ? kPowerAverage_s
+                                : settings_.second_time_constant_s);
   }
   const bool fresh = !started_;
   started_ = true;
@@ -171,9 +176,13 @@ double Shape::step(double value, double dt_s) noexcept {
   const double c = value - settings_.reference;
   if (fresh) {
     first_ = c;
+    elapsed_ = 0.0;
     second_ = settings_.form == Form::kLagged ? c : 0.0;
   }
-  const double step1 = alpha_ * (c - first_);
+  // What vibrates was not always at its first sample: until the low-pass has settled it is the mean so far.
+  elapsed_ += dt_s;
+  const bool settling = settings_.form == Form::kBandPower && elapsed_ > 0.0;
+  const double step1 = (settling ? std::max(alpha_, dt_s / elapsed_) : alpha_) * (c - first_);
   first_ += step1;
   switch (settings_.form) {
     case Form::kRate:
@@ -189,7 +198,7 @@ double Shape::step(double value, double dt_s) noexcept {
       return second_;
     default: {  // band power
       const double high = c - first_;
-      second_ += beta_ * (high * high - second_);
+      second_ += beta_ * (high * high + scatter - second_);
       return second_;
     }
   }
@@ -213,6 +222,7 @@ double Shape::slope(double value) const noexcept {
 }
 
 double Shape::at(const Reach& channel) const noexcept {
+  if (is_periodic(settings_.form)) return at(channel.edge);
   if (is_bounded(settings_.form)) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
   const double curved = followed(settings_, channel);
@@ -220,17 +230,15 @@ double Shape::at(const Reach& channel) const noexcept {
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
-  if (is_bounded(settings_.form)) return step(channel.value + channel.beyond, dt_s);
+  if (is_bounded(settings_.form)) return at(channel);
   if (power_of(settings_.form) > 1 && channel.outside()) return at(channel);
   return step(goes_on() ? channel.value : channel.edge, dt_s);
 }
 
 double Shape::left_behind(const Reach& channel) const noexcept {
-  // Periodic: every value is inside.
-  if (settings_.angle || is_periodic(settings_.form) || !channel.outside()) return 0.0;
+  if (settings_.angle || !channel.outside()) return 0.0;
   if (settings_.form == Form::kDeadZone) return 0.0;
-  if (settings_.form == Form::kTransition)
-    return std::abs(at(channel.value + channel.beyond) - at(channel.edge));
+  if (is_bounded(settings_.form)) return std::abs(at(channel.value + channel.beyond) - at(channel.edge));
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
   if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {

@@ -13,9 +13,10 @@ namespace ifog {
 
 struct ShapeSettings {
   Form form = Form::kLinear;
-  double reference = 0.0;                // the channel's value at which the shape is zero
-  double time_constant_s = 0.0;          // rate, second_rate, lagged, band_power, warm_up; 0: no smoothing
-  double second_time_constant_s = 0.0;   // lagged: a second stage
+  double reference = 0.0;        // the channel's value at which the shape is zero
+  double time_constant_s = 0.0;  // rate, second_rate, lagged, band_power, warm_up; 0: no smoothing
+  // lagged: a second stage; band_power: what the power is averaged over, 0: a second.
+  double second_time_constant_s = 0.0;
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
   double half_width = 0.0;               // dead_zone, transition; of a power above one its curve_reach
@@ -41,6 +42,9 @@ class Shape {
   // One sample: the channel's value, and the time it covers. The first sample sets the low-pass to itself, as
   // if the channel had always been there; a rate_ramp is the time since it. No allocation, no exception.
   double step(double value, double dt_s) noexcept;
+  // A step of several samples, by their mean and their variance about it: as its samples in turn would, for
+  // quadratic and band_power.
+  double step_over(double value, double scatter, double dt_s) noexcept;
   void restart() noexcept { started_ = false; }
   // Of a warm_up, before its first sample: ShapeSettings::elapsed_s.
   void begin(double elapsed_s) noexcept { settings_.elapsed_s = elapsed_s; }

@@ -35,7 +35,8 @@ const std::vector<FormRules>& form_rules() {
       {"cosine", {kCoefficient}},
       {"sine", {kCoefficient}},
       // Of 0 the low-pass is the channel itself, and nothing is above it.
-      {"band_power", {kCoefficient, {"bandwidth_s", true, Values::kPositive}}},
+      {"band_power",
+       {kCoefficient, {"bandwidth_s", true, Values::kPositive}, {"average_s", false, Values::kNotNegative}}},
       {"transition", {kCoefficient, {"half_width", true, Values::kPositive}}},
       {"dead_zone", {{"coefficient"}, {"half_width", true, Values::kNotNegative}}},
       {"line", {{"cosine"}, {"sine"}, {"frequency_hz", false, Values::kNotNegative}}},

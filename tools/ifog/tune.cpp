@@ -204,7 +204,7 @@ json noise_json(const NoiseByAxis& noise) {
   for (const auto& [axis, found] : noise)
     axes.push_back({{"axis", axis},
                     {"coefficients", report::coefficients_json(found.terms)},
-                    {"gauss_markov", report::markov_json(found.terms)},
+                    {"gauss_markov", report::markov_json(found.terms.markov)},
                     {"noise_changes", report::noise_changes_json(found.changes)}});
   return axes;
 }

@@ -91,9 +91,9 @@ nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
   return out;
 }
 
-nlohmann::ordered_json markov_json(const NoiseCoefficients& found) {
-  if (!found.markov || !found.markov->present) return nullptr;
-  const MarkovNoise& markov = *found.markov;
+nlohmann::ordered_json markov_json(const std::optional<MarkovNoise>& found) {
+  if (!found || !found->present) return nullptr;
+  const MarkovNoise& markov = *found;
   return {{"sigma_radps", markov.sigma_radps},
           {"correlation_s", markov.correlation_s},
           {"lower_s", markov.lower_s},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ std::string coefficient_lines(const NoiseCoefficients& found);
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found);
 
 // {sigma_radps, correlation_s, lower_s, upper_s, K, K_until_s} of a correlated bias; null where none is seen.
-nlohmann::ordered_json markov_json(const NoiseCoefficients& found);
+nlohmann::ordered_json markov_json(const std::optional<MarkovNoise>& found);
 
 // [{from_s, to_s, times, low_hz, high_hz}], empty where the noise is the same all along.
 nlohmann::ordered_json noise_changes_json(std::span<const NoiseChange> changes);

@@ -322,14 +322,12 @@ Eigen::VectorXd block_means(const BlockGrid& grid, Step&& step) {
 Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std::size_t channel) {
   Shape shape(settings);
   const FineChannel& source = data.channels[channel];
-  const bool add_power =
-      !source.power.empty() && (settings.form == Form::kQuadratic || settings.form == Form::kBandPower);
+  const bool add_power = !source.power.empty();
   return block_means(data.grid, [&](std::size_t k, bool starts) {
     if (starts) shape.restart();
     if (settings.form == Form::kDeadZone && !source.power.empty())
       return mean_in_dead_zone(source.values[k] - settings.reference, source.power[k], settings.half_width);
-    const double value = shape.step(source.values[k], data.grid.fine_s);
-    return add_power ? value + source.power[k] : value;
+    return shape.step_over(source.values[k], add_power ? source.power[k] : 0.0, data.grid.fine_s);
   });
 }
 

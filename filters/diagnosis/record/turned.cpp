@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/record/turned.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -20,6 +22,19 @@ std::optional<double> period_of(const Record& record) {
 }
 
 }  // namespace
+
+bool was_turned(const std::vector<Record>& records) {
+  constexpr double kTurned_radps = 1e-4;
+  return std::any_of(records.begin(), records.end(), [](const Record& record) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double rate : record.reference_radps) {
+      if (!std::isfinite(rate)) continue;
+      least = std::min(least, rate);
+      most = std::max(most, rate);
+    }
+    return most - least > kTurned_radps;
+  });
+}
 
 WithoutTurns without_turns(const std::vector<Record>& records) {
   WithoutTurns out;

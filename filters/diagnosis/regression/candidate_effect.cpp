@@ -65,7 +65,8 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
         {std::string(time_constant_name(effect)), candidate.time_constant_s, 0.0, "s"});
   }
   if (candidate.second_time_constant_s > 0.0) {
-    effect.parameters.push_back({"second_lag_s", candidate.second_time_constant_s, 0.0, "s"});
+    effect.parameters.push_back(
+        {std::string(second_time_constant_name(effect)), candidate.second_time_constant_s, 0.0, "s"});
   }
   if (candidate.form == Form::kStep) {
     const double time_s = data.grid.origin_of(candidate.record).told(candidate.time_s);
@@ -101,7 +102,7 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
     if (candidate.with_channel == Candidate::kNone) return std::nullopt;
   }
   candidate.time_constant_s = parameter(effect, time_constant_name(effect));
-  candidate.second_time_constant_s = parameter(effect, "second_lag_s");
+  candidate.second_time_constant_s = parameter(effect, second_time_constant_name(effect));
   candidate.frequency_hz = parameter(effect, "frequency_hz");
   candidate.period = effect.period;
   candidate.half_width = parameter(effect, kHalfWidth);

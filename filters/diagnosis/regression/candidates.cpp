@@ -20,9 +20,9 @@ constexpr double kBlocksOfRate = 2.0;
 constexpr double kShortestWarmUp_s = 10.0;
 // Of a sample: a band power that weighs the frequencies near half the sample rate most.
 constexpr double kHighest = 0.5;
-constexpr double kInside = 0.1;     // of the range from its edge: of a transition both levels have to be seen
-constexpr double kSeenTurn = 0.75;  // of a turn: on a shorter arc the rest of the circle would be a guess
-constexpr int kHarmonics = 2;       // of a turn: once, as a field does, and twice, as what bends does
+constexpr double kInside = 0.1;    // of the range from its edge: of a transition both levels have to be seen
+constexpr double kSeenTurn = 0.5;  // of a turn: a shorter arc tells no harmonics apart
+constexpr int kHarmonics = 2;      // of a turn: once, as a field does, and twice, as what bends does
 constexpr double kOfDifference =
     3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
 constexpr double kOfOtherAxis = 2.0;

@@ -21,7 +21,7 @@ struct Candidate {
   Form with_form = Form::kLinear;  // product
   std::size_t with_channel = kNone;
   double time_constant_s = 0.0;  // rate, second_rate, lagged, band_power, warm_up
-  double second_time_constant_s = 0.0;
+  double second_time_constant_s = 0.0;  // lagged, band_power
   double time_s = 0.0;        // step: block time in its record
   std::size_t record = 0;     // step, line: where it is
   double frequency_hz = 0.0;  // line

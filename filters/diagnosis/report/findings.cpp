@@ -294,7 +294,9 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
         {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
   for (const FineChannel& channel : data.channels) {
     const auto uses = [&](const FoundEffect& found) {
-      if (found.effect.shown_only || channel.period > 0.0) return false;  // an angle has no range
+      // An angle that went all round has no range.
+      if (found.effect.shown_only || (channel.period > 0.0 && channel.high - channel.low >= channel.period))
+        return false;
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
     };
     if (std::any_of(effects.begin(), effects.end(), uses))

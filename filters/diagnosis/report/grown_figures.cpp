@@ -34,66 +34,71 @@ double growth_of(const Diagnosis& diagnosis, const char* key) {
   return after->second / before->second;
 }
 
-double count_of(const Figure& figure, const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
-  double samples = 0.0;
-  for (const EvenError& error : errors) samples += static_cast<double>(error.before.size());
+double count_of(const Figure& figure, const Diagnosis& diagnosis, double samples) {
   return figure.means_s > 0.0 ? samples / (diagnosis.sample_rate_hz * figure.means_s) : samples;
+}
+
+double of_10s_means(const std::vector<EvenError>& errors, SharedSamples EvenError::*of, double rate_hz) {
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(10.0 * rate_hz)));
+  double variance = 0.0;
+  for (const EvenError& error : errors) variance += variance_of(means_over(error.*of, count));
+  return std::sqrt(variance);
 }
 
 }  // namespace
 
+double samples_of(const std::vector<EvenError>& errors) {
+  double samples = 0.0;
+  for (const EvenError& error : errors) samples += static_cast<double>(error.before.size());
+  return samples;
+}
+
 bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
   for (const Figure& figure : kFigures)
-    if (growth_of(diagnosis, figure.key) > kGrown && count_of(figure, diagnosis, errors) >= kMany)
+    if (growth_of(diagnosis, figure.key) > kGrown && count_of(figure, diagnosis, samples_of(errors)) >= kMany)
       return true;
   return false;
 }
 
-std::string grown_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
+std::string grown_in_words(const Diagnosis& diagnosis, double samples) {
   if (diagnosis.effects.empty()) return "";
   std::string sentence;
+  bool by_chance = true;
   for (const Figure& figure : kFigures) {
     const double growth = growth_of(diagnosis, figure.key);
-    const double count = count_of(figure, diagnosis, errors);
-    if (growth <= kGrown || count >= kMany) continue;
+    const double count = count_of(figure, diagnosis, samples);
+    if (growth <= kGrown) continue;
     std::array<char, 120> text{};
-    std::snprintf(text.data(), text.size(), "%s%.3g s means grow %.3g times, but there are %.0f of them",
-                  sentence.empty() ? "" : "; ", figure.means_s, growth, count);
+    if (figure.means_s > 0.0)
+      std::snprintf(text.data(), text.size(), "%.3g s means grow %.3g times", figure.means_s, growth);
+    else
+      std::snprintf(text.data(), text.size(), "single samples grow %.3g times", growth);
+    sentence += (sentence.empty() ? "" : "; ") + std::string(text.data());
+    by_chance &= count < kMany;
+    if (count >= kMany) continue;
+    std::snprintf(text.data(), text.size(), ", but there are %.0f of them", count);
     sentence += text.data();
   }
-  return sentence.empty()
-             ? sentence
-             : sentence + ": slow noise that happened to run against the effects was hidden by them";
+  if (sentence.empty()) return "";
+  return sentence +
+         (by_chance
+              ? ": slow noise that happened to run against the effects was hidden by them"
+              : ": that is no chance, the model does harm there; take another capture before it is used");
 }
 
 std::string faults_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
   constexpr double kMore = 1.05;
-  double written = 0.0;
-  double logged = 0.0;
-  for (const EvenError& error : errors) {
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(10.0 * diagnosis.sample_rate_hz)));
-    written += variance_of(means_over(error.written, count));
-    logged += variance_of(means_over(error.logged, count));
-  }
-  if (!(std::sqrt(logged) > kMore * std::sqrt(written))) return "";
+  if (diagnosis.effects.empty()) return "";
+  const double written = of_10s_means(errors, &EvenError::written, diagnosis.sample_rate_hz);
+  const double logged = of_10s_means(errors, &EvenError::logged, diagnosis.sample_rate_hz);
+  if (!(logged > kMore * written)) return "";
   std::array<char, 300> text{};
   std::snprintf(
       text.data(), text.size(),
       "the daemon has the channels as they are logged: with the faults that were repaired for the fit it "
       "leaves %.2g times as much of 10 s means as without, and the figures after are those",
-      std::sqrt(logged / written));
-  std::string sentence = text.data();
-  for (const Figure& figure : kFigures) {
-    const double growth = growth_of(diagnosis, figure.key);
-    if (growth <= kGrown || count_of(figure, diagnosis, errors) < kMany) continue;
-    if (figure.means_s > 0.0)
-      std::snprintf(text.data(), text.size(), "; %.3g s means grow %.3g times by that", figure.means_s,
-                    growth);
-    else
-      std::snprintf(text.data(), text.size(), "; single samples grow %.3g times by that", growth);
-    sentence += text.data();
-  }
-  return sentence;
+      logged / written);
+  return text.data();
 }
 
 }  // namespace ifog

@@ -4,6 +4,7 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/report/grown_figures.h"
 
 namespace ifog {
 
@@ -14,6 +15,7 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
   std::vector<std::map<std::string, double>> before;
   std::vector<std::map<std::string, double>> after;
   std::vector<double> weight;
+  double samples = 0.0;
   for (const Record& record : records) {
     const SampleRange part = samples_in(record, fitted);
     const Samples raw = error_of(record);
@@ -29,11 +31,14 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
       before.push_back(of(raw));
       after.push_back(of(left));
       weight.push_back(static_cast<double>(judged.size()));
+      samples += static_cast<double>(judged.size());
     }
   }
   if (before.empty()) return;
   diagnosis.before = pooled(before, weight);
   diagnosis.after = pooled(after, weight);
+  if (const std::string words = grown_in_words(diagnosis, samples); !words.empty())
+    diagnosis.remarks.push_back("on what was kept back to judge " + words);
 }
 
 }  // namespace ifog

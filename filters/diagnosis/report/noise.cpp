@@ -111,6 +111,7 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
     put(found.R, value.R, error.R);
     if (const std::string markov = markov_in_words(found); !markov.empty())
       diagnosis.remarks.push_back(markov);
+    diagnosis.markov = found.markov;
     weigh_return(found, grid.sample_s, diagnosis.noise_posterior);
   } catch (const std::invalid_argument& reason) {
     diagnosis.remarks.push_back(std::string("no noise terms: ") + reason.what());

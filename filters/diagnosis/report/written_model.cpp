@@ -59,7 +59,9 @@ void run_as_logged(const std::vector<Record>& records, const std::vector<Record>
     Record record = records[r];
     for (RecordChannel& channel : record.channels)
       if (const auto values = values_of(logged[r], channel.name); !values.empty()) channel.values = values;
-    errors[r].logged = on_even_grid(records[r], sample_s, compensated_error(record, model));
+    errors[r].logged = model.effects.empty()
+                           ? errors[r].before
+                           : on_even_grid(records[r], sample_s, compensated_error(record, model));
   }
 }
 

@@ -2,6 +2,7 @@
 // What is taken away outside the ranges that a model was fitted in, and how much its variance owns to.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -31,6 +32,28 @@ TEST(Compensator, ALinearEffectGoesOnForOneMoreSpanAndIsThenHeld) {
     EXPECT_EQ(out.flags, static_cast<std::uint32_t>(kOutOfRange)) << t;
     EXPECT_NEAR(out.correction_radps[0], 1e-6 * (followed - 25.0), 1e-18) << t;
     EXPECT_NEAR(out.variance_rad2ps2[0], std::pow(1e-6 * (t - followed), 2), 1e-18) << t;
+  }
+}
+
+// Three quarters of a turn seen, over the wrap: from 3 rad to 3 + 3 pi / 2.
+TEST(Compensator, WhatRepeatsWithAnAngleIsHeldAtTheNearerEndOfItsArc) {
+  const double low = 3.0, high = low + 1.5 * M_PI;
+  for (const double times : {1.0, 2.0}) {
+    Model model;
+    model.effects = {linear(1e-6)};
+    model.effects[0].form = "cosine";
+    model.effects[0].channel = "table_rad";
+    model.effects[0].reference = 0.0;
+    model.effects[0].period = 2.0 * M_PI / times;
+    model.ranges = {{"table_rad", low, high}};
+    Compensator compensator(model, {""});
+    for (double angle = -7.0; angle < 20.0; angle += 0.37) {
+      const double into = std::remainder(angle - low - 0.75 * M_PI, 2.0 * M_PI);  // from its middle
+      const double held = low + 0.75 * M_PI + std::clamp(into, -0.75 * M_PI, 0.75 * M_PI);
+      const auto out = step(compensator, 0.0, {angle});
+      EXPECT_NEAR(out.correction_radps[0], 1e-6 * std::cos(times * held), 1e-15) << angle;
+      EXPECT_EQ(out.flags, std::abs(into) > 0.75 * M_PI ? static_cast<std::uint32_t>(kOutOfRange) : 0U);
+    }
   }
 }
 

@@ -101,6 +101,34 @@ TEST(Shape, BandPowerIsTheMeanSquareOfTheFastPart) {
   EXPECT_NEAR(sum / 10000.0, 0.02, 2e-4);
 }
 
+// Where a machine starts the power goes as a first-order lag does, whether each sample is looked at or the
+// scatter of a step of them.
+TEST(Shape, BandPowerIsAveragedByItsOwnTimeConstant) {
+  for (const double average : {0.0, 0.4, 2.5}) {
+    Shape by_step(of(Form::kBandPower, 1000.0, average)), by_sample(of(Form::kBandPower, 1000.0, average));
+    const double tau = average > 0.0 ? average : 1.0;
+    for (int k = 0; k < 4000; ++k) {
+      const double a = k < 1000 ? 0.0 : 0.3;
+      double last = 0.0;
+      for (int i = 0; i < 10; ++i) last = by_sample.step(25.0 + (i % 2 ? a : -a), 0.001);
+      const double value = by_step.step_over(25.0, a * a, 0.01);
+      const double t = 0.01 * (k - 999);
+      const double lagged = k < 1000 ? 0.0 : 0.09 * -std::expm1(-t / tau);
+      EXPECT_NEAR(value, lagged, 1e-6) << k;
+      EXPECT_NEAR(last, lagged, 1e-4) << k;
+    }
+  }
+}
+
+// A record begins at any phase of the vibration; its mean is what the slow low-pass has to begin at.
+TEST(Shape, BandPowerOfASlowBandDoesNotRememberItsFirstSample) {
+  Shape power(of(Form::kBandPower, 100.0));
+  double value = 0.0;
+  for (int k = 0; k < 8000; ++k)
+    value = power.step(30.0 + 0.2 * std::cos(2.0 * std::numbers::pi * 12.5 * 0.001 * k), 0.001);
+  EXPECT_NEAR(value, 0.02, 1e-3);
+}
+
 TEST(Shape, LookupIsLinearBetweenKnotsAndPeriodic) {
   ShapeSettings settings = of(Form::kLookup);
   settings.table_x = {0.0, 10.0, 30.0, 40.0};

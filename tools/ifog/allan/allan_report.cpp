@@ -98,7 +98,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     if (!record.fit)
       for (auto& term : axis["coefficients"]) term["std_error"] = term["upper"] = nullptr;
     axis["misfit"] = record.fit ? finite(record.fit->misfit) : ordered_json(nullptr);
-    axis["gauss_markov"] = record.fit ? report::markov_json(*record.fit) : ordered_json(nullptr);
+    axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["notes"] = record.notes;
     out["axes"].push_back(axis);

@@ -141,6 +141,7 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
   put("noise", [](const Diagnosis& d) {
     Json noise = noise_json(d.noise);
     noise["std_error"] = noise_json(d.noise_error);
+    noise["gauss_markov"] = report::markov_json(d.markov);
     return noise;
   });
   json["noise_changes"] = Json::array();

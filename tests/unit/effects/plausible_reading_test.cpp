@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a logger writes where it has no value is no reading; what a channel may do, however seldom, is one.
+#include "filters/effects/plausible_reading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/effects/compensated.h"
+
+namespace ifog {
+namespace {
+
+const ChannelRange kVibration{"accel_x_mps2", -10.0, 10.0};
+const ChannelRange kRoom{"temperature_degC", 20.0, 35.0};
+
+// A channel that swings from sample to sample.
+double vibration(int i) { return 9.0 * std::sin(2.4 * i); }
+// Hundredths of a degree from sample to sample.
+double warmth(int i) { return 25.0 + 0.01 * i; }
+
+template <class Value>
+PlausibleReading after(int samples, double dt_s, const ChannelRange& range, Value&& value) {
+  PlausibleReading reading;
+  for (int i = 0; i < samples; ++i) EXPECT_TRUE(reading.step(value(i), dt_s, range)) << i;
+  return reading;
+}
+
+TEST(PlausibleReading, APlaceholderIsNoneForAsLongAsItStands) {
+  PlausibleReading reading = after(200, 0.01, kVibration, vibration);
+  for (int i = 0; i < 20000; ++i) EXPECT_FALSE(reading.step(9999.0, 0.01, kVibration)) << i;
+  EXPECT_TRUE(reading.step(3.0, 0.01, kVibration));
+}
+
+TEST(PlausibleReading, AVibrationThatGrewIsOne) {
+  PlausibleReading reading = after(200, 0.01, kVibration, vibration);
+  for (int i = 0; i < 200; ++i) EXPECT_TRUE(reading.step(10.0 * vibration(i), 0.01, kVibration)) << i;
+}
+
+TEST(PlausibleReading, WhatASlowChannelNeverDidIsNoneForAMinute) {
+  PlausibleReading reading = after(100, 1.0, kRoom, warmth);
+  for (const double value : {85.0, -127.0, 85.0}) EXPECT_FALSE(reading.step(value, 1.0, kRoom)) << value;
+  EXPECT_TRUE(reading.step(26.1, 1.0, kRoom));
+  // A room that is another now: it moves, and after a minute it is believed.
+  int refused = 0;
+  for (int i = 0; i < 100; ++i) refused += reading.step(60.0 + 0.01 * i, 1.0, kRoom) ? 0 : 1;
+  EXPECT_EQ(refused, 60);
+}
+
+TEST(PlausibleReading, ASlowChannelThatWalksOutOfItsRangeIsOne) {
+  PlausibleReading reading = after(100, 1.0, kRoom, warmth);
+  for (int i = 0; i < 500; ++i) EXPECT_TRUE(reading.step(26.0 + 0.1 * i, 1.0, kRoom)) << i;
+}
+
+TEST(PlausibleReading, BehindAGapOfAMinuteTheChannelMayBeElsewhere) {
+  PlausibleReading reading = after(100, 1.0, kRoom, warmth);
+  for (int i = 0; i < 70; ++i) EXPECT_FALSE(reading.step(std::nan(""), 1.0, kRoom));
+  EXPECT_TRUE(reading.step(60.0, 1.0, kRoom));
+}
+
+TEST(PlausibleReading, OfAChannelWithoutARangeOrAHistoryNothingIsKnown) {
+  PlausibleReading without, fresh;
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(without.step(1.0, 0.01, {"x", -infinite, infinite}));
+  EXPECT_TRUE(without.step(1e9, 0.01, {"x", -infinite, infinite}));
+  EXPECT_TRUE(fresh.step(9999.0, 0.01, kVibration));
+}
+
+// Held as a missing one is, and flagged so: neither range nor variance is made of a logger's number.
+TEST(Compensator, HoldsAChannelThatIsNoReading) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  model.ranges = {{"temperature_degC", 20.0, 35.0}};
+  Compensator compensator(model, {""});
+  for (int i = 0; i < 100; ++i) step(compensator, 0.0, {warmth(i)});
+  const double before = step(compensator, 0.0, {26.0}).correction_radps[0];
+  const CompensatorOutput out = step(compensator, 0.0, {85.0});
+  EXPECT_DOUBLE_EQ(out.correction_radps[0], before);
+  EXPECT_EQ(out.flags, static_cast<std::uint32_t>(kStaleChannel));
+}
+
+TEST(Compensator, HoldsADifferenceThatIsNoReading) {
+  Model model;
+  model.effects = {linear(1e-6)};
+  model.effects[0].channel = "temperature_a_degC - temperature_b_degC";
+  model.effects[0].reference = 0.0;
+  model.ranges = {{model.effects[0].channel, -2.0, 2.0}};
+  Compensator compensator(model, {""});
+  ASSERT_EQ(compensator.channels().size(), 2U);
+  for (int i = 0; i < 100; ++i) step(compensator, 0.0, {25.0 + 0.001 * i, 24.0});
+  const double before = step(compensator, 0.0, {25.1, 24.0}).correction_radps[0];
+  const CompensatorOutput out = step(compensator, 0.0, {85.0, 24.0});
+  EXPECT_DOUBLE_EQ(out.correction_radps[0], before);
+  EXPECT_EQ(out.flags, static_cast<std::uint32_t>(kStaleChannel));
+}
+
+}  // namespace
+}  // namespace ifog
