@@ -185,8 +185,10 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
     warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
          file_.path().c_str(), builder.restarts());
   if (builder.clock_sets() != 0)
-    warn("%s: the device's clock was set %zu times while it measured on; there its times are by its counter or its rate\n",
-         file_.path().c_str(), builder.clock_sets());
+    warn(
+        "%s: the device's clock was set %zu times while it measured on; there its times are by its counter "
+        "or its rate\n",
+        file_.path().c_str(), builder.clock_sets());
   if (builder.repeated() != 0)
     warn("%s: %zu samples came twice or after one that follows, and are left out\n", file_.path().c_str(),
          builder.repeated());
