@@ -18,7 +18,7 @@ constexpr double kBandwidth = 1.5;
 // After so many samples that nobody has seen a motion may be any other.
 constexpr double kGapEnds = 16.0;
 // Samples whose filtered states are held at once.
-constexpr std::size_t kPiece = 4096;
+constexpr std::size_t kHeldAtOnce = 4096;
 // Beyond what neighbours differ by, in squares.
 constexpr double kAnything = 100.0;
 
@@ -162,11 +162,12 @@ Smoothed smooth_course(const RateCourse& of, double noise) {
   std::vector<State> begun{now};  // filtered, at the beginning of each piece
   for (std::size_t i = first + 1; i < length; ++i) {
     filter(of, course, noise, i, now);
-    if ((i - first) % kPiece == 0) begun.push_back(now);
+    if ((i - first) % kHeldAtOnce == 0) begun.push_back(now);
   }
   std::vector<State> piece;
   for (; !begun.empty(); begun.pop_back()) {
-    const std::size_t begin = first + (begun.size() - 1) * kPiece, end = std::min(length, begin + kPiece);
+    const std::size_t begin = first + (begun.size() - 1) * kHeldAtOnce,
+                      end = std::min(length, begin + kHeldAtOnce);
     piece.assign(1, begun.back());
     for (std::size_t i = begin + 1; i < end; ++i) {
       piece.push_back(piece.back());

@@ -19,8 +19,8 @@ constexpr double kLeastLag = 4.0;
 // Squares of innovations at most, in variances.
 constexpr double kClip = 9.0;
 // Trials of the ratio of walk to noise: a factor apart, up to one that has hardly any lag.
-constexpr double kStep = 1.3;
-constexpr double kMostRatio = 0.25;
+constexpr double kTried = 1.3;
+constexpr double kMostWalk = 0.25;
 
 struct Stretches {
   std::vector<double> means;
@@ -99,7 +99,7 @@ BlockFit fit_blocks(const Stretches& rest) {
   std::vector<Trial> trials;
   std::vector<double> ratios;
   double most = -std::numeric_limits<double>::infinity();
-  for (double ratio = 1.0 / (n * n); ratio < kMostRatio; ratio *= kStep) {
+  for (double ratio = 1.0 / (n * n); ratio < kMostWalk; ratio *= kTried) {
     ratios.push_back(ratio);
     trials.push_back(judge(rest, ratio, trials.empty() ? rough : trials.back().noise));
     most = std::max(most, trials.back().likelihood);
@@ -159,7 +159,7 @@ RestOfRecord RestLikelihood::fit(double walk) const {
   for (std::size_t k = levels.size(); k-- > 0;) {
     const double block = samples(k), ratio = out.walk * block * block / out.noise;
     if (levels[k].means.size() < kManyMeans && k > 0) continue;
-    if (ratio <= kMostRatio) out.noise = block * judge(levels[k], ratio, out.noise / block).noise;
+    if (ratio <= kMostWalk) out.noise = block * judge(levels[k], ratio, out.noise / block).noise;
     break;
   }
   return out;

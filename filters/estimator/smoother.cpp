@@ -44,7 +44,7 @@ Found found(const EstimatorOutput& out) {
   if ((out.flags & kGated) == 0) return Found::rest;
   const double innovation = out.innovation_radps[0];
   return innovation * innovation > kFarAway * kFarAway * out.innovation_variance[0] ? Found::far_out
-                                                                            : Found::kept_out;
+                                                                                    : Found::kept_out;
 }
 
 Pass run(const FilterSettings& settings, const Axis& axis, bool backwards) {

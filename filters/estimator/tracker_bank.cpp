@@ -18,7 +18,7 @@ constexpr double kLeastReach = 48.0;
 // followed, it is further off than what was measured last.
 constexpr double kMostLengths = 2.0;
 // An axis that has not come for so many samples makes the trackers no younger.
-constexpr double kMostSteps = 16.0;
+constexpr double kGone_samples = 16.0;
 // Lengths that the steepness of a motion is a mean over: enough of them for a swing that the tracker follows.
 constexpr double kSteepness = 16.0;
 // Measurements, at least, that a mean of their distances is taken of.
@@ -137,7 +137,7 @@ void TrackerBank::predict(double steps) noexcept {
 void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
   bool whole = true;
   for (std::size_t a = 0; a < kMaxAxes; ++a)
-    whole = whole && (((measured_ & ~valid_axes) >> a & 1U) == 0 || steps_[a] > kMostSteps);
+    whole = whole && (((measured_ & ~valid_axes) >> a & 1U) == 0 || steps_[a] > kGone_samples);
   measured_ |= valid_axes;
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
@@ -148,7 +148,7 @@ void TrackerBank::correct(const Axes& rate, std::uint32_t valid_axes) noexcept {
       double& usual = state.usual_step[a];
       if (steps_[a] > farthest(j, a)) {
         state.rate[a] = state.filtered[a] = rate[a];
-        usual = std::min(steps_[a], kMostSteps);
+        usual = std::min(steps_[a], kGone_samples);
         continue;
       }
       usual += (steps_[a] - usual) / std::max(kLeastMean, std::min(memory_[j], state.age));
