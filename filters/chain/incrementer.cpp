@@ -202,9 +202,10 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
   } else if (moved) {
     ++counts_.pauses;
   }
-  // What is held up on its way says nothing of the clock.
-  out.utime_ns = ns_after(clock_.advance(step.samples, step.late_s > 0.0 ? 0 : reading.arrival_ns),
-                          reading.wall_shift_ns);
+  // What is held up on its way says nothing of the clock, but for where a clock that was set has to begin.
+  const bool held_up = step.late_s > 0.0 && !set_back;
+  out.utime_ns =
+      ns_after(clock_.advance(step.samples, held_up ? 0 : reading.arrival_ns), reading.wall_shift_ns);
   // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
   // fro by as much as arrival times scatter.
   if (started_ && (out.flags & kClockStep) == 0)

@@ -347,6 +347,16 @@ TEST(Recorded, AClockThatWasSetWhileItWasRecordedLosesNothing) {
   }
 }
 
+TEST(Recorded, AClockThatWasSetBackWhileSamplesWereHeldUpLabelsThemAllTheSame) {
+  std::vector<Sent> frames = on_time(2000, 65536);
+  hold(frames, frames[1000].arrives_s, frames[1000].arrives_s + 0.5);
+  for (std::size_t i = 1000; i < frames.size(); ++i) frames[i].arrives_s -= 40.0;
+  const Got got = run(frames, Tells::counter, 65536, true);
+  EXPECT_EQ(got.counts.missing, 0U);
+  EXPECT_NEAR(got.dt_s, 2000 * kNominal_s, 1e-9);
+  EXPECT_LT(got.worst_label_s, 2e-3);
+}
+
 TEST(DevicesClock, AJumpOfItAloneLosesNothing) {
   std::vector<Sent> frames = on_time(2000);
   for (std::size_t i = 1000; i < frames.size(); ++i) frames[i].device_s += 10.0;
