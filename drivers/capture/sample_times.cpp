@@ -118,8 +118,8 @@ double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
   constexpr std::size_t kShows = 16;            // samples
   const double period_s = 1.0 / description_.nominal_rate_hz;
   const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
-  const Silence::Next next{static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecond, late_s,
-                           sample.at_once};
+  const Silence::Next next{static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecondExact,
+                           late_s, sample.at_once};
   const Silence::Ends ends = silence_.look(next, period_s);
   silence_.take(next, ends);
   bunched_ =
