@@ -20,15 +20,15 @@ struct Candidate {
   std::size_t channel = kNone;
   Form with_form = Form::kLinear;  // product
   std::size_t with_channel = kNone;
-  double time_constant_s = 0.0;  // rate, second_rate, lagged, band_power, warm_up
+  double time_constant_s = 0.0;         // rate, second_rate, lagged, band_power, warm_up
   double second_time_constant_s = 0.0;  // lagged, band_power
-  double time_s = 0.0;        // step: block time in its record
-  std::size_t record = 0;     // step, line: where it is
-  double frequency_hz = 0.0;  // line
-  double period = 0.0;        // cosine, sine
-  double centre = 0.0;        // transition: the channel's value in its middle
-  double half_width = 0.0;    // transition; dead_zone, which no search tries, see residual/dead_zone.h
-  double of_channel = 0.0;    // what its channel adds to the complexity: one that no logger wrote
+  double time_s = 0.0;                  // step: block time in its record
+  std::size_t record = 0;               // step, line: where it is
+  double frequency_hz = 0.0;            // line
+  double period = 0.0;                  // cosine, sine
+  double centre = 0.0;                  // transition: the channel's value in its middle
+  double half_width = 0.0;  // transition; dead_zone, which no search tries, see residual/dead_zone.h
+  double of_channel = 0.0;  // what its channel adds to the complexity: one that no logger wrote
   FirstReading first_reading = FirstReading::kError;
 
   [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
