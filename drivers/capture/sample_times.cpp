@@ -116,6 +116,7 @@ double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
   constexpr double kLeast = 0.5, kMost = 1.25;  // periods between two samples
   constexpr double kEven = 0.85;                // at least, where each comes as it was measured
   constexpr std::size_t kShows = 16;            // samples
+  constexpr double kResolution_s = 1e-9;        // of times of arrival
   const double period_s = 1.0 / description_.nominal_rate_hz;
   const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
   const Silence::Next next{static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecondExact,
@@ -125,7 +126,8 @@ double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
   bunched_ =
       bunched_ || next.elapsed_s < kEven * period_s || sample.at_once > 1 || ends == Silence::Ends::hold_up;
   if (ends == Silence::Ends::hold_up) return next_s;
-  if (ends == Silence::Ends::hole || (!bunched_ && taken_ >= kShows)) return arrived_s;
+  const bool when_due = std::abs(late_s) < kResolution_s;
+  if (ends == Silence::Ends::hole || (!bunched_ && (when_due || taken_ >= kShows))) return arrived_s;
   return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
 }
 

@@ -17,10 +17,6 @@ double share(double dt, double time_constant) {
   return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }
 
-// Mean square is an average; where a model does not say of how long, a second is short against what the
-// filter behind it follows and long against vibration.
-constexpr double kPowerAverage_s = 1.0;
-
 bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSine; }
 
 // Bounded of itself: there is no edge beyond which it runs away.
@@ -68,6 +64,7 @@ ShapeSettings shape_settings(const Effect& effect) {
   if (*form == Form::kProduct) return settings;
   settings.time_constant_s = parameter(effect, time_constant_name(*form));
   settings.second_time_constant_s = parameter(effect, second_time_constant_name(*form));
+  settings.begins_at_mean = settings.second_time_constant_s > 0.0;
   settings.table_x = effect.table_x;
   settings.table_y = effect.table_y;
   settings.period = effect.period;
@@ -88,6 +85,7 @@ ShapeSettings with_shape_settings(const Effect& effect) {
   settings.reference = effect.with_reference;
   settings.time_constant_s = parameter(effect, time_constant_name(*form));
   settings.second_time_constant_s = parameter(effect, second_time_constant_name(*form));
+  settings.begins_at_mean = settings.second_time_constant_s > 0.0;
   if (power_of(*form) > 1) settings.half_width = parameter(effect, kCurveReach);
   return settings;
 }
@@ -179,9 +177,8 @@ double Shape::step_over(double value, double scatter, double dt_s) noexcept {
     elapsed_ = 0.0;
     second_ = settings_.form == Form::kLagged ? c : 0.0;
   }
-  // What vibrates was not always at its first sample: until the low-pass has settled it is the mean so far.
   elapsed_ += dt_s;
-  const bool settling = settings_.form == Form::kBandPower && elapsed_ > 0.0;
+  const bool settling = settings_.form == Form::kBandPower && settings_.begins_at_mean && elapsed_ > 0.0;
   const double step1 = (settling ? std::max(alpha_, dt_s / elapsed_) : alpha_) * (c - first_);
   first_ += step1;
   switch (settings_.form) {

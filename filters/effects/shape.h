@@ -11,12 +11,19 @@
 
 namespace ifog {
 
+// Mean square is an average; where a model does not say of how long, a second is short against what the
+// filter behind it follows and long against vibration.
+inline constexpr double kPowerAverage_s = 1.0;
+
 struct ShapeSettings {
   Form form = Form::kLinear;
   double reference = 0.0;        // the channel's value at which the shape is zero
   double time_constant_s = 0.0;  // rate, second_rate, lagged, band_power, warm_up; 0: no smoothing
   // lagged: a second stage; band_power: what the power is averaged over, 0: a second.
   double second_time_constant_s = 0.0;
+  // band_power: what vibrates was not always at its first sample, so the low-pass begins as the mean so far.
+  // A model that says no average_s was fitted to one that began with that sample, and is read as it was.
+  bool begins_at_mean = false;
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
   double half_width = 0.0;               // dead_zone, transition; of a power above one its curve_reach

@@ -2,6 +2,7 @@
 // A candidate as an effect of the model, and the other way; what its form costs.
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/meaning.h"
+#include "filters/effects/shape.h"
 
 namespace ifog {
 namespace {
@@ -64,9 +65,11 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
     effect.parameters.push_back(
         {std::string(time_constant_name(effect)), candidate.time_constant_s, 0.0, "s"});
   }
-  if (candidate.second_time_constant_s > 0.0) {
-    effect.parameters.push_back(
-        {std::string(second_time_constant_name(effect)), candidate.second_time_constant_s, 0.0, "s"});
+  const bool power = second_time_constant_name(effect) == "average_s";
+  if (candidate.second_time_constant_s > 0.0 || power) {
+    const double second =
+        candidate.second_time_constant_s > 0.0 ? candidate.second_time_constant_s : kPowerAverage_s;
+    effect.parameters.push_back({std::string(second_time_constant_name(effect)), second, 0.0, "s"});
   }
   if (candidate.form == Form::kStep) {
     const double time_s = data.grid.origin_of(candidate.record).told(candidate.time_s);

@@ -39,6 +39,7 @@ ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel,
   settings.reference = channel == Candidate::kNone ? 0.0 : reference_of(data.channels[channel].name);
   settings.time_constant_s = first;
   settings.second_time_constant_s = second;
+  settings.begins_at_mean = true;
   return settings;
 }
 

@@ -122,7 +122,9 @@ TEST(Shape, BandPowerIsAveragedByItsOwnTimeConstant) {
 
 // A record begins at any phase of the vibration; its mean is what the slow low-pass has to begin at.
 TEST(Shape, BandPowerOfASlowBandDoesNotRememberItsFirstSample) {
-  Shape power(of(Form::kBandPower, 100.0));
+  ShapeSettings settings = of(Form::kBandPower, 100.0);
+  settings.begins_at_mean = true;
+  Shape power(settings);
   double value = 0.0;
   for (int k = 0; k < 8000; ++k)
     value = power.step(30.0 + 0.2 * std::cos(2.0 * std::numbers::pi * 12.5 * 0.001 * k), 0.001);
