@@ -126,8 +126,10 @@ double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
   bunched_ =
       bunched_ || next.elapsed_s < kEven * period_s || sample.at_once > 1 || ends == Silence::Ends::hold_up;
   if (ends == Silence::Ends::hold_up) return next_s;
-  const bool when_due = std::abs(late_s) < kResolution_s;
-  if (ends == Silence::Ends::hole || (!bunched_ && (when_due || taken_ >= kShows))) return arrived_s;
+  if (ends == Silence::Ends::hole || std::abs(late_s) < kResolution_s) return arrived_s;
+  // Each by itself: its arrival, without a leap to where the first ones were behind it.
+  if (!bunched_ && taken_ >= kShows)
+    return std::min(arrived_s, last_s_ + kMost * std::max(period_s, next.elapsed_s));
   return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
+constexpr std::uint64_t kGapsThatShow = 64;
 constexpr double kGapsAreNone = 5.0;  // s of samples that all come behind one
 constexpr double kSetBack_s = 1.0;    // of the times of arrival: more than any order of delivery
 
@@ -56,7 +57,7 @@ double Incrementer::clock_offset_ppm() const noexcept {
 }
 
 double Incrementer::interval_error() const noexcept {
-  if (static_cast<double>(gaps_in_a_row_) >= kGapsAreNone * facts_.nominal_rate_hz + 64.0)
+  if (row_s_ >= kGapsAreNone && gaps_in_a_row_ >= kGapsThatShow)
     return row_s_ / static_cast<double>(gaps_in_a_row_) / period_s_ - 1.0;
   const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;

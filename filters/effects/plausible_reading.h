@@ -21,14 +21,16 @@ class PlausibleReading {
     if (!std::isfinite(value)) return false;
     const double span = range.high - range.low;
     const double outside = std::max(value - range.high, range.low - value);
-    if (!(outside > 0.0)) settled_outside_ = false;
-    const bool leap = outside > 0.0 && span > 0.0 && std::isfinite(span) && leaps(value, outside, span);
+    const bool inside = !(outside > 0.0);
+    if (inside) settled_outside_ = false;
+    const bool leap = !inside && span > 0.0 && std::isfinite(span) && leaps(value, outside, span);
     if (leap && (value == refused_ || (away_s_ <= kBelievedAfter_s && !settled_outside_))) {
       refused_ = value;
       return false;
     }
     settled_outside_ |= leap;
-    if (!leap && away_s_ <= kBelievedAfter_s) learn(std::abs(value - last_));
+    if (inside && was_inside_ && away_s_ <= kBelievedAfter_s) learn(std::abs(value - last_));
+    was_inside_ = inside;
     away_s_ = 0.0;
     last_ = value;
     seen_ = true;
@@ -45,8 +47,8 @@ class PlausibleReading {
   static constexpr double kLeap = 0.2, kLeapOfMoves = 8.0;
 
   [[nodiscard]] bool leaps(double value, double outside, double span) const noexcept {
-    if (!seen_) return false;  // nothing to hold
     if (outside > kFar * span) return true;
+    if (!seen_) return false;
     return moves_ >= kMoves && largest_ <= kSlow * span &&
            std::abs(value - last_) > std::max(kLeap * span, kLeapOfMoves * largest_);
   }
@@ -61,7 +63,7 @@ class PlausibleReading {
   double away_s_ = 0.0;   // since the last one that was believed
   double refused_ = std::nan("");
   int moves_ = 0;
-  bool seen_ = false;
+  bool seen_ = false, was_inside_ = false;
   bool settled_outside_ = false;  // it has gone on leaping there for too long to be refused
 };
 

@@ -220,9 +220,10 @@ void Engine::hear(const Measurement& m) noexcept {
   heard_scale_ = m.noise_scale;
   for (std::size_t a = 0; a < axes_; ++a) {
     unheard_s_[a] += m.dt_s;
+    if (!alike) noise_[a].break_off();
     if (!has(m.valid, a)) continue;
     const double steps = std::max(1.0, std::round(unheard_s_[a] / period_s_));
-    if (!alike || steps > kMostSteps) noise_[a].break_off();
+    if (steps > kMostSteps) noise_[a].break_off();
     noise_[a].take(m.in.rate_radps[a] * scale, steps);
     unheard_s_[a] = 0.0;
   }

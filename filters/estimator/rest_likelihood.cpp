@@ -140,7 +140,9 @@ void RestLikelihood::end(bool motion_comes) {
 RestOfRecord RestLikelihood::fit(double walk) const {
   std::vector<Stretches> levels{{{blocks_.begin(), blocks_.end()}, ends_}};
   if (levels.front().means.size() < kLeastMeans) return {};
-  while (levels.back().means.size() >= 2 * kLeastMeans) levels.push_back(levels.back().halved());
+  // Each stretch has a mean that no difference is of.
+  while (levels.back().means.size() >= 2 * kLeastMeans + levels.back().ends.size())
+    levels.push_back(levels.back().halved());
   const auto samples = [](std::size_t level) { return std::ldexp(double{kBlock}, static_cast<int>(level)); };
   RestOfRecord out;
   for (std::size_t k = levels.size(); k-- > 0;) {
@@ -150,11 +152,12 @@ RestOfRecord RestLikelihood::fit(double walk) const {
       out.noise = block * about(levels[k]) / 2.0;
     } else {
       const BlockFit here = fit_blocks(levels[k]);
-      if (!(here.noise > 0.0)) return {};
+      if (!(here.noise > 0.0)) continue;  // many short stretches
       out = {here.noise * block, here.ratio * here.noise / block};
     }
     if (out.walk * block * block * kLeastLag * kLeastLag <= out.noise) break;
   }
+  if (!(out.noise > 0.0)) return {};
   // With that walk R of shorter blocks, which are many.
   for (std::size_t k = levels.size(); k-- > 0;) {
     const double block = samples(k), ratio = out.walk * block * block / out.noise;

@@ -64,7 +64,23 @@ TEST(PlausibleReading, OfAChannelWithoutARangeOrAHistoryNothingIsKnown) {
   const double infinite = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(without.step(1.0, 0.01, {"x", -infinite, infinite}));
   EXPECT_TRUE(without.step(1e9, 0.01, {"x", -infinite, infinite}));
-  EXPECT_TRUE(fresh.step(9999.0, 0.01, kVibration));
+  EXPECT_FALSE(fresh.step(9999.0, 0.01, kVibration));
+}
+
+// As a thermometer says what it was made with before it has measured.
+TEST(PlausibleReading, ANumberThatIsNoneIsRefusedAtTheBeginningTooAndTeachesNothing) {
+  PlausibleReading reading;
+  EXPECT_FALSE(reading.step(9999.0, 1.0, kRoom));
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(reading.step(warmth(i), 1.0, kRoom));
+  EXPECT_FALSE(reading.step(85.0, 1.0, kRoom));
+}
+
+// Where the computer is first switched on far from where its gyro was calibrated.
+TEST(PlausibleReading, WhatGoesOnForAMinuteIsTheChannel) {
+  PlausibleReading reading;
+  int refused = 0;
+  for (int i = 0; i < 600; ++i) refused += reading.step(-900.0 + warmth(i), 1.0, kRoom) ? 0 : 1;
+  EXPECT_LE(refused, 60);
 }
 
 // Held as a missing one is, and flagged so: neither range nor variance is made of a logger's number.

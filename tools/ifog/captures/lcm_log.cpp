@@ -214,7 +214,6 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
 std::map<std::string, bool> look_through(const ChosenLog& chosen) {
   LcmChannelNames names(chosen.rates);
   std::set<std::string> with_rates;
-  bool has_status = false;
   lcm::LogFile log(chosen.source.name(), "r");
   Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(),
                     bytes_of(log));
@@ -226,15 +225,8 @@ std::map<std::string, bool> look_through(const ChosenLog& chosen) {
     }
     if (!chosen.asked_for && carries_rates(event->channel)) with_rates.insert(event->channel);
     names.take(event->channel, content_of(*event));
-    has_status = has_status || event->channel == chosen.rates + "_STATUS";
   }
-  if (with_rates.empty()) {
-    std::map<std::string, bool> columns = names.of_status();
-    if (columns.empty() && !has_status)
-      warn("%s: has no channels beside the rates: those of the sensor come with %s_STATUS, once a second\n",
-           chosen.path.c_str(), printable(chosen.rates).c_str());
-    return columns;
-  }
+  if (with_rates.empty()) return names.of_status();
   with_rates.insert(chosen.rates);
   std::string list;
   for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
