@@ -25,6 +25,7 @@ SensorFacts sensor_facts(const ifog_description& description, double nominal_rat
                                                       : SensorKind::angle;
   facts.axes = static_cast<int>(description.axes);
   facts.sequence_modulus = description.sequence_modulus;
+  facts.on_bus = description.can_ids > 0;
   facts.nominal_rate_hz = nominal_rate_hz > 0.0 ? nominal_rate_hz : description.nominal_rate_hz;
   if (!(facts.nominal_rate_hz > 0.0))
     throw KeyError("nominal_rate_hz",

@@ -16,7 +16,7 @@ constexpr double kNsPerSecondExact =
     1e9;  // divided by, so that the result is the double nearest to the decimal time
 
 DeviceTimeline timeline_of(const ifog_description& description) {
-  return {description.sequence_modulus, description.nominal_rate_hz};
+  return {description.sequence_modulus, description.nominal_rate_hz, description.can_ids > 0};
 }
 
 // Whatever a device says: what has no room wraps, and is a clock that jumps.

@@ -46,8 +46,10 @@ class DeviceCount {
     bool same_gap = false;     // what is missing belongs to the gap that was told when it began to be late
   };
 
-  // modulus: the counter's, > 0. period_s > 0.
-  DeviceCount(std::uint64_t modulus, double period_s) noexcept : modulus_(modulus), nominal_s_(period_s) {}
+  // modulus: the counter's, > 0. period_s > 0. on_bus: frames of a bus, whose times of arrival are made where
+  // nothing can have held them up.
+  DeviceCount(std::uint64_t modulus, double period_s, bool on_bus = false) noexcept
+      : modulus_(modulus), nominal_s_(period_s), on_bus_(on_bus) {}
 
   void first(const Frame& frame) noexcept {
     arrivals_.forget();
@@ -324,7 +326,7 @@ class DeviceCount {
     // So do the times of arrival say it at the end of a backlog, whose own were not known.
     const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
     // The same count again is a round on, or nothing.
-    const bool at_once = frame.reopened || after_backlog || difference == 0 ||
+    const bool at_once = frame.reopened || on_bus_ || after_backlog || difference == 0 ||
                          (late_s_ == 0.0 && doubtful(frame, difference) && step.late_s <= kLate_s);
     const bool came_to_stand = stands(frame, step.late_s);
     const bool told = doubt_.rounds && (came_to_stand || at_pace(frame, step.late_s));
@@ -364,6 +366,7 @@ class DeviceCount {
 
   std::uint64_t modulus_;
   double nominal_s_;
+  bool on_bus_;
   Frame last_;
   static constexpr std::uint64_t kFirstPlace = std::uint64_t{1} << 32U;  // those before it have places, too
   std::uint64_t place_ = kFirstPlace;                                    // of the last one

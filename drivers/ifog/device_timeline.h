@@ -48,11 +48,11 @@ class DeviceTimeline {
   };
 
   // modulus: the counter's; 0: it has none. rate_hz: nominal; 0: not known.
-  DeviceTimeline(std::uint64_t modulus, double rate_hz) noexcept
+  DeviceTimeline(std::uint64_t modulus, double rate_hz, bool on_bus = false) noexcept
       : modulus_(modulus),
         rate_known_(rate_hz > 0.0),
         period_s_(rate_hz > 0.0 ? 1.0 / rate_hz : 1.0),
-        count_(modulus > 0 ? modulus : 1, period_s_),
+        count_(modulus > 0 ? modulus : 1, period_s_, on_bus),
         clock_steps_(period_s_) {}
 
   // Whether it decides of this frame: else there is neither counter nor clock to go by.

@@ -43,7 +43,7 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
       clock_(period_s_, clock_memory(facts.nominal_rate_hz)),
-      timeline_(facts.sequence_modulus, facts.nominal_rate_hz) {
+      timeline_(facts.sequence_modulus, facts.nominal_rate_hz, facts.on_bus) {
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)

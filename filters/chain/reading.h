@@ -35,6 +35,7 @@ struct SensorFacts {
   int axes = 1;                        // 1 … kMaxAxes
   std::uint32_t sequence_modulus = 0;  // the device's counter counts modulo this; 0: it sends none
   double nominal_rate_hz = 0.0;        // > 0
+  bool on_bus = false;                 // arrival times are those of frames on their bus
   double angle_wrap_rad = 0.0;         // SensorKind::angle: wraps modulo this; 0: it does not
   int frame_channels = 0;              // channels 0 … frame_channels − 1 come in the sensor's own frames
   int channels = 0;                    // all of them, ≤ kMaxChannels
