@@ -63,14 +63,13 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
   if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
   held_.resize(channels_.size());
   for (const std::string& name : channels_) ranges_.push_back(range_of(name, model.ranges));
-  // Where an angle is in its arc, each effect of it says; a channel that is nothing but an angle has no
-  // range.
-  std::vector<bool> turns(channels_.size(), false), goes(channels_.size(), false);
-  for (const Term& term : terms_)
-    for (const Factor& factor : term.factors)
-      if (factor.channel < channels_.size()) (factor.turn > 0.0 ? turns : goes)[factor.channel] = true;
-  for (std::size_t c = 0; c < channels_.size(); ++c)
-    if (turns[c] && !goes[c]) ranges_[c] = range_of("", {});
+  // Where an angle is in its arc, each effect of it says; what is nothing but an angle has no range.
+  for (const bool turns : {true, false})
+    for (const Term& term : terms_)
+      for (const Factor& factor : term.factors)
+        if (factor.channel < channels_.size() && (factor.turn > 0.0) == turns)
+          ranges_[factor.channel] =
+              turns ? range_of("", {}) : range_of(channels_[factor.channel], model.ranges);
   for (const Term& term : terms_) of_rate_[term.axis] |= term.of_rate ? 1 : 0;
 }
 
