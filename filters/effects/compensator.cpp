@@ -12,10 +12,8 @@ namespace ifog {
 namespace {
 
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-
 // Scale factor errors are below a tenth, so each round gains a digit or more; twelve reach the last bit.
 constexpr int kRounds = 12;
-
 constexpr std::size_t kOwn = kMaxAxes;  // the rate of the axis that a term will be placed on
 
 ChannelRange range_of(const std::string& channel, const std::vector<ChannelRange>& known) {
