@@ -49,7 +49,8 @@ class PlausibleReading {
   [[nodiscard]] bool leaps(double value, double outside, double span) const noexcept {
     if (outside > kFar * span) return true;
     if (!seen_) return false;
-    return moves_ >= kMoves && largest_ <= kSlow * span &&
+    // Within a span of it a correction goes on.
+    return moves_ >= kMoves && outside > span && largest_ <= kSlow * span &&
            std::abs(value - last_) > std::max(kLeap * span, kLeapOfMoves * largest_);
   }
   void learn(double move) noexcept {
