@@ -51,7 +51,8 @@ std::vector<std::uint64_t> order(const Stream& stream, std::mt19937& random) {
   const auto any = [&](std::uint64_t least, std::uint64_t most) {
     return std::uniform_int_distribution<std::uint64_t>(least, most)(random);
   };
-  const std::uint64_t most_lost = std::min<std::uint64_t>(9, (std::uint64_t{1} << (stream.bits - 1)) - 1);
+  const std::uint64_t half = stream.bits > 0 ? std::uint64_t{1} << (stream.bits - 1) : 10;  // 0: no counter
+  const std::uint64_t most_lost = std::min<std::uint64_t>(9, half - 1);
   std::vector<std::uint64_t> out;
   for (std::uint64_t n = 0; n < kSamples; ++n) {
     const bool now = n > 100 && n % 40 == 7;
