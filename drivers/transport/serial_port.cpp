@@ -43,7 +43,6 @@ class LibSerialPort final : public SerialPort {
  public:
   LibSerialPort(const SerialSettings& settings, std::string& warning);
   ~LibSerialPort() override {
-    sole_.release();
     if (open_) sp_close(port_);
     sp_free_port(port_);
   }
@@ -61,7 +60,6 @@ class LibSerialPort final : public SerialPort {
   std::string device_;
   sp_port* port_;
   bool open_ = false;
-  SoleReader sole_;
   int fd_ = -1;
 };
 
@@ -84,7 +82,7 @@ LibSerialPort::LibSerialPort(const SerialSettings& settings, std::string& warnin
     open_ = true;
     check(sp_get_port_handle(port_, &fd_), "cannot open", "a file descriptor");
     // The kernel's own refusal does not hold for root.
-    sole_.take(fd_, device_);
+    claim(fd_, device_);
     ioctl(fd_, TIOCEXCL);
     set_driver_options(settings, warning);
     constexpr std::array kParity{SP_PARITY_NONE, SP_PARITY_EVEN, SP_PARITY_ODD};

@@ -13,6 +13,9 @@ struct DeviceTaken : OpenError {
   explicit DeviceTaken(const std::string& device);
 };
 
+// Says so of what `fd` has open, for as long as it is open. Throws DeviceTaken.
+void claim(int fd, const std::string& device);
+
 // Says so of what is open, until it is released, however often it is opened meanwhile: between two openings
 // nobody else gets in. What many may read, and a file system that knows no locks, is left as it is.
 class SoleReader {
