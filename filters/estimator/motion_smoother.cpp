@@ -55,7 +55,11 @@ class Course {
     if (!std::isfinite(of_.rate[i])) return;
     const Vector gain = state.p.col(0) / (state.p(0, 0) + 1.0);
     state.x += gain * (of_.rate[i] / std::sqrt(noise_) - state.x[0]);
-    state.p = (state.p - gain * state.p.row(0)).eval();
+    // Joseph's form: where a rate that may be anything is measured, the difference of two large covariances
+    // would be of any sign.
+    Matrix kept = Matrix::Identity();
+    kept.col(0) -= gain;
+    state.p = (kept * state.p * kept.transpose() + gain * gain.transpose()).eval();
   }
   [[nodiscard]] double anything(std::size_t i) const {
     double most = 1.0;

@@ -16,14 +16,6 @@ using nlohmann::ordered_json;
 constexpr const char* kHistorySchema = "ifog.history/1";
 constexpr const char* kAdopt = "adopt";
 
-ordered_json name_json(const ModelName& name) {
-  return {{"identity", name.identity}, {"sha256", name.sha256}};
-}
-
-ModelName changed_name(const json& from) {
-  return {from.at("identity").get<std::string>(), from.at("sha256").get<std::string>()};
-}
-
 }  // namespace
 
 History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
@@ -32,7 +24,7 @@ History::History(const std::string& state, const std::string& sensor) : state_(s
   with_keys(path(), [&] {
     for (const json& each : file->at("changes"))
       changes_.push_back({each.at("what").get<std::string>(), each.at("when").get<std::string>(),
-                          changed_name(each.at("model")), changed_name(each.at("replaced")),
+                          name_from(each.at("model")), name_from(each.at("replaced")),
                           each.at("why").get<std::string>(), gain_of(each.at("gain")),
                           each.at("outcome").get<std::string>()});
   });
@@ -88,8 +80,8 @@ void History::write() const {
   for (const ModelChange& each : changes_)
     changes.push_back({{"what", each.what},
                        {"when", each.when},
-                       {"model", name_json(each.model)},
-                       {"replaced", name_json(each.replaced)},
+                       {"model", as_json(each.model)},
+                       {"replaced", as_json(each.replaced)},
                        {"why", each.why},
                        {"gain", gain_json(each.gain)},
                        {"outcome", each.outcome}});

@@ -30,12 +30,6 @@ std::string inside(const std::string& state, const std::string& file) {
   return (fs::path(state) / file).string();
 }
 
-ordered_json as_json(const ModelName& name) { return {{"identity", name.identity}, {"sha256", name.sha256}}; }
-
-ModelName name_from(const json& from) {
-  return {from.at("identity").get<std::string>(), from.at("sha256").get<std::string>()};
-}
-
 // A file that the index names lies beside it and nowhere else.
 std::string plain_name(const json& from, const std::string& path) {
   const auto name = from.get<std::string>();
@@ -63,6 +57,12 @@ double number_from(const json& from) {
 }
 
 }  // namespace
+
+ordered_json as_json(const ModelName& name) { return {{"identity", name.identity}, {"sha256", name.sha256}}; }
+
+ModelName name_from(const json& from) {
+  return {from.at("identity").get<std::string>(), from.at("sha256").get<std::string>()};
+}
 
 ModelName name_of(const Model& model) {
   const std::string hash = sha256_hex(model_text(model));

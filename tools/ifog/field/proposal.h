@@ -23,6 +23,8 @@ struct ModelName {
   bool operator==(const ModelName&) const = default;
 };
 [[nodiscard]] ModelName name_of(const Model& model);
+[[nodiscard]] nlohmann::ordered_json as_json(const ModelName& name);
+[[nodiscard]] ModelName name_from(const nlohmann::json& from);
 // The model of a file that need not be there.
 struct ModelInUse {
   std::optional<Model> model;
