@@ -8,7 +8,8 @@
 // that follow are waited for: what was held up comes with less time between them than they took, and what was
 // lost does not. What else comes late and continues the count is only late; where it has not drained for
 // kStands_s, the labels follow it. So exactly whole rounds that are lost within kLongSilence_s cannot be told
-// from a late delivery or a pause and are taken for one.
+// from a late delivery or a pause and are taken for one; behind a longer silence only those that fit it as
+// closely as a pause would by chance alone (kNoChance).
 #pragma once
 
 #include <algorithm>
@@ -118,6 +119,7 @@ class DeviceCount {
   static constexpr double kDrains = 0.02;     // of the time: what was held up drains by more
   static constexpr double kPaces = 200.0;     // so many times what times scatter by tell that
   static constexpr int kPaceFrames = 8;
+  static constexpr double kNoChance = 5.0;  // periods: half of the rounds that are lost to one of the pauses
   static constexpr double kAgain_s = 0.25;  // a silence of more is another one
   // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
   static constexpr double kRateDoubt = 0.05;
@@ -303,6 +305,7 @@ class DeviceCount {
     }
     const double took_s = static_cast<double>(difference) * nominal_s_;
     if (doubtful(frame, difference)) doubt_.rounds = true;
+    if (difference != 1) doubt_.counts = true;
     if (frame.quiet_s > took_s + kPrompt_s) doubt_.quiet_s += frame.quiet_s - took_s;
     doubt_.gap = doubt_.gap || step.gap;
     const bool drains = std::abs(step.late_s - doubt_.late_s) > kDrains * paced_s();
@@ -315,6 +318,14 @@ class DeviceCount {
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
     return whole_rounds(spare_s, static_cast<double>(modulus_) * period_s(),
                         kPrompt_s + rate_doubt() * elapsed_s, std::max(kAdapter_s, scatter_s_));
+  }
+
+  // Behind a silence the very next of the count: so ends every pause of the device, and one in a round's
+  // number of losses. These are told only where whole rounds fit the time as chance seldom would.
+  [[nodiscard]] bool paused(bool goes_on, double spare_s, double elapsed_s) const noexcept {
+    const double round_s = static_cast<double>(modulus_) * period_s(), fits_s = kNoChance * period_s();
+    return goes_on && (rate_doubt() * elapsed_s + scatter_s_ > fits_s ||
+                       std::abs(std::remainder(spare_s, round_s)) > fits_s);
   }
 
   void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
@@ -333,7 +344,9 @@ class DeviceCount {
     if (known && elapsed_s > 0.0 && (at_once || told)) {
       // While a frame came again and again no round was lost: the device stood still.
       const double quiet_s = at_once ? frame.quiet_s : doubt_.quiet_s;
-      const double rounds = rounds_in(std::min(step.late_s, quiet_s), elapsed_s);
+      const double spare_s = std::min(step.late_s, quiet_s);
+      const bool goes_on = at_once ? difference == 1 && !frame.reopened && !after_backlog : !doubt_.counts;
+      const double rounds = paused(goes_on, spare_s, elapsed_s) ? 0.0 : rounds_in(spare_s, elapsed_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
       step.same_gap = !at_once && rounds > 0.0 && doubt_.gap;
       if (rounds > 0.0) step.late_s = 0.0;
@@ -375,6 +388,7 @@ class DeviceCount {
   // Of frames that are late where rounds may have been lost.
   struct Doubt {
     bool rounds = false, gap = false;    // the latter: a gap has been told
+    bool counts = false;                 // by the count, too, some are missing
     double quiet_s = 0.0;                // in all, beside what was counted
     double late_s = 0.0, paced_s = 0.0;  // since it last became less or more; so long
     int frames = 0;

@@ -72,10 +72,8 @@ class Faults:
         return got
 
     def end_of_rubbish(self):
-        """It may end with what looks like the beginning of a frame: some samples let the daemon find that it is none. And as
-        the line was silent meanwhile and its counter stood still, which none of a real gyro does, two seconds of them let it
-        find whether they were held up."""
-        self.lines["usb"].send(200, 100).join(10)
+        """It may end with what looks like the beginning of a frame: some samples let the daemon find that it is none."""
+        self.lines["usb"].send(5, 100).join(10)
         time.sleep(1)
 
     # --- the checks, in order ------------------------------------------------------------------------------------

@@ -147,6 +147,25 @@ TEST(LostRounds, WhatASilenceSwallowedIsCountedToTheSample) {
       }
 }
 
+// A sender that stands still and goes on with its count, as a programme that sends a file does between two of
+// them: so one in a round's number of losses would look, every pause does.
+TEST(LostRounds, AreNotMadeOfADevicesPause) {
+  for (const Device& device : kDevices)
+    for (const std::uint64_t before : {20U, 3000U})
+      for (const double pause_s : {2.2, 3.37, 9.7, 30.51, 611.07}) {
+        std::vector<Frame> frames = through({{}}, device, before + 4000);
+        for (std::size_t i = before; i < frames.size(); ++i) frames[i].arrives_s += pause_s;
+        const double off = std::remainder(pause_s * device.rate_hz, static_cast<double>(device.modulus));
+        if (std::abs(off) < 6.0) continue;  // which nothing tells from rounds
+        SCOPED_TRACE(testing::Message() << device.rate_hz << " Hz, " << device.modulus << ", " << pause_s
+                                        << " s behind " << before);
+        const Got got = run(frames, device);
+        EXPECT_EQ(got.counts.missing, 0U);
+        EXPECT_EQ(got.counts.pauses, 1U);
+        EXPECT_NEAR(got.dt_s, static_cast<double>(before + 4000) / device.rate_hz, 1e-9);
+      }
+}
+
 // A serial server whose buffer was too small for the silence: its oldest are lost, and the others come at
 // once.
 TEST(LostRounds, WhatIsLostOfWhatWasHeldUpIsCountedToTheSample) {
