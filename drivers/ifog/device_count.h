@@ -99,6 +99,9 @@ class DeviceCount {
       jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
     }
     if (step.by_clock) took_by_clock_s_ = step.dt_s / static_cast<double>(samples);
+    if (step.by_clock)
+      each_by_clock_s_ =
+          step.dt_s / static_cast<double>(std::max<std::uint64_t>(difference(frame.sequence), 1));
     if (elapsed >= 0.0) prompt_.came(elapsed, step.dt_s);
     refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
     follow_doubt(frame, step);
@@ -152,7 +155,7 @@ class DeviceCount {
     place_ = kFirstPlace;
     recent_.forget();
     recent_.add(place_, 0, frame.digest);
-    late_s_ = took_s_ = counted_s_ = jitter_s_ = took_by_clock_s_ = 0.0;
+    late_s_ = took_s_ = counted_s_ = jitter_s_ = took_by_clock_s_ = each_by_clock_s_ = 0.0;
     prompt_.forget();
     refused_ = false;
     doubt_ = {};
@@ -225,9 +228,16 @@ class DeviceCount {
     if (!agree(claimed, passed_s, elapsed_s, frame.grain_s)) return false;
     step.by_clock = true;
     step.samples = static_cast<std::uint64_t>(claimed);
+    if (stood_still(claimed, passed_s)) step.samples = at_least_one(passed_s / took_by_clock_s_);
     step.dt_s = passed_s;
     if (elapsed_s >= 0.0) lateness(frame, elapsed_s - passed_s, step);
     return true;
+  }
+  // By its clock much longer than its count says: it measured nothing meanwhile. Where the one before took as
+  // long it measures at another rate.
+  [[nodiscard]] bool stood_still(double claimed, double passed_s) const noexcept {
+    const double each_s = passed_s / claimed;
+    return took_by_clock_s_ > 0.0 && each_s > kLonger * took_by_clock_s_ && each_s > 2.0 * each_by_clock_s_;
   }
   [[nodiscard]] double rounds_by_clock(double passed_s, double counted, double grain_s) const noexcept {
     const double spare = passed_s / nominal_s_ - counted;
@@ -403,6 +413,7 @@ class DeviceCount {
   PromptArrivals prompt_;
   bool refused_ = false;          // the clock's step to the last frame was not followed
   double took_by_clock_s_ = 0.0;  // the last sample of which the clock said it; 0: none yet
+  double each_by_clock_s_ = 0.0;  // each that it counted
 };
 
 }  // namespace ifog

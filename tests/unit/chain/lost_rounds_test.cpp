@@ -27,6 +27,7 @@ constexpr Device kDevices[] = {{500.0, 128}, {1000.0, 128}, {200.0, 128}, {250.0
 struct Frame {
   std::uint64_t number;
   double arrives_s;
+  double stood_s = 0.0;  // still, up to here, while its clock went on
 };
 
 // What stands between the device and the reader: nothing passes in a silence, and what it held passes behind
@@ -65,7 +66,7 @@ std::vector<Frame> through(const Link& link, const Device& device, std::uint64_t
 
 struct Got {
   IncrementerCounts counts;
-  double dt_s = 0.0, worst_label_s = 0.0, interval_error = 0.0;
+  double dt_s = 0.0, covered_s = 0.0, worst_label_s = 0.0, interval_error = 0.0;
   std::uint64_t most_missing = 0;  // before any one sample
 };
 
@@ -86,12 +87,14 @@ Got run(const std::vector<Frame>& frames, const Device& device, std::int64_t wra
     reading.sequence = static_cast<std::uint32_t>(frames[i].number % device.modulus);
     if (wrap_ns > 0)
       reading.device_time_ns =
-          std::llround(static_cast<double>(frames[i].number) / device.rate_hz * 1e6) * 1000 % wrap_ns;
+          std::llround((static_cast<double>(frames[i].number) / device.rate_hz + frames[i].stood_s) * 1e6) *
+          1000 % wrap_ns;
     reading.device_wrap_ns = wrap_ns;
     const std::uint64_t before = incrementer.counts().missing;
     EXPECT_TRUE(incrementer.next(reading, increment)) << i;
     got.most_missing = std::max(got.most_missing, incrementer.counts().missing - before);
     got.dt_s += increment.dt_s;
+    got.covered_s += increment.covered_s[0];
     if (i + 50 < frames.size()) continue;
     const double taken_s = static_cast<double>(frames[i].number) / device.rate_hz;
     got.worst_label_s = std::max(
@@ -164,6 +167,37 @@ TEST(LostRounds, AreNotMadeOfADevicesPause) {
         EXPECT_EQ(got.counts.pauses, 1U);
         EXPECT_NEAR(got.dt_s, static_cast<double>(before + 4000) / device.rate_hz, 1e-9);
       }
+}
+
+// Of one whose clock goes on while it measures nothing: no sample takes seconds.
+TEST(LostRounds, WhileADeviceStoodStillNothingWasMeasured) {
+  for (const Device& device : {Device{100.0, 65536}, Device{500.0, 1U << 31U}, Device{1000.0, 128}})
+    for (const double stood_s : {0.3, 1.0, 5.0, 60.0}) {
+      SCOPED_TRACE(testing::Message()
+                   << device.rate_hz << " Hz, " << device.modulus << ", " << stood_s << " s");
+      std::vector<Frame> frames = through({{}}, device, 6000);
+      for (std::size_t i = 3000; i < frames.size(); ++i) {
+        frames[i].arrives_s += stood_s;
+        frames[i].stood_s = stood_s;
+      }
+      const Got got = run(frames, device, std::int64_t{1} << 50U);
+      EXPECT_NEAR(got.covered_s, 6000.0 / device.rate_hz, 1e-3);
+      EXPECT_NEAR(got.dt_s, 6000.0 / device.rate_hz + stood_s, 2e-3);
+      EXPECT_EQ(got.counts.gaps, 1U);
+    }
+}
+
+// One that is told to measure at a tenth of its rate does not stand still between any two.
+TEST(LostRounds, AreNotMadeOfALowerRate) {
+  const Device device{1000.0, 65536};
+  std::vector<Frame> frames = through({{}}, device, 6000);
+  for (std::size_t i = 3000; i < frames.size(); ++i) {
+    frames[i].stood_s = 9e-3 * static_cast<double>(i - 2999);
+    frames[i].arrives_s += frames[i].stood_s;
+  }
+  const Got got = run(frames, device, std::int64_t{1} << 50U);
+  EXPECT_LE(got.counts.missing, 10U);
+  EXPECT_NEAR(got.covered_s, 33.0, 0.01);
 }
 
 // A serial server whose buffer was too small for the silence: its oldest are lost, and the others come at
