@@ -22,8 +22,8 @@ constexpr double kLeastOfNote = 2.5;
 
 // A squared sum over its variance, which is that of white innovations or more, where the level's noise is
 // none of the table's, or less, where the filter takes the level for quicker than it is. The variance is
-// known by so many sums, which makes it the square of a Student's t: as rare as the normal square that this
-// returns (D. L. Wallace, Ann. Math. Statist. 30, 1959).
+// known by so many sums, which makes it the square of a Student's t: about as rare as the normal square that
+// this returns (D. L. Wallace, Ann. Math. Statist. 30, 1959).
 double as_of_known_variance(double square, double mean_square, double independent) {
   const double known_by = kBelieved + independent;
   return known_by * std::log1p(square / (kBelieved + independent * mean_square));
