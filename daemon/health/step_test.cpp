@@ -20,12 +20,13 @@ constexpr double kNewestWeighs = 2.0, kKnownAs = 0.75;
 // Below it nothing is near.
 constexpr double kLeastOfNote = 2.5;
 
-// Over that of white innovations: more, where the level's noise is none of the table's, and less where the
-// filter takes the level for quicker than it is. As large as one standard error makes it: it is not known
-// better, and moves while the filter's choice does.
-double variance_of_sums(double mean_square, double independent) {
+// A squared sum over its variance, which is that of white innovations or more, where the level's noise is
+// none of the table's, or less, where the filter takes the level for quicker than it is. The variance is
+// known by so many sums, which makes it the square of a Student's t: about as rare as the normal square that
+// this returns (D. L. Wallace, Ann. Math. Statist. 30, 1959).
+double as_of_known_variance(double square, double mean_square, double independent) {
   const double known_by = kBelieved + independent;
-  return (kBelieved + independent * mean_square) / known_by * (1.0 + std::sqrt(2.0 / known_by));
+  return known_by * std::log1p(square / (kBelieved + independent * mean_square));
 }
 
 }  // namespace
@@ -63,9 +64,8 @@ double StepTest::look(std::size_t number) noexcept {
   const Window& window = windows_[(begun_ - kLengths[number]) % kLongest];
   Spread& seen = spreads_[number];
   const double s = std::clamp(1.0 - window.neighbours / window.squares, 1e-3, 1.0);
-  const double variance = variance_of_sums(seen.mean_square, kKnownAs * s * seen.count);
   const double square = window.sum * window.sum / window.squares;
-  const double z = std::sqrt(square / variance);
+  const double z = std::sqrt(as_of_known_variance(square, seen.mean_square, kKnownAs * s * seen.count));
   seen.latest = square;
   if (z < kLeastOfNote) return kFar;
   return exceeded_per_block(z, s) / (kShares[number] * alarms_per_block_);

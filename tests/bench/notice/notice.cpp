@@ -3,7 +3,9 @@
 // sample rate. One line a case; results.md has them.
 //
 // usage: notice_bench blocks MONTHS SEED [WORD]  months of each kind of noise, in blocks of ten seconds
-//        notice_bench steps TRIALS SEED [WORD]   steps of the bias and louder noise, after three days at rest
+//        notice_bench steps SENSORS SEED [WORD]  steps of the bias and louder noise, after three days at
+//        rest,
+//                                                in twenty ways that each goes on in
 //        notice_bench limits BLOCKS SEED [WORD]  what nobody, or nobody of some knowledge, can beat
 //        notice_bench chain DAYS SEED            a gyro at 200 Hz through signal chain and watch
 // WORD: only kinds of noise whose name has it.
@@ -34,6 +36,7 @@ using ifog::bench::SlowNoise;
 
 constexpr double kRate = 200.0, kBlock_s = SensorWatch::kBlock_s;
 constexpr double kLook_s = 600.0, kAlarmEvery_s = 30.0 * 86400.0;
+constexpr unsigned kWays = 20;  // that one sensor goes on in
 constexpr int kPerDay = static_cast<int>(86400.0 / kBlock_s), kPerMonth = 30 * kPerDay;
 
 // A sensor block by block: what ten seconds of samples add to the sums.
@@ -55,6 +58,8 @@ class Blocks {
     samples_ += static_cast<std::uint64_t>(n);
     watch.take(sums_, samples_, 0);
   }
+  // From here on it goes on otherwise.
+  void go_on_as(unsigned seed) { random_.seed(seed); }
 
  private:
   NoiseKind kind_;
@@ -130,19 +135,23 @@ void look_for(Change& change, Blocks blocks) {
 }
 
 // The share found within ten minutes, the median time of those found, and what nobody can beat.
-void steps(int trials, unsigned seed, const std::string& word) {
+void steps(int sensors, unsigned seed, const std::string& word) {
   for (const NoiseKind& kind : ifog::bench::kinds()) {
     if (kind.name.find(word) == std::string::npos) continue;
     std::vector<Change> wanted = changes(kind);
-    for (int trial = 0; trial < trials; ++trial) {
-      Blocks blocks(kind, seed + static_cast<unsigned>(trial));
+    for (int sensor = 0; sensor < sensors; ++sensor) {
+      Blocks blocks(kind, seed + static_cast<unsigned>(sensor));
       for (int i = 0; i < 3 * kPerDay; ++i) blocks.next();
-      for (Change& change : wanted) look_for(change, blocks);
+      for (unsigned way = 0; way < kWays; ++way) {
+        blocks.go_on_as(kWays * (seed + static_cast<unsigned>(sensor)) + way);
+        for (Change& change : wanted) look_for(change, blocks);
+      }
     }
     for (Change& change : wanted) {
       std::sort(change.found.begin(), change.found.end());
-      std::printf("%-18s %-14s found within ten minutes %zu of %d, median after %.0f s", kind.name.c_str(),
-                  change.what.c_str(), change.found.size(), change.trials,
+      std::printf("%-18s %-14s found within ten minutes %zu of %d (%.1f %%), median after %.0f s",
+                  kind.name.c_str(), change.what.c_str(), change.found.size(), change.trials,
+                  100.0 * static_cast<double>(change.found.size()) / change.trials,
                   change.found.empty() ? 0.0 : kBlock_s * change.found[change.found.size() / 2]);
       if (change.step != 0.0) {
         const double d = ifog::bench::deviations(ifog::bench::left_of_step(
@@ -219,7 +228,7 @@ int main(int argc, char** argv) {
     chain(std::atof(argv[2]), seed);
   } else {
     std::fprintf(stderr,
-                 "usage: notice_bench blocks MONTHS SEED [WORD] | steps TRIALS SEED [WORD] | limits BLOCKS "
+                 "usage: notice_bench blocks MONTHS SEED [WORD] | steps SENSORS SEED [WORD] | limits BLOCKS "
                  "SEED [WORD] | "
                  "chain DAYS SEED\n");
     return 2;

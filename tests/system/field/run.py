@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The loop in the field, with the real programs: a gyro whose temperature effect nobody declared runs for two accelerated
 days. The first night proposes a model, a person adopts it while the second day runs, and that day's error is smaller by
-what was promised; the published angle is exact over the adoption. A sensor that is switched on with the computer says so in its
+what was promised; the published angle is exact over the adoption. A promise that is broken is said. A sensor that is switched on with the computer says so in its
 recordings.
 
 usage: run.py BUILD [FOLDER to keep]
@@ -33,6 +33,9 @@ DAY_S = ROWS / HZ
 SPEED = 300
 URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4000000"
 PER_HOUR = 180 / math.pi * 3600
+TURNED_OVER = 4  # the day on which the effect of the temperature is another
+# An adoption is watched for so long of the gyro's own time: ten minutes and more, and over a cycle of the temperature.
+WATCH_S = {"kept": 6000, "broken": 3000}
 
 
 def document(path):
@@ -116,8 +119,10 @@ class Field:
         dbc = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../drivers/dbc/examples/ifogd_gyro.dbc")
         options = {"dbc": os.path.abspath(dbc), "signal": "Rate_x", "counter": "Counter", "rate_hz": HZ,
                    "environment": "temperature_degC=Temperature"}
-        for day in (1, 2):
-            self.run("simulate", self.path("gyro.toml"), "--seed", str(40 + day), "--output", self.path(f"day{day}.csv"))
+        with open(self.path("turned_over.toml"), "w") as file:
+            file.write(slow_gyro.scenario(HZ, DAY_S, -2.0e-8))
+        for day, gyro in ((1, "gyro"), (2, "gyro"), (TURNED_OVER, "turned_over")):
+            self.run("simulate", self.path(gyro + ".toml"), "--seed", str(40 + day), "--output", self.path(f"day{day}.csv"))
             self.run("convert", self.path(f"day{day}.csv"), self.path(f"day{day}.log"), "--driver", "dbc",
                      *[word for key, value in options.items() for word in ("--option", f"{key}={value}")])
         os.mkdir(self.state)
@@ -214,7 +219,7 @@ file_s = 3
         recorder = self.record_messages("day2.lcm")
         feeder = self.feed(2)
         self.await_(lambda: self.published() > ROWS, "the second day to begin")
-        said, adopted = self.of("adopt", "nose", "--watch", "20")
+        said, adopted = self.of("adopt", "nose", "--watch", str(WATCH_S["kept"] / SPEED))
         print("        " + said.replace("\n", "\n        "))
         self.check(adopted is not None and adopted["verdict"] == "kept", "adopted while the day runs, and the promise came true")
         self.check(feeder.wait(280) == 0, "the second day was sent")
@@ -271,12 +276,41 @@ file_s = 3
         self.run("revert", "nose", "--config", self.config, code=1)
         feeder.terminate()
         feeder.wait()
+
+    def a_promise_that_is_broken(self):
+        """The same proposal, and a gyro that has turned over since: the watch says so, and the way back is the one it says."""
+        for name in glob.glob(self.path("as-proposed/nose.proposal*")):
+            shutil.copy(name, self.state)
+        # The sensor has just stopped: whether the daemon has seen it yet or not.
+        said = self.run("adopt", "nose", "--config", self.config, code=1)
+        self.check('in state "no data"' in said and "taken with the next sample" in said and "\n" not in said and self.sensor()["model"] == "",
+                   "of a sensor that is silent: one line that says so, and nothing is changed")
+        seen = self.published()
+        feeder = self.feed(TURNED_OVER)
+        self.await_(lambda: self.published() > seen + 100 * HZ, "another gyro to begin")
+        said, adopted = self.of("adopt", "nose", "--watch", str(WATCH_S["broken"] / SPEED), code=1)
+        print("        " + said.replace("\n", "\n        "))
+        self.check(adopted is not None and adopted["verdict"] == "broken" and adopted["outcome"].startswith("the promise was broken"),
+                   "adopted where the gyro is another: the promise was broken, exit 1")
+        self.check(adopted is not None and all(axis["share"] < -0.5 for axis in adopted["found"]), "what it corrects is there the other way round")
+        sensor = self.sensor()
+        self.check(sensor["model"] == self.proposal["model"]["identity"] and "the promise was broken" in sensor["last_change"]["outcome"],
+                   "the model stays until a person takes it back, and status has the verdict")
+        hint = [line for line in said.splitlines() if "back with: " in line]
+        self.check(len(hint) == 1 and hint[0].endswith(f"ifog revert nose --config {self.config}"), "it says what takes it back")
+        self.check("model none is in place again" in self.run("revert", "nose", "--config", self.config) and self.sensor()["model"] == "", "and that does")
+        feeder.terminate()
+        feeder.wait()
+
+    def without_the_daemon(self):
         self.check(self.stop() == 0, "the daemon ends well")
+        for name in glob.glob(self.path("as-proposed/nose.proposal*")):
+            shutil.copy(name, self.state)
         said = self.run("adopt", "nose", "--config", self.config)
         self.check("the daemon does not run" in said, "adopted again, without a daemon")
         self.check(self.of("status")[1]["sensors"][0]["model_file"] == self.proposal["model"]["identity"], "its next start will have it")
         changes = document(self.path("state/nose.history.json"))["changes"]
-        self.check([c["what"] for c in changes] == ["adopt", "revert", "adopt"], "the history has it all")
+        self.check([c["what"] for c in changes] == ["adopt", "revert"] * 2 + ["adopt"], "the history has it all")
 
 
     def switched_on_with_the_computer(self):
@@ -342,6 +376,8 @@ def main():
         field.judge()
         field.refusals()
         field.back()
+        field.a_promise_that_is_broken()
+        field.without_the_daemon()
         field.switched_on_with_the_computer()
     finally:
         if field.daemon is not None:

@@ -2,7 +2,7 @@
 """The gyro of the loop in the field, whose temperature effect nobody declared."""
 
 
-def scenario(hertz, duration_s):
+def scenario(hertz, duration_s, coefficient=2.0e-8):
     return f"""
 name = "undeclared"
 sample_rate_hz = {hertz}
@@ -23,6 +23,6 @@ every_s = 1.0
 [[effect]]
 form = "linear"
 channel = "temperature_degC"
-coefficient = 2.0e-8
+coefficient = {coefficient}
 reference = 25.0
 """

@@ -3,6 +3,8 @@
 // closed forms for one window of ten minutes and for sums of a moving average.
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -58,6 +60,22 @@ TEST(StepTest, FindsWhatOneWindowOfTenMinutesCouldFind) {
   // Half, and what other windows add to it at other blocks. Were the longest given half of the alarms, it
   // would be 52 %; a standard error is 0.8.
   EXPECT_GT(static_cast<double>(found) / kTrials, 0.545);
+}
+
+// The variance of sums is not known better than by those that were seen: at first by as many as the noise's
+// law is believed like. Oracle: Student's distribution.
+TEST(StepTest, AllowsForTheNoiseAsFarAsItIsKnown) {
+  constexpr double kBelievedLike = 100.0;
+  const auto window = static_cast<double>(StepTest::kLengths.back());
+  for (const double z : {3.5, 4.0, 4.5}) {
+    StepTest test(1e9);
+    for (int i = 0; i < static_cast<int>(window); ++i) ASSERT_FALSE(test.take(known(z / std::sqrt(window))));
+    const boost::math::normal normal;
+    const boost::math::students_t student(kBelievedLike);
+    const double as_rare = quantile(complement(normal, cdf(complement(student, z))));
+    const double expected = exceeded_per_block(as_rare, 1.0 / window) / StepTest::kShares.back() * 1e9;
+    EXPECT_NEAR(test.nearest() / expected, 1.0, 0.05) << z;
+  }
 }
 
 // Innovations of a filter that takes the level for quicker than it is have sums that vary by less.

@@ -26,6 +26,7 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
+#include "tools/ifog/captures/status_beside.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -209,11 +210,17 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     warn("%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
 }
 
+struct FirstLook {
+  std::map<std::string, bool> of_status;  // LcmChannelNames::of_status()
+  StatusBeside beside;
+};
+
 // The first look at a log: which columns its channels make. Throws std::runtime_error with one line where
 // nobody said which of several channels with rates it is.
-std::map<std::string, bool> look_through(const ChosenLog& chosen) {
+FirstLook look_through(const ChosenLog& chosen) {
   LcmChannelNames names(chosen.rates);
   std::set<std::string> with_rates;
+  StatusBeside beside;
   lcm::LogFile log(chosen.source.name(), "r");
   Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(),
                     bytes_of(log));
@@ -221,12 +228,14 @@ std::map<std::string, bool> look_through(const ChosenLog& chosen) {
     progress.at(static_cast<std::size_t>(std::ftell(log.getFilePtr())));
     if (event->channel == chosen.rates) {
       names.end_row();
+      beside.rate(event->timestamp);
       continue;
     }
     if (!chosen.asked_for && carries_rates(event->channel)) with_rates.insert(event->channel);
+    if (event->channel == chosen.rates + std::string(kStatusEnding)) beside.status();
     names.take(event->channel, content_of(*event));
   }
-  if (with_rates.empty()) return names.of_status();
+  if (with_rates.empty()) return {names.of_status(), beside};
   with_rates.insert(chosen.rates);
   std::string list;
   for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
@@ -299,7 +308,10 @@ bool recorded_messages(const InputFile& file) {
 
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   const ChosenLog chosen(file, channel);
-  LcmRows rows({chosen.rates, look_through(chosen)}, sink);
+  const FirstLook look = look_through(chosen);
+  if (look.beside.missing())
+    warn("%s: %s\n", chosen.path.c_str(), look.beside.complaint(chosen.rates).c_str());
+  LcmRows rows({chosen.rates, look.of_status}, sink);
   bool told = false;
   for_each_rate(
       chosen,
@@ -331,7 +343,7 @@ Table read_published(InputFile& file, const std::string& channel) {
         (column++)->values.push_back(value);
   };
   const ChosenLog chosen(file, channel);
-  if (!chosen.asked_for) look_through(chosen);
+  if (!chosen.asked_for) (void)look_through(chosen);
   for_each_rate(chosen, take, {});
   return table;
 }

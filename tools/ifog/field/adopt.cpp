@@ -3,16 +3,15 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <stdexcept>
-#include <string_view>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
-#include "msgs/axis_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/field/axis_health.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/watch.h"
@@ -79,16 +78,9 @@ void tell_innovations(const Watched& watched) {
     say("  innovations: the daemon said nothing in this time\n");
     return;
   }
-  std::string text;
-  for (std::size_t a = 0; a < watched.nis.size(); ++a) {
-    char figures[80];
-    const std::string_view axis = axis_name(a, watched.nis.size());
-    std::snprintf(figures, sizeof figures, "%s%.*s NIS %.3f, whiteness %+.3f", a == 0 ? "" : "; ",
-                  static_cast<int>(axis.size()), axis.data(), watched.nis[a], watched.whiteness[a]);
-    text += figures;
-  }
-  say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds, text.c_str(),
-      static_cast<long long>(watched.gated), static_cast<long long>(watched.divergences));
+  say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds,
+      axis_health(watched.nis, watched.whiteness).c_str(), static_cast<long long>(watched.gated),
+      static_cast<long long>(watched.divergences));
   if (!watched.noticed.empty()) say("  noticed: %s\n", printable(watched.noticed, kLongestMessage).c_str());
 }
 

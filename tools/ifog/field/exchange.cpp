@@ -25,6 +25,11 @@ constexpr auto kTakenWithin = 15s;  // the daemon reloads at most once a second
 
 std::string process(pid_t id) { return "the daemon (process " + std::to_string(id) + ")"; }
 
+std::string not_running(const status_t& status) {
+  return "sensor " + in_quotes(status.sensor) + " is in state \"" + state_name(status.state) +
+         "\", expected it to run: a model is taken with the next sample";
+}
+
 std::string in_words(const std::string& identity) { return identity.empty() ? "none" : identity; }
 
 }  // namespace
@@ -64,9 +69,7 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
                              field.lcm_url() +
                              ", expected its status: nobody would see whether it takes a model");
   const status_t& status = *live_->of(sensor_);
-  if (status.state != status_t::STATE_RUNNING)
-    throw std::runtime_error("sensor " + in_quotes(sensor_) + " is in state \"" + state_name(status.state) +
-                             "\", expected it to run: a model is taken with the next sample");
+  if (status.state != status_t::STATE_RUNNING) throw std::runtime_error(not_running(status));
   if (status.model != in_use.identity)
     throw std::runtime_error("sensor " + in_quotes(sensor_) + " runs with model " +
                              printable(in_words(status.model)) + ", " + path_ + " holds " +
@@ -99,6 +102,13 @@ bool ModelExchange::taken(const std::string& identity) {
   });
 }
 
+// A sensor that fell silent only now passed for one that runs.
+std::string ModelExchange::why_not_taken() const {
+  const status_t* const status = live_->of(sensor_);
+  if (status == nullptr || status->state == status_t::STATE_RUNNING) return "its log says why";
+  return not_running(*status);
+}
+
 void ModelExchange::exchange(const std::optional<Model>& model, const std::optional<Model>& before) {
   put(model);
   if (!daemon_) return;
@@ -107,7 +117,7 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
     ask_for_reload();
     if (taken(model ? model->identity() : "")) return;
     why = process(*daemon_) + " did not take model " + in_words(model ? model->identity() : "") + " within " +
-          std::to_string(std::chrono::seconds(kTakenWithin).count()) + " s, its log says why";
+          std::to_string(std::chrono::seconds(kTakenWithin).count()) + " s, " + why_not_taken();
   } catch (const std::exception& error) {
     why = error.what();
   }

@@ -36,6 +36,7 @@ class ModelExchange {
   void put(const std::optional<Model>& model) const;
   void ask_for_reload() const;
   [[nodiscard]] bool taken(const std::string& identity);
+  [[nodiscard]] std::string why_not_taken() const;
 
   const Field& field_;
   std::string sensor_, path_;

@@ -8,17 +8,16 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <string_view>
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
-#include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/hertz.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/field/axis_health.h"
 #include "tools/ifog/field/books.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
@@ -106,17 +105,9 @@ std::string losses_text(const status_t& status) {
 void say_live(const status_t& status) {
   say("  losses: %s\n  %s%s\n", losses_text(status).c_str(), books_text(status).c_str(),
       books_balance(status) ? ": balanced" : ": DO NOT BALANCE");
-  std::string health;
-  for (std::size_t a = 0; a < status.nis_mean.size(); ++a) {
-    std::array<char, 80> text{};
-    const std::string_view axis = axis_name(a, status.nis_mean.size());
-    std::snprintf(text.data(), text.size(), "%s%.*s NIS %.2f, whiteness %+.2f", a == 0 ? "" : "; ",
-                  static_cast<int>(axis.size()), axis.data(), status.nis_mean[a], status.whiteness[a]);
-    health += text.data();
-  }
   say("  health: %s; %lld manoeuvres, %lld divergences, %lld samples out of the model's range\n",
-      health.c_str(), static_cast<long long>(status.manoeuvres), static_cast<long long>(status.divergences),
-      static_cast<long long>(status.out_of_range));
+      axis_health(status.nis_mean, status.whiteness).c_str(), static_cast<long long>(status.manoeuvres),
+      static_cast<long long>(status.divergences), static_cast<long long>(status.out_of_range));
   if (!status.notice.empty()) say("  noticed: %s\n", printable(status.notice, kLongestMessage).c_str());
 }
 
