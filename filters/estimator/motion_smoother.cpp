@@ -19,13 +19,25 @@ constexpr double kBandwidth = 1.5;
 constexpr double kGapEnds = 16.0;
 // Samples whose filtered states are held at once.
 constexpr std::size_t kHeldAtOnce = 4096;
-// Beyond what neighbours differ by, in squares.
-constexpr double kAnything = 100.0;
+// Variance of slope and curvature where a motion begins.
+constexpr double kAnySlope = 100.0;
+// Variance of what may be anything, over the distance of neighbours: it pulls by the inverse of this at most.
+// By its square it would be 1e16 behind a jump of 1e8, and rounding all that is left of it.
+constexpr double kAnything = 1e3;
 
 // A sample's estimate, of which at rest only the level counts.
 struct State {
   Vector x = Vector::Zero();
   Matrix p = Matrix::Zero();
+};
+
+// From a sample to the next, with the covariance of what drives it.
+struct Step {
+  Matrix transition = Matrix::Zero(), driving = Matrix::Zero();
+  void predict(State& state) const {
+    state.x = transition * state.x;
+    state.p = (transition * state.p * transition.transpose() + driving).eval();
+  }
 };
 
 // In units of the noise.
@@ -36,20 +48,17 @@ class Course {
   [[nodiscard]] bool moving(std::size_t i) const {
     return !of_.memories.empty() && of_.memories[i] > pace::kRest;
   }
-  // A state at i - 1 taken to i, its transition with it.
-  void predict(std::size_t i, State& state, Matrix& transition) const {
-    Matrix driving = Matrix::Zero();
-    transition = Matrix::Zero();
-    transition(0, 0) = 1.0;
-    if (moving(i) || moving(i - 1)) move(i, transition, driving);
-    driving(0, 0) += of_.walk[i] / noise_;
-    state.x = transition * state.x;
-    state.p = transition * state.p * transition.transpose() + driving;
-    if (moving(i)) return;
-    state.x.tail<2>().setZero();
-    const double level = state.p(0, 0);
-    state.p.setZero();
-    state.p(0, 0) = level;
+  // From i - 1 to i.
+  [[nodiscard]] Step step(std::size_t i) const {
+    Step out;
+    out.transition(0, 0) = 1.0;
+    if (moving(i) || moving(i - 1)) move(i, out.transition, out.driving);
+    out.driving(0, 0) += of_.walk[i] / noise_;
+    if (moving(i)) return out;
+    out.transition.bottomRows<2>().setZero();
+    out.driving.bottomRows<2>().setZero();
+    out.driving.rightCols<2>().setZero();
+    return out;
   }
   void correct(std::size_t i, State& state) const {
     if (!std::isfinite(of_.rate[i])) return;
@@ -68,7 +77,7 @@ class Course {
       const double apart = of_.rate[j] - of_.rate[j - 1];
       if (std::isfinite(apart)) most = std::max(most, apart * apart / noise_);
     }
-    return kAnything * most;
+    return kAnything * std::sqrt(most);
   }
 
  private:
@@ -81,7 +90,7 @@ class Course {
       return;
     }
     if (begins) {
-      driving(1, 1) = driving(2, 2) = kAnything;
+      driving(1, 1) = driving(2, 2) = kAnySlope;
     } else {
       transition << 1.0, t, 0.5 * t * t, 0.0, 1.0, t, 0.0, 0.0, 1.0;
     }
@@ -99,17 +108,20 @@ class Course {
 
 // The state at i by all measurements, from the filtered one and the smoothed one of the next sample.
 void smooth_back(const Course& course, std::size_t i, State& filtered, const State& next) {
+  const Step step = course.step(i + 1);
   State predicted = filtered;
-  Matrix transition;
-  course.predict(i + 1, predicted, transition);
-  const Matrix cross = filtered.p * transition.transpose();
+  step.predict(predicted);
+  const Matrix cross = filtered.p * step.transition.transpose();
   Matrix gain = Matrix::Zero();
   if (course.moving(i + 1))
     gain = predicted.p.llt().solve(cross.transpose()).transpose();
   else
     gain.col(0) = cross.col(0) / predicted.p(0, 0);
   filtered.x += gain * (next.x - predicted.x);
-  filtered.p += gain * (next.p - predicted.p) * gain.transpose();
+  // A sum as in correct(): none of its parts takes from another what both have too much of.
+  const Matrix kept = Matrix::Identity() - gain * step.transition;
+  filtered.p =
+      (kept * filtered.p * kept.transpose() + gain * (step.driving + next.p) * gain.transpose()).eval();
 }
 
 // At rest to rest a single state is all there is.
@@ -118,8 +130,7 @@ bool rests(const Course& course, std::size_t i) { return !course.moving(i) && !c
 // The filtered state at i - 1 taken to i.
 void filter(const RateCourse& of, const Course& course, double noise, std::size_t i, State& now) {
   if (!rests(course, i)) {
-    Matrix transition;
-    course.predict(i, now, transition);
+    course.step(i).predict(now);
     course.correct(i, now);
     return;
   }

@@ -100,9 +100,9 @@ class TrackerBank {
   // more would put the poles outside the unit circle; and so would those of a short step among long ones,
   // for which the mean step counts.
   Axes steps_{};
-  // Axes that were corrected since the trackers began. Of those that come now and then the trackers are as
-  // old as the one that has had the fewest measurements: with gains for more its parabola would be off for
-  // long.
+  // Axes that were corrected since the trackers began. These grow older with a sample that has all of them,
+  // but those gone for long: with gains for more measurements than an axis has had its parabola would be off
+  // for long. Of axes that never come together they stay young.
   std::uint32_t measured_ = 0;
 };
 
