@@ -127,9 +127,11 @@ double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
       bunched_ || next.elapsed_s < kEven * period_s || sample.at_once > 1 || ends == Silence::Ends::hold_up;
   if (ends == Silence::Ends::hold_up) return next_s;
   if (ends == Silence::Ends::hole || std::abs(late_s) < kResolution_s) return arrived_s;
-  // Each by itself: its arrival, without a leap to where the first ones were behind it.
+  // Each by itself: its arrival, without a leap to where the first ones were behind it, or before it where
+  // more come than the rate says.
   if (!bunched_ && taken_ >= kShows)
-    return std::min(arrived_s, last_s_ + kMost * std::max(period_s, next.elapsed_s));
+    return std::clamp(arrived_s, last_s_ + next.elapsed_s / kMost,
+                      last_s_ + kMost * std::max(period_s, next.elapsed_s));
   return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
 }
 

@@ -18,6 +18,7 @@
 #include <optional>
 
 #include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/measured_period.h"
 #include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
 
@@ -50,7 +51,7 @@ class DeviceCount {
   // modulus: the counter's, > 0. period_s > 0. on_bus: frames of a bus, whose times of arrival are made where
   // nothing can have held them up.
   DeviceCount(std::uint64_t modulus, double period_s, bool on_bus = false) noexcept
-      : modulus_(modulus), nominal_s_(period_s), on_bus_(on_bus) {}
+      : modulus_(modulus), nominal_s_(period_s), on_bus_(on_bus), period_(period_s) {}
 
   void first(const Frame& frame) noexcept {
     arrivals_.forget();
@@ -58,12 +59,16 @@ class DeviceCount {
     arrivals_.came(frame.arrival_ns, 0.0);
   }
   // What has passed to a frame of that count, less whole rounds: to one half of one on, or back by little.
-  [[nodiscard]] std::optional<double> ahead_s(std::uint32_t sequence) const noexcept {
+  [[nodiscard]] std::optional<double> ahead_s(std::uint32_t sequence, double grain_s) const noexcept {
     const std::uint64_t ahead = difference(sequence), back = modulus_ - ahead;
-    if (ahead == 0) return std::nullopt;
-    if (ahead <= modulus_ / 2) return static_cast<double>(ahead) * nominal_s_;
-    if (back < std::min(kMostBack, modulus_ / 4)) return -static_cast<double>(back) * nominal_s_;
+    const double period_s = period_.by_clock_s(grain_s);
+    if (ahead > 0 && ahead <= modulus_ / 2) return static_cast<double>(ahead) * period_s;
+    if (ahead > 0 && back < std::min(kMostBack, modulus_ / 4)) return -static_cast<double>(back) * period_s;
     return std::nullopt;
+  }
+  // In which the counter goes round.
+  [[nodiscard]] double round_s(double grain_s) const noexcept {
+    return static_cast<double>(modulus_) * period_.by_clock_s(grain_s);
   }
   // Of the next frame; changes nothing.
   [[nodiscard]] Step look(const Frame& next) const noexcept {
@@ -90,18 +95,15 @@ class DeviceCount {
     const std::uint64_t samples = std::max<std::uint64_t>(step.samples, 1);
     place_ += samples;
     recent_.add(place_, 0, frame.digest);
-    if (step.gap || step.clock_moved) {
-      took_s_ = counted_s_ = 0.0;
-    } else if (elapsed >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0) {
-      const double counted_s = static_cast<double>(samples) * nominal_s_;
-      took_s_ += elapsed;
-      counted_s_ += counted_s;
-      jitter_s_ = std::max(kForgets * jitter_s_, std::min(std::abs(elapsed - counted_s), kLate_s));
-    }
+    if (step.gap || step.clock_moved)
+      period_.broken();
+    else if (elapsed >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0)
+      period_.came(static_cast<double>(samples), elapsed);
     if (step.by_clock) took_by_clock_s_ = step.dt_s / static_cast<double>(samples);
     if (step.by_clock)
       each_by_clock_s_ =
           step.dt_s / static_cast<double>(std::max<std::uint64_t>(difference(frame.sequence), 1));
+    if (step.by_clock && !step.gap) period_.ticked(static_cast<double>(samples), step.dt_s);
     if (elapsed >= 0.0) prompt_.came(elapsed, step.dt_s);
     refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
     follow_doubt(frame, step);
@@ -124,20 +126,16 @@ class DeviceCount {
   static constexpr int kPaceFrames = 8;
   static constexpr double kNoChance = 5.0;  // periods: half of the rounds that are lost to one of the pauses
   static constexpr double kAgain_s = 0.25;  // a silence of more is another one
-  // Of the rate that the configuration says, where nothing is measured yet: sample clocks are off by 3 %.
-  static constexpr double kRateDoubt = 0.05;
-  static constexpr double kLeastDoubt = 2e-5;
-  static constexpr double kEnough = 64;  // periods, and the rate is measured
-  static constexpr double kForgets = 0.9998;
-  static constexpr double kScatters =
-      4.0;  // further off than so much of what times scatter by, it is not by chance
+  static constexpr double kNoPause_s = 0.25;  // no device begins anew within it
+  static constexpr double kRateDoubt = 0.05;  // of the rate that the configuration says
+  static constexpr double kScatters = 4.0;    // times what times scatter by is not by chance
   // Clock and counter of one device agree within this.
   static constexpr double kClockSamples = 2.0;
   static constexpr double kClockDoubt = 0.01;
   static constexpr double kLonger = 8.0;  // than a sample took: a rate that was stated wrong, a late one
 
   struct Timed : Frame {
-    double elapsed_s;  // since the frame before, by arrival; negative: not known
+    double elapsed_s = -1.0;  // since the frame before, by arrival; negative: not known
   };
 
   [[nodiscard]] std::uint64_t difference(std::uint32_t sequence) const noexcept {
@@ -155,19 +153,12 @@ class DeviceCount {
     place_ = kFirstPlace;
     recent_.forget();
     recent_.add(place_, 0, frame.digest);
-    late_s_ = took_s_ = counted_s_ = jitter_s_ = took_by_clock_s_ = each_by_clock_s_ = 0.0;
+    late_s_ = took_by_clock_s_ = each_by_clock_s_ = 0.0;
+    period_.forget();
     prompt_.forget();
     refused_ = false;
     doubt_ = {};
     last_ = frame;
-  }
-
-  [[nodiscard]] bool measured() const noexcept { return counted_s_ >= kEnough * nominal_s_ && took_s_ > 0.0; }
-  [[nodiscard]] double period_s() const noexcept {
-    return measured() ? nominal_s_ * std::clamp(took_s_ / counted_s_, 0.5, 2.0) : nominal_s_;
-  }
-  [[nodiscard]] double rate_doubt() const noexcept {
-    return measured() ? std::min(kRateDoubt, kLeastDoubt + 2.0 * jitter_s_ / took_s_) : kRateDoubt;
   }
 
   // Came again, or after one that follows it: the count goes back by little, and on from there to here there
@@ -211,8 +202,10 @@ class DeviceCount {
     const double passed_s = this->passed_s(frame);
     if (passed_s == 0.0) return false;  // the same frame again, or a clock of coarse ticks
     const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
-    const bool possible = passed_s > 0.0 && !ifog::restarted(passed_s, elapsed_s < 0.0 ? 0.0 : elapsed_s);
-    const bool goes_on = difference == 1 && frame.quiet_s < kPrompt_s + 2.0 * nominal_s_;
+    const double counted_s = static_cast<double>(difference) * nominal_s_;
+    const bool possible =
+        passed_s > 0.0 && !ifog::restarted(passed_s, elapsed_s < 0.0 ? counted_s : elapsed_s);
+    const bool goes_on = difference == 1 && frame.quiet_s < kNoPause_s + 2.0 * nominal_s_;
     if (!possible && goes_on) return false;  // the clock alone has jumped
     if (passed_s < 0.0 || (!possible && elapsed_s >= 0.0)) {
       step.restarted = true;
@@ -226,11 +219,22 @@ class DeviceCount {
       return false;
     const double claimed = static_cast<double>(difference) + rounds * static_cast<double>(modulus_);
     if (!agree(claimed, passed_s, elapsed_s, frame.grain_s)) return false;
+    const double took_s = took_by_clock_s_ > 0.0 ? took_by_clock_s_ : nominal_s_;
+    if (ifog::restarted(claimed * std::min(took_s, nominal_s_), passed_s)) {
+      step.restarted = true;  // the counter alone
+      step.samples = at_least_one(passed_s / nominal_s_);
+      step.dt_s = passed_s;
+      return true;
+    }
     step.by_clock = true;
     step.samples = static_cast<std::uint64_t>(claimed);
-    if (stood_still(claimed, passed_s)) step.samples = at_least_one(passed_s / took_by_clock_s_);
+    if (stood_still(claimed, passed_s - frame.grain_s))
+      step.samples = at_least_one(passed_s / took_by_clock_s_);
     step.dt_s = passed_s;
-    if (elapsed_s >= 0.0) lateness(frame, elapsed_s - passed_s, step);
+    // While a coarse clock stood the count has gone on.
+    const bool tick = frame.grain_s > 0.0 && passed_s <= 2.0 * frame.grain_s;
+    const double took_by_count_s = claimed * period_.by_arrival_s();
+    if (elapsed_s >= 0.0) lateness(frame, elapsed_s - (tick ? took_by_count_s : passed_s), step);
     return true;
   }
   // By its clock much longer than its count says: it measured nothing meanwhile. Where the one before took as
@@ -240,8 +244,8 @@ class DeviceCount {
     return took_by_clock_s_ > 0.0 && each_s > kLonger * took_by_clock_s_ && each_s > 2.0 * each_by_clock_s_;
   }
   [[nodiscard]] double rounds_by_clock(double passed_s, double counted, double grain_s) const noexcept {
-    const double spare = passed_s / nominal_s_ - counted;
-    if (spare <= kClockSamples + grain_s / nominal_s_) return 0.0;
+    const double period_s = period_.by_clock_s(grain_s), spare = passed_s / period_s - counted;
+    if (spare <= kClockSamples + grain_s / period_s) return 0.0;
     return std::max(0.0, std::round(spare / static_cast<double>(modulus_)));
   }
   // Where clock and count disagree, a clock that goes on as before is followed. Else the times of arrival say
@@ -326,20 +330,21 @@ class DeviceCount {
 
   // Whole rounds of the counter in a time that it does not account for.
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
-    return whole_rounds(spare_s, static_cast<double>(modulus_) * period_s(),
-                        kPrompt_s + rate_doubt() * elapsed_s, std::max(kAdapter_s, scatter_s_));
+    return whole_rounds(spare_s, static_cast<double>(modulus_) * period_.by_arrival_s(),
+                        kPrompt_s + period_.doubt() * elapsed_s, std::max(kAdapter_s, scatter_s_));
   }
 
   // Behind a silence the very next of the count: so ends every pause of the device, and one in a round's
   // number of losses. These are told only where whole rounds fit the time as chance seldom would.
   [[nodiscard]] bool paused(bool goes_on, double spare_s, double elapsed_s) const noexcept {
-    const double round_s = static_cast<double>(modulus_) * period_s(), fits_s = kNoChance * period_s();
-    return goes_on && (rate_doubt() * elapsed_s + scatter_s_ > fits_s ||
+    const double period_s = period_.by_arrival_s(), fits_s = kNoChance * period_s;
+    const double round_s = static_cast<double>(modulus_) * period_s;
+    return goes_on && (period_.doubt() * elapsed_s + scatter_s_ > fits_s ||
                        std::abs(std::remainder(spare_s, round_s)) > fits_s);
   }
 
   void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
-    const double period = period_s();
+    const double period = period_.by_arrival_s();
     const bool known = frame.elapsed_s >= 0.0;
     const double elapsed_s = frame.elapsed_s + late_s_;
     step.samples = difference;
@@ -379,7 +384,11 @@ class DeviceCount {
     }
     const double claimed_s = static_cast<double>(step.samples) * nominal_s_;
     const bool backwards = !arrivals_.known() && difference > modulus_ / 2;  // no arrival times to ask, ever
-    if (step.samples > 1 && ((known && ifog::restarted(claimed_s, elapsed_s)) || backwards)) {
+    const double slack_s = kLate_s + kRateDoubt * claimed_s;
+    const bool jumped =
+        known && (ifog::restarted(claimed_s, elapsed_s) ||
+                  prompt_.ahead(static_cast<double>(step.samples) * period, elapsed_s, slack_s));
+    if (step.samples > 1 && (jumped || backwards)) {
       step.samples = known && elapsed_s > 0.0 ? at_least_one(elapsed_s / nominal_s_) : 1;
       step.restarted = true;
       step.late_s = 0.0;
@@ -404,12 +413,11 @@ class DeviceCount {
     int frames = 0;
   };
   Doubt doubt_;
-  double window_late_s_ = 0.0, window_s_ = 0.0,
-         episode_s_ = 0.0;  // since lateness last became less; since it began
-  double late_s_ = 0.0;     // the last frame, undecided
-  double took_s_ = 0.0,
-         counted_s_ = 0.0;  // of an unbroken run: by arrival, and by the count at the nominal rate
-  double jitter_s_ = 0.0, scatter_s_ = 1e-3;
+  double window_late_s_ = 0.0, window_s_ = 0.0;  // since lateness last became less
+  double episode_s_ = 0.0;                       // since it began
+  double late_s_ = 0.0;                          // the last frame, undecided
+  MeasuredPeriod period_;
+  double scatter_s_ = 1e-3;
   PromptArrivals prompt_;
   bool refused_ = false;          // the clock's step to the last frame was not followed
   double took_by_clock_s_ = 0.0;  // the last sample of which the clock said it; 0: none yet

@@ -114,9 +114,10 @@ class DeviceTimeline {
   [[nodiscard]] std::int64_t proposed(const Frame& frame, double elapsed_s) const noexcept {
     if (!last_clocked_) return frame.stamp.ns;
     std::optional<double> counted_s;
-    if (counted(frame) && rate_known_) counted_s = count_.ahead_s(frame.sequence);
+    const double grain_s = clock_steps_.grain_s();
+    if (counted(frame) && rate_known_) counted_s = count_.ahead_s(frame.sequence, grain_s);
     return stamp_.look(frame.stamp, {elapsed_s, rate_known_ ? period_s_ : 0.0, quiet_s(frame, elapsed_s),
-                                     counted_s, static_cast<double>(modulus_) * period_s_});
+                                     counted_s, count_.round_s(grain_s)});
   }
   // Since any frame came, also one that was left out.
   [[nodiscard]] double quiet_s(const Frame& frame, double elapsed_s) const noexcept {
@@ -184,7 +185,10 @@ class DeviceTimeline {
       clock_steps_.jumped();
       return step;
     }
-    if (passed_ns < 0 || (now.elapsed_s >= 0.0 && ifog::restarted(passed_s, now.elapsed_s))) {
+    const bool ahead =
+        now.elapsed_s >= 0.0 &&
+        prompt_.ahead(passed_s, now.elapsed_s, kShortStep_s + PromptArrivals::kDoubt * passed_s);
+    if (passed_ns < 0 || ahead || (now.elapsed_s >= 0.0 && ifog::restarted(passed_s, now.elapsed_s))) {
       step.restarted = step.gap = true;
       step.samples = now.elapsed_s > 0.0 && rate_known_ ? at_least_one(now.elapsed_s / period_s_) : 1;
       step.dt_s = static_cast<double>(step.samples) * period_s_;

@@ -84,7 +84,8 @@ class RollingStamp {
     if (!(count_s > 0.0 && most >= 1.0 && most <= kMost)) return std::nullopt;
     for (double rounds = most; rounds >= 0.0; --rounds) {
       const double passed_s = step_s + rounds * wrap_s, beside_s = passed_s - *between.counted_s;
-      const double slack_s = std::min(kSamples * between.period_s + kDoubt * passed_s, kTells * count_s);
+      const double slack_s = std::min(
+          std::min(kSamples * between.period_s, kTells * wrap_s) + kDoubt * passed_s, kTells * count_s);
       const double counts = std::max(0.0, std::round(beside_s / count_s));
       if (std::abs(beside_s - counts * count_s) <= slack_s) return rounds;
     }

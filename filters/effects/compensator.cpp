@@ -220,7 +220,8 @@ void Compensator::Value::times(double factor, const Shape& shape, const Reach& r
   value *= factor;
 }
 
-Reach Compensator::reach_of_factor(Factor& factor, double dt_s, std::uint32_t& flags) const noexcept {
+std::optional<Reach> Compensator::reach_of_factor(Factor& factor, double dt_s,
+                                                  std::uint32_t& flags) const noexcept {
   const Held& held = held_[factor.channel];
   if (factor.less == kNone && !(factor.turn > 0.0)) return held.reach;
   double value = 0.0;
@@ -228,10 +229,14 @@ Reach Compensator::reach_of_factor(Factor& factor, double dt_s, std::uint32_t& f
     value = beside_arc(held.value, factor.range, factor.turn);
   } else {
     const double difference = held.value - held_[factor.less].value;
-    const bool told = factor.readings.step(difference, dt_s, factor.range);
-    if (told) factor.difference = difference;
-    if (!told) flags |= kStaleChannel;
-    value = factor.difference;
+    if (factor.turn > 0.0)
+      factor.difference = beside_arc(difference, factor.range, factor.turn);
+    else if (factor.readings.step(difference, dt_s, factor.range))
+      factor.difference = difference;
+    else
+      flags |= factor.difference ? kStaleChannel : kNoChannelYet;
+    if (!factor.difference) return std::nullopt;
+    value = *factor.difference;
   }
   const Reach reach = reach_of(value, factor.range);
   if (reach.outside()) flags |= kOutOfRange;
@@ -255,8 +260,12 @@ void Compensator::evaluate(Term& term, double dt_s, std::uint32_t& flags) noexce
       term.usable = false;
       return;
     }
-    const Reach reach = reach_of_factor(factor, dt_s, flags);
-    term.channels.times(factor.shape.step(reach, dt_s), factor.shape, reach);
+    const std::optional<Reach> reach = reach_of_factor(factor, dt_s, flags);
+    if (!reach) {
+      term.usable = false;
+      return;
+    }
+    term.channels.times(factor.shape.step(*reach, dt_s), factor.shape, *reach);
   }
 }
 
@@ -362,6 +371,7 @@ void Compensator::restart() noexcept {
     for (Factor& factor : term.factors) {
       factor.shape.restart();
       factor.readings = {};
+      factor.difference.reset();
     }
   }
   for (Ramp& ramp : ramps_) ramp.tracker.restart();
@@ -389,8 +399,11 @@ void Compensator::take_over(const Compensator& previous) noexcept {
     for (Factor& factor : term.factors) {
       for (const Term& old : previous.terms_) {
         for (const Factor& other : old.factors) {
-          if (same(factor.channel, other.channel) && same(factor.less, other.less))
-            factor.shape.take_over(other.shape);
+          if (!same(factor.channel, other.channel) || !same(factor.less, other.less)) continue;
+          factor.shape.take_over(other.shape);
+          if (factor.less == kNone) continue;
+          factor.readings = other.readings;
+          factor.difference = other.difference;
         }
       }
     }

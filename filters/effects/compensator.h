@@ -80,13 +80,13 @@ class Compensator {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   struct Factor {
     Shape shape;
-    std::size_t channel;          // kNone: a rate, or time
-    std::size_t less;             // of a difference of two channels the second; kNone
-    std::size_t rate;             // the axis whose rate it is a function of; kNone
-    ChannelRange range;           // of a rate or a difference
-    PlausibleReading readings{};  // of a difference
-    double difference = 0.0;      // the last that was believed
-    double turn = 0.0;            // of an angle: what its wraps are
+    std::size_t channel;                 // kNone: a rate, or time
+    std::size_t less;                    // of a difference of two channels the second; kNone
+    std::size_t rate;                    // the axis whose rate it is a function of; kNone
+    ChannelRange range;                  // of a rate or a difference
+    PlausibleReading readings{};         // of a difference
+    std::optional<double> difference{};  // the last that was believed; none: there was none
+    double turn = 0.0;                   // of an angle: what its wraps are
   };
   // A product of shapes, and by how much it may be wrong outside the range, as Shape has it.
   struct Value {
@@ -130,7 +130,8 @@ class Compensator {
   void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
   void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   // Where a factor's channel is, which has had a value.
-  [[nodiscard]] Reach reach_of_factor(Factor& factor, double dt_s, std::uint32_t& flags) const noexcept;
+  [[nodiscard]] std::optional<Reach> reach_of_factor(Factor& factor, double dt_s,
+                                                     std::uint32_t& flags) const noexcept;
   // The whole term at these rates of the axes; the channels' part alone for a term that does not depend on
   // them. Zero while another axis it depends on has no value.
   [[nodiscard]] Value at_rates(const Term& term, const Axes& rates) const noexcept;

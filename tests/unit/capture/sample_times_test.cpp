@@ -128,6 +128,27 @@ TEST(SampleTimes, AHoldUpIsNoHoleAndAHoleIsOne) {
         }
 }
 
+// More or fewer than the stated rate says, each as it was measured: none is refused or has a leap before it.
+TEST(SampleTimes, WhatComesAtAnotherRateThanStatedHasItsTimesOfArrival) {
+  for (const double nominal_hz : {0.2, 100.0, 2000.0})
+    for (const double of_it : {0.75, 0.9, 0.97, 1.03, 1.07, 1.1, 1.15, 1.17}) {
+      SCOPED_TRACE(testing::Message() << nominal_hz << " Hz, really " << of_it << " of it");
+      SampleTimes times(description(nominal_hz));
+      const double period_s = 1.0 / (nominal_hz * of_it);
+      for (int i = 0; i < 1000; ++i) {
+        const auto taken = times.next(sample(kEpoch_ns + std::llround(i * period_s * 1e9), i));
+        ASSERT_TRUE(taken);
+        if (i > 0) {
+          EXPECT_GT(taken->elapsed_s, 0.75 * period_s);
+          EXPECT_LT(taken->elapsed_s, 1.3 * std::max(period_s, 1.0 / nominal_hz));
+        }
+        if (i >= 200) {
+          EXPECT_NEAR(taken->since_s, i * period_s, 1e-6 * period_s + 2e-9);
+        }
+      }
+    }
+}
+
 TEST(SampleTimes, WhatComesTwiceHasNoTimeAndWhatGoesBackIsRefused) {
   SampleTimes times(description(0.0));
   EXPECT_TRUE(std::isnan(times.next(sample(kEpoch_ns, 0))->elapsed_s));

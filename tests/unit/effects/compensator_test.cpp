@@ -118,6 +118,49 @@ TEST(Compensator, TakesADifferenceOfChannelsWithinItsOwnRange) {
   EXPECT_NEAR(step(next, 0.0, {kMissing, kMissing, 25.0}).correction_radps[0], 5e-6, 1e-18) << "held at 5";
 }
 
+// What a logger writes where it has no value, in one of the two that have no range of their own.
+TEST(Compensator, ADifferenceThatNeverWasOneCorrectsNothingAndIsHeldOverAReload) {
+  Model model;
+  Effect gradient = linear(1e-6);
+  gradient.channel = difference_of("inner_degC", "outer_degC");
+  gradient.reference = 12.0;
+  model.effects = {gradient};
+  model.ranges = {{gradient.channel, 10.0, 14.0}};
+  Compensator compensator(model, {""});
+  const auto none = step(compensator, 0.0, {9999.0, 30.0});
+  EXPECT_EQ(none.correction_radps[0], 0.0);
+  EXPECT_NE(none.flags & kNoChannelYet, 0U);
+  EXPECT_NEAR(step(compensator, 0.0, {43.0, 30.0}).correction_radps[0], 1e-6, 1e-18);
+  const auto held = step(compensator, 0.0, {9999.0, 30.0});
+  EXPECT_NEAR(held.correction_radps[0], 1e-6, 1e-18);
+  EXPECT_EQ(held.flags, static_cast<std::uint32_t>(kStaleChannel));
+  Compensator next(model, {""});
+  next.take_over(compensator);
+  EXPECT_NEAR(step(next, 0.0, {9999.0, 30.0}).correction_radps[0], 1e-6, 1e-18);
+  next.restart();
+  EXPECT_EQ(step(next, 0.0, {9999.0, 30.0}).correction_radps[0], 0.0);
+}
+
+TEST(Compensator, ADifferenceOfAnglesIsOneThroughTheirWraps) {
+  Model model;
+  Effect effect = linear(1e-6);
+  effect.form = "sine";
+  effect.channel = difference_of("inner_deg", "outer_deg");
+  effect.reference = 0.0;
+  effect.period = 360.0;
+  model.effects = {effect};
+  model.ranges = {{effect.channel, -30.0, 10.0}};
+  Compensator compensator(model, {""});
+  for (double outer = 0.0; outer < 720.0; outer += 17.0)
+    for (const double apart : {-30.0, -20.0, -1.0, 9.0}) {
+      const double inner = std::fmod(outer + apart + 360.0, 360.0);
+      const auto out = step(compensator, 0.0, {inner, std::fmod(outer, 360.0)});
+      EXPECT_NEAR(out.correction_radps[0], 1e-6 * std::sin(apart * M_PI / 180.0), 1e-15)
+          << inner << ' ' << outer;
+      EXPECT_EQ(out.flags, 0U);
+    }
+}
+
 TEST(Compensator, FollowsAnAngleThroughItsWraps) {
   Model model;
   for (const char* form : {"cosine", "sine"}) {
