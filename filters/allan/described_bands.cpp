@@ -71,12 +71,13 @@ double misfit_of(const std::vector<Departure>& found) {
   return high;
 }
 
-// The bands that stand farthest off, the few of which one may be the worst: it may also be one that has
-// pulled the terms towards itself.
+// The bands above the terms, and the highest, that stand farthest off, the few of which one may be the worst:
+// it may also be one that has pulled the terms towards itself.
 std::vector<std::size_t> farthest(const std::vector<Departure>& found, double misfit) {
   constexpr std::size_t kTried = 5;
-  std::vector<std::size_t> order(found.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (found[i].value > 0.0 || i + 1 == found.size()) order.push_back(i);
   const auto distance = [&](std::size_t i) {
     return found[i].value * found[i].value / (found[i].variance + misfit * misfit);
   };
@@ -96,14 +97,14 @@ NoiseSpectrum loosened(NoiseSpectrum spectrum, const std::vector<Band>& bands, d
   return spectrum;
 }
 
-double settled_misfit(const NoiseSpectrum& spectrum, const std::vector<Band>& bands, TermVariances& terms) {
+double settled_misfit(const NoiseSpectrum& spectrum, const std::vector<Band>& bands, TermSet allowed,
+                      TermVariances& terms) {
   double misfit = 0.0;
   for (int round = 0; round < 4; ++round) {
     const NoiseSpectrum loose = loosened(spectrum, bands, misfit);
     const NoiseLikelihood likelihood(loose, Ramp::kProjected);
-    const TermSet all = TermSet().set();
     const bool known = std::any_of(terms.begin(), terms.end(), [](double v) { return v > 0.0; });
-    terms = (known ? likelihood.maximise(all, terms) : likelihood.maximise(all)).variances;
+    terms = (known ? likelihood.maximise(allowed, terms) : likelihood.maximise(allowed)).variances;
     const double found = misfit_of(departures(spectrum, bands, terms));
     const bool settled = std::abs(found - misfit) <= 0.02 * found;
     misfit = found;
@@ -118,26 +119,29 @@ void leave_out(NoiseSpectrum& spectrum, const Band& band) {
 
 }  // namespace
 
-Described described(NoiseSpectrum spectrum) {
+Described described(NoiseSpectrum spectrum, TermSet allowed) {
   Described result;
   std::vector<Band> bands = half_octaves(spectrum);
-  double misfit = settled_misfit(spectrum, bands, result.terms);
-  const std::size_t fewest = std::max(kFewestBands, (bands.size() + 1) / 2);
+  double misfit = settled_misfit(spectrum, bands, allowed, result.terms);
+  std::size_t described = bands.size();  // half of which are to stay
+  const auto fewest = [&] { return std::max(kFewestBands, (described + 1) / 2); };
   // Relative departures of the power are twice the deviation's.
-  while (misfit > 2.0 * kTolerated && bands.size() > fewest) {
+  while (misfit > 2.0 * kTolerated && bands.size() > fewest()) {
     std::size_t worst = 0;
     double least = std::numeric_limits<double>::infinity();
     TermVariances terms_then{};
-    for (const std::size_t b : farthest(departures(spectrum, bands, result.terms), misfit)) {
+    const std::vector<Departure> found = departures(spectrum, bands, result.terms);
+    for (const std::size_t b : farthest(found, misfit)) {
       NoiseSpectrum without = spectrum;
       leave_out(without, bands[b]);
       TermVariances terms = result.terms;
-      const double left = settled_misfit(without, half_octaves(without), terms);
+      const double left = settled_misfit(without, half_octaves(without), allowed, terms);
       if (left >= least) continue;
       least = left;
       worst = b;
       terms_then = terms;
     }
+    if (worst + 1 == bands.size() && found[worst].value < 0.0) --described;
     leave_out(spectrum, bands[worst]);
     result.left_out.push_back(bands[worst].range);
     bands.erase(bands.begin() + static_cast<std::ptrdiff_t>(worst));

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "filters/allan/curve_limits.h"
 #include "filters/allan/described_bands.h"
 #include "filters/allan/noise_likelihood.h"
 #include "filters/units/field_units.h"
@@ -40,11 +41,11 @@ constexpr double kLeastPower = 1e-120;
 
 // Variance of `term` at which the likelihood, the others at their best, has fallen by kBound/2. The root of
 // twice the loss is nearly a straight line there, which secants follow in a few steps.
-double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::Maximum& best, Term term) {
-  const TermSet all = TermSet().set();
+double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::Maximum& best,
+                      TermSet allowed, Term term) {
   TermVariances near = best.variances;
   const auto lost = [&](double variance) {
-    const auto at = likelihood.maximise_with(term, variance, all, near);
+    const auto at = likelihood.maximise_with(term, variance, allowed, near);
     near = at.variances;
     return std::sqrt(std::max(0.0, 2.0 * (best.log_likelihood - at.log_likelihood)));
   };
@@ -89,14 +90,14 @@ TermVariances errors(const NoiseLikelihood& likelihood, const TermVariances& fit
   return error;
 }
 
-// Every set of terms, its likeliest variances, and what they say together.
+// Every set of the terms that may be there, its likeliest variances, and what they say together.
 class TermSets {
  public:
-  TermSets(const NoiseLikelihood& likelihood, const TermVariances& near) {
-    for (unsigned long bits = (1UL << kTerms) - 1; bits > 0; --bits) {
+  TermSets(const NoiseLikelihood& likelihood, TermSet allowed, const TermVariances& near) {
+    for (unsigned long bits = allowed.to_ulong(); bits > 0; --bits) {
       const TermSet set(bits);
-      const auto fit =
-          likelihood.maximise(set, bits == (1UL << kTerms) - 1 ? near : sets_.front().fit.variances);
+      if ((set & ~allowed).any()) continue;
+      const auto fit = likelihood.maximise(set, set == allowed ? near : sets_.front().fit.variances);
       const double cost = 2.0 * (sets_.empty() ? 0.0 : sets_.front().fit.log_likelihood - fit.log_likelihood);
       // A term that fell to zero: the set without it is tried by itself.
       bool whole = true;
@@ -169,12 +170,11 @@ class TermSets {
   std::vector<Entry> sets_;  // all terms first
 };
 
-void fit_ramp(const NoiseSpectrum& spectrum, const TermVariances& variances, double period_s,
+void fit_ramp(const NoiseSpectrum& spectrum, TermSet allowed, const TermVariances& variances, double period_s,
               NoiseCoefficients& found) {
   const NoiseLikelihood free(spectrum, Ramp::kFree), none(spectrum, Ramp::kNone);
-  const TermSet all = TermSet().set();
-  const double gain =
-      2.0 * (free.maximise(all, variances).log_likelihood - none.maximise(all, variances).log_likelihood);
+  const double gain = 2.0 * (free.maximise(allowed, variances).log_likelihood -
+                             none.maximise(allowed, variances).log_likelihood);
   const NoiseLikelihood::RampEstimate ramp = free.ramp(variances);
   found.ramp_radps2 = ramp.value / period_s;
   const double error = ramp.std_error / period_s, size = std::abs(found.ramp_radps2);
@@ -252,6 +252,91 @@ FrequencyRange in_hz(const FrequencyRange& range, double period_s) {
   return {range.low / period_s, range.high / period_s};
 }
 
+constexpr std::array<NoiseCoefficient NoiseCoefficients::*, kTerms> kMember{
+    &NoiseCoefficients::Q, &NoiseCoefficients::N, &NoiseCoefficients::B, &NoiseCoefficients::K};
+
+// From the root of a variance in samples to the coefficient.
+double coefficient_unit(std::size_t term, double period_s) {
+  return std::array<double, kTerms>{period_s, std::sqrt(period_s), 1.0, 1.0 / std::sqrt(period_s)}[term];
+}
+
+NoiseCoefficient not_seen(double upper) { return {.std_error = upper / kOneSided, .upper = upper}; }
+
+void write_terms(const NoiseLikelihood& likelihood, const TermSets& sets, TermSet allowed, double period_s,
+                 NoiseCoefficients& found) {
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    NoiseCoefficient& c = found.*kMember[t];
+    c = {};
+    if (!allowed[t]) continue;
+    const double need = sets.need(t), unit = coefficient_unit(t, period_s);
+    if (need > 0.0) {
+      const TermSets::Average average = sets.average(t);
+      c.present = true;
+      c.value = average.value * unit;
+      c.std_error = average.error * unit;
+      c.upper = c.value + kOneSided * c.std_error;
+    } else {
+      c = not_seen(std::sqrt(upper_variance(likelihood, sets.all(), allowed, static_cast<Term>(t))) * unit);
+    }
+    c.score = std::sqrt(std::max(0.0, need + kNested));
+  }
+}
+
+// Terms that are more than the curve by themselves, their error bars allowed for. Of those that are not, from
+// which time on; and what the curve allows of those that are not seen.
+TermSet refuted_by(const CurveLimits& curve, TermSet allowed, double period_s, NoiseCoefficients& found) {
+  TermSet refuted;
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    NoiseCoefficient& c = found.*kMember[t];
+    const auto term = static_cast<Term>(t);
+    const double unit = coefficient_unit(t, period_s), most = std::sqrt(curve.most(term)) * unit;
+    if (!c.present) {
+      c = not_seen(allowed[t] ? std::min(c.upper, most) : most);
+      continue;
+    }
+    const double least = std::max(0.0, c.value - kOneSided * c.std_error) / unit;
+    const CurveLimits::Verdict verdict = curve.judge(term, least * least);
+    refuted[t] = verdict.refuted;
+    c.from_s = verdict.from_m > 1 ? static_cast<double>(verdict.from_m) * period_s : 0.0;
+    if (verdict.refuted) c = not_seen(most);
+  }
+  return refuted;
+}
+
+// What describes the record of terms that its curve allows.
+struct Fitted {
+  Described record;
+  TermSet allowed = TermSet().set();
+  TermVariances variances{};
+};
+Fitted fit_terms(const AngleSum& sum, const NoiseSpectrum& measured, double period_s,
+                 NoiseCoefficients& found) {
+  Fitted fit;
+  std::optional<Fitted> first;
+  std::optional<CurveLimits> curve;
+  for (;;) {
+    fit.record = described(measured, fit.allowed);
+    const NoiseLikelihood likelihood(fit.record.spectrum, Ramp::kProjected);
+    const TermSets sets(likelihood, fit.allowed, fit.record.terms);
+    fit.record.terms = sets.all().variances;
+    found.variances = sets.variances();
+    write_terms(likelihood, sets, fit.allowed, period_s, found);
+    // Terms that describe all of the spectrum describe the curve.
+    if (fit.record.misfit <= 0.0 && fit.record.left_out.empty()) return fit;
+    if (!curve) curve.emplace(sum);
+    curve->assume(found.variances);
+    const TermSet refuted = refuted_by(*curve, fit.allowed, period_s, found);
+    if (refuted.none()) return fit;
+    if (!first) first = Fitted{fit.record, fit.allowed, found.variances};
+    if (refuted == fit.allowed) {
+      // Nothing is left to describe it by: what came nearest says how far estimates scatter.
+      found.variances = first->variances;
+      return *first;
+    }
+    fit.allowed &= ~refuted;
+  }
+}
+
 }  // namespace
 
 NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
@@ -268,33 +353,11 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
     throw std::invalid_argument("the rate changes by less than 1e-60 rad/s: no sensor's noise");
   NoiseCoefficients found;
   for (const FrequencyRange& line : measured.lines) found.lines_hz.push_back(in_hz(line, period_s));
-  const Described record = described(measured);
-  found.misfit = record.misfit;
-  for (const FrequencyRange& range : record.left_out) found.left_out_hz.push_back(in_hz(range, period_s));
-
-  const NoiseLikelihood likelihood(record.spectrum, Ramp::kProjected);
-  const TermSets sets(likelihood, record.terms);
-  found.variances = sets.variances();
-
-  const std::array<double, kTerms> scale{period_s, std::sqrt(period_s), 1.0, 1.0 / std::sqrt(period_s)};
-  const std::array<NoiseCoefficient*, kTerms> target{&found.Q, &found.N, &found.B, &found.K};
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    NoiseCoefficient& c = *target[t];
-    const double need = sets.need(t);
-    c.score = std::sqrt(std::max(0.0, need + kNested));
-    c.present = need > 0.0;
-    if (c.present) {
-      const TermSets::Average average = sets.average(t);
-      c.value = average.value * scale[t];
-      c.std_error = average.error * scale[t];
-      c.upper = c.value + kOneSided * c.std_error;
-    } else {
-      c.upper = std::sqrt(upper_variance(likelihood, sets.all(), static_cast<Term>(t))) * scale[t];
-      c.std_error = c.upper / kOneSided;
-    }
-  }
-  fit_ramp(record.spectrum, sets.all().variances, period_s, found);
-  find_return(measured, record, longest, period_s, found);
+  const Fitted fit = fit_terms(sum, measured, period_s, found);
+  found.misfit = fit.record.misfit;
+  for (const FrequencyRange& range : fit.record.left_out) found.left_out_hz.push_back(in_hz(range, period_s));
+  fit_ramp(fit.record.spectrum, fit.allowed, fit.record.terms, period_s, found);
+  find_return(measured, fit.record, longest, period_s, found);
   return found;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -79,7 +80,9 @@ std::vector<double> running_median(const std::vector<Window>& windows, std::size
   return out;
 }
 
-void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state) {
+// leap: of each window, where it is more than noise and no turn; the largest of all axes.
+void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state,
+               std::vector<double>& leap) {
   std::vector<double> scatters, steps;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     if (!std::isfinite(windows[i].mean)) continue;
@@ -99,10 +102,13 @@ void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<
     const bool between = i > 0 && i + 1 < windows.size();
     const double across = between ? std::abs(windows[i + 1].mean - windows[i - 1].mean) : 0.0;
     const double away = std::abs(windows[i].mean - level[i]);
-    if (std::max(away, std::isfinite(across) ? across : 0.0) > std::max(kLeastTurn, kTurned * usual))
+    const double most = std::max(away, std::isfinite(across) ? across : 0.0);
+    if (most > std::max(kLeastTurn, kTurned * usual))
       state[i] = State::kTurning;
-    else if (quiet > 0.0 && windows[i].scatter > kShaken * quiet && state[i] == State::kResting)
-      state[i] = State::kShaking;
+    else if (usual > 0.0 && most > kTurned * usual)
+      leap[i] = std::max(leap[i], most);
+    if (state[i] == State::kTurning) continue;
+    if (quiet > 0.0 && windows[i].scatter > kShaken * quiet) state[i] = State::kShaking;
   }
 }
 
@@ -156,6 +162,40 @@ void mark_steady_turns(const std::vector<Window>& windows, std::vector<State>& s
   }
 }
 
+// Neighbouring windows leap once.
+Rest::SlowTurns slow_turns_of(const std::vector<double>& leap, const std::vector<State>& state,
+                              std::size_t window) {
+  Rest::SlowTurns found;
+  const auto leaps = [&](std::size_t i) { return leap[i] > 0.0 && state[i] == State::kResting; };
+  for (std::size_t i = 0; i < leap.size(); ++i) {
+    if (!leaps(i)) continue;
+    found.largest_radps = std::max(found.largest_radps, leap[i]);
+    if (i > 0 && leaps(i - 1)) continue;
+    if (found.count++ == 0) found.first = i * window;
+  }
+  return found;
+}
+
+// Of rows too far apart for windows: one that is far off for its turn.
+Rest::SlowTurns dwells_of(std::span<const SeriesView> axes) {
+  Rest::SlowTurns found;
+  for (const SeriesView& rate : axes) {
+    std::vector<double> there;
+    std::vector<double> room;
+    const std::span<const double> values = rate.piece(0, rate.size(), room);
+    std::copy_if(values.begin(), values.end(), std::back_inserter(there),
+                 [](double v) { return std::isfinite(v); });
+    const double level = quantile(std::move(there), 0.5);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double away = std::abs(values[i] - level);
+      if (!(away > kLeastTurn)) continue;
+      if (found.count++ == 0 || i < found.first) found.first = i;
+      found.largest_radps = std::max(found.largest_radps, away);
+    }
+  }
+  return found;
+}
+
 Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t samples) {
   Rest rest;
   rest.samples = samples;
@@ -202,18 +242,24 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
   const std::size_t count = samples / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
   if (period_s > kDwell_s && !references.empty()) return rest_by_references(references, samples);
-  if (count < kFewestWindows || period_s > kSlowest_s) return as_samples(state, window, samples);
+  if (count < kFewestWindows || period_s > kSlowest_s) {
+    Rest rest = as_samples(state, window, samples);
+    if (period_s > kSlowest_s) rest.slow_turns = dwells_of(axes);
+    return rest;
+  }
   std::vector<std::vector<Window>> windows;
-  std::vector<double> room;
+  std::vector<double> room, leap(count);
   for (const SeriesView& rate : axes) {
     std::vector<Window>& of_axis = windows.emplace_back();
     for (std::size_t i = 0; i < count; ++i)
       of_axis.push_back(window_of(rate.piece(i * window, window, room)));
-    mark_axis(of_axis, static_cast<double>(window) * period_s, state);
+    mark_axis(of_axis, static_cast<double>(window) * period_s, state, leap);
   }
   widen(state);
   for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
-  return as_samples(state, window, samples);
+  Rest rest = as_samples(state, window, samples);
+  rest.slow_turns = slow_turns_of(leap, state, window);
+  return rest;
 }
 
 std::string in_words(const Rest& rest, double period_s, double first_s) {
@@ -239,6 +285,18 @@ std::string in_words(const Rest& rest, double period_s, double first_s) {
   if (rest.at_rest.size() > kShown)
     words += " and " + std::to_string(rest.at_rest.size() - kShown) + " shorter parts";
   return words;
+}
+
+std::string slow_turns_in_words(const Rest& rest, double period_s, double first_s) {
+  if (rest.slow_turns.count == 0) return {};
+  std::array<char, 240> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "the rate leaps by up to %.3g °/h, %zu times, first at %s s: slow turns (a rate table's dwells?) "
+      "or a bias that jumps; the noise terms, K above all, take them for noise",
+      rest.slow_turns.largest_radps / kDegreePerHour, rest.slow_turns.count,
+      told_time(first_s + static_cast<double>(rest.slow_turns.first) * period_s).c_str());
+  return text.data();
 }
 
 void require_rest(const Rest& rest, double period_s, double first_s) {

@@ -26,6 +26,11 @@ struct Rest {
   std::size_t samples = 0;       // of the record
   std::size_t turned = 0;        // samples left out
   std::size_t shaken = 0;
+  // Rest, but the rate leaps there by more than noise does and less than is surely a turn; of the largest.
+  struct SlowTurns {
+    std::size_t count = 0, first = 0;  // first: sample
+    double largest_radps = 0.0;
+  } slow_turns;
 
   [[nodiscard]] std::size_t resting() const { return samples - turned - shaken; }
 };
@@ -42,6 +47,9 @@ struct Rest {
 // "moving in 37 of 60 s (turned 30 s, shaken 7 s), at rest 5 … 12 s, 40 … 56 s"; empty when nothing moved.
 // first_s: time of the first sample.
 [[nodiscard]] std::string in_words(const Rest& rest, double period_s, double first_s);
+
+// "the rate leaps by up to 118 °/h, 4 times, first at 35 s: …"; empty where it does not.
+[[nodiscard]] std::string slow_turns_in_words(const Rest& rest, double period_s, double first_s);
 
 // Throws std::invalid_argument with one line for people when the sensor was turned and less than half of the
 // record is at rest. One that was only shaken has its quieter part.

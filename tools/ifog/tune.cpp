@@ -54,7 +54,9 @@ Rest rest_of(const CaptureView& capture, double period_s, const std::string& pat
   try {
     require_rest(rest, period_s, capture.told_time_s(0));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(path + ": " + error.what());
+    throw std::runtime_error(
+        path + ": " + error.what() +
+        (references.empty() ? "" : "; a sensor turned beside a reference is for ifog diagnose"));
   }
   return rest;
 }
@@ -293,6 +295,8 @@ void run(const TuneArguments& options) {
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
   if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");
+  if (const std::string slow = slow_turns_in_words(rest, period, capture.told_time_s(0)); !slow.empty())
+    notes.push_back(slow);
   std::size_t left = 0;
   const auto columns = even(capture, rest, period, options.samples, left);
   const std::vector<std::span<const double>> axes(columns.begin(), columns.end());

@@ -58,15 +58,19 @@ std::string bound_text(double upper) {
 
 std::string coefficient_lines(const NoiseCoefficients& found) {
   std::string lines;
-  std::array<char, 192> line{};
+  std::array<char, 256> line{};
   for (const NamedCoefficient& named : named_coefficients()) {
     const NoiseCoefficient& c = found.*named.member;
     const std::string meaning = padded(named.meaning, 18);
+    std::array<char, 80> from{};
+    if (c.from_s > 0.0)
+      std::snprintf(from.data(), from.size(), "  from %.3g s on; below, a filter holds the curve down",
+                    c.from_s);
     if (c.present)
-      std::snprintf(line.data(), line.size(), "  %s  %s %s %s  (%.4g ± %.2g %s)\n", named.letter,
+      std::snprintf(line.data(), line.size(), "  %s  %s %s %s  (%.4g ± %.2g %s)%s\n", named.letter,
                     meaning.c_str(),
                     padded(value_and_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
-                    padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit);
+                    padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit, from.data());
     else
       std::snprintf(line.data(), line.size(), "  %s  %s not seen; below %s %s\n", named.letter,
                     meaning.c_str(), bound_text(c.upper * named.factor).c_str(), named.unit);
@@ -82,11 +86,9 @@ nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
   auto out = nlohmann::ordered_json::object();
   for (const NamedCoefficient& named : named_coefficients()) {
     const NoiseCoefficient& c = found.*named.member;
-    out[named.letter] = {{"value", c.value},
-                         {"std_error", finite(c.std_error)},
-                         {"upper", finite(c.upper)},
-                         {"unit", named.si_unit},
-                         {"present", c.present}};
+    out[named.letter] = {{"value", c.value},         {"std_error", finite(c.std_error)},
+                         {"upper", finite(c.upper)}, {"unit", named.si_unit},
+                         {"present", c.present},     {"from_s", c.from_s}};
   }
   return out;
 }

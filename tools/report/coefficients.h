@@ -31,7 +31,7 @@ std::string bound_text(double upper);
 // A line each: value and error bar, or the bound of a term that is not seen.
 std::string coefficient_lines(const NoiseCoefficients& found);
 
-// {Q|N|B|K|R: {value, std_error, upper, unit, present}}, SI.
+// {Q|N|B|K|R: {value, std_error, upper, unit, present, from_s}}, SI.
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found);
 
 // {sigma_radps, correlation_s, lower_s, upper_s, K, K_until_s} of a correlated bias; null where none is seen.

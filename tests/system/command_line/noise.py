@@ -112,6 +112,29 @@ class Noise:
             refused(1, command, path, says=[str(path), "turned", "mostly at rest"])
         assert self.json("allan", path, "--moving", "keep")["axes"][0]["samples"] == SECONDS * RATE_HZ
 
+    def check_slow_turns_are_said(self):
+        """Slower than what is surely a turn: all of it is analysed, and told of."""
+        lines = self.capture.read_text().splitlines()
+        start = next(i for i, line in enumerate(lines) if line[:1].isdigit())
+        for i in range(start + 100 * RATE_HZ, start + 148 * RATE_HZ):
+            cells = lines[i].split(",")
+            cells[1] = repr(float(cells[1]) + 4.8e-4)
+            lines[i] = ",".join(cells)
+        path = self.folder / "slow.csv"
+        path.write_text("\n".join(lines) + "\n")
+        for command in ("allan", "tune"):
+            assert "the rate leaps by up to" in ifog(command, path), command
+            assert "the rate leaps" not in ifog(command, self.capture), command
+
+    def check_a_table_is_sent_to_diagnose(self):
+        path = self.folder / "table.csv"
+        dwells = (0.2 * (i % 9 - 4) for i in range(400))
+        path.write_text("time_s,rate_radps,reference_rate_radps\n" +
+                        "".join(f"{16 * i},{1.0005 * rate + 1e-6 * (i * 7919 % 13 - 6)!r},{rate!r}\n" for i, rate in enumerate(dwells)))
+        for command in ("allan", "tune"):
+            refused(1, command, path, says=["mostly at rest", "ifog diagnose"])
+        assert "ifog diagnose" in ifog("allan", path, "--minus-reference")
+
     def check_compare_says_what_moved_and_leaves_it_out_as_allan_does(self):
         """A turn in the middle: which part it was is said, and std and deviation are those of allan's rest."""
         path = self.turned("turned.csv", 100, 148)

@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <vector>
 
+#include "filters/allan/confidence.h"
 #include "tools/simulate/noise.h"
 
 namespace {
@@ -167,6 +169,76 @@ TEST(NoiseCoefficients, ALineIsLeftOutAndTheRestStaysRight) {
   EXPECT_TRUE(named);
   ASSERT_TRUE(f.K.present);
   EXPECT_NEAR(f.K.value, 2e-7, 3.0 * f.K.std_error);
+}
+
+// A term that is there is no more than the measured deviation: at every octave where it is said to hold, its
+// error bar and the curve's 95 % allowed for.
+void expect_within_the_curve(const std::vector<double>& rate, const NoiseCoefficients& f) {
+  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  const ifog::AngleSum sum(rate, all);
+  std::vector<std::size_t> m;
+  for (std::size_t k = 1; 4 * k <= rate.size(); k *= 2) m.push_back(k);
+  const auto points = ifog::deviation(sum, m);
+  const auto intervals = ifog::allan_intervals(sum, ifog::Deviation::kAllan, points, f.variances, 0.998);
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const double tau = static_cast<double>(m[i]) / kRate;
+    for (const auto term :
+         {&NoiseCoefficients::Q, &NoiseCoefficients::N, &NoiseCoefficients::B, &NoiseCoefficients::K}) {
+      if (!(f.*term).present || tau < (f.*term).from_s) continue;
+      NoiseCoefficients alone;
+      (alone.*term).value = std::max(0.0, (f.*term).value - 1.96 * (f.*term).std_error);
+      EXPECT_LE(ifog::modelled_deviation(alone, tau), intervals[i].upper_radps) << "at " << tau << " s";
+    }
+  }
+}
+
+double variance_at_one(const std::vector<double>& rate) {
+  double squares = 0.0;
+  for (std::size_t i = 1; i < rate.size(); ++i) squares += (rate[i] - rate[i - 1]) * (rate[i] - rate[i - 1]);
+  return 0.5 * squares / static_cast<double>(rate.size() - 1);
+}
+
+// Mean of `length` neighbours: a filter of which a little goes through beyond 1/length.
+std::vector<double> averaged(const std::vector<double>& value, std::size_t length) {
+  std::vector<double> out;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    sum += value[i] - (i >= length ? value[i - length] : 0.0);
+    out.push_back(sum / static_cast<double>(length));
+  }
+  return out;
+}
+
+// A mount that sways by an angle without memory, up to 2 Hz: the rate's spectrum grows as quantisation's
+// does, and is cut off where that would go on. On a standing vehicle fifteen times the measured deviation was
+// called quantisation.
+TEST(NoiseCoefficients, AngularMotionIsNotMoreQuantisationThanTheCurveHas) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    ifog::simulate::Draw draw(seed, 8);
+    std::vector<double> angle(1U << 17U);
+    for (double& a : angle) a = 3e-5 * draw.normal();
+    for (int pass = 0; pass < 3; ++pass) angle = averaged(angle, 16);
+    auto rate = ifog::simulate::noise({.N = 1e-6}, kRate, angle.size(), 60 + seed);
+    for (std::size_t i = 1; i < rate.size(); ++i) rate[i] += (angle[i] - angle[i - 1]) * kRate;
+    const NoiseCoefficients f = fit(rate);
+    EXPECT_FALSE(f.Q.present) << f.Q.value;
+    expect_within_the_curve(rate, f);
+    // The deviation at one sample is all that quantisation can be.
+    EXPECT_LT(f.Q.upper, 1.1 * std::sqrt(variance_at_one(rate) / 3.0) / kRate);
+  }
+}
+
+// White noise through a filter of eight samples: N is that of long times, and is said not to hold below.
+TEST(NoiseCoefficients, WhatAFilterHoldsBackIsSaid) {
+  const auto white = ifog::simulate::noise({.N = 1e-6}, kRate, 1U << 17U, 21);
+  const std::vector<double> rate = averaged(white, 8);
+  const NoiseCoefficients f = fit(rate);
+  ASSERT_TRUE(f.N.present);
+  EXPECT_NEAR(f.N.value, 1e-6, 4.0 * f.N.std_error);
+  EXPECT_GT(f.N.from_s, 0.02);
+  EXPECT_LT(f.N.from_s, 0.7);
+  expect_within_the_curve(rate, f);
+  EXPECT_EQ(fit(white).N.from_s, 0.0);
 }
 
 TEST(NoiseCoefficients, RefusesWhatCannotBeFitted) {

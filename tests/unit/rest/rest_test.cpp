@@ -40,6 +40,7 @@ TEST(Rest, NoiseOfAnyKindIsNoMotion) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const Rest rest = rest_of(ifog::simulate::noise(levels, kRate, 60000, seed));
       EXPECT_EQ(rest.resting(), 60000U) << "N " << levels.N << " B " << levels.B << " K " << levels.K;
+      EXPECT_EQ(rest.slow_turns.count, 0U) << "N " << levels.N << " B " << levels.B << " K " << levels.K;
     }
   }
 }
@@ -51,6 +52,32 @@ TEST(Rest, AStepOfTheBiasAndOutliersAreNoMotion) {
   const Rest rest = rest_of(rate);
   EXPECT_EQ(rest.turned, 0U);
   EXPECT_LE(rest.shaken, 200U);
+}
+
+// Below what is surely a turn: 100 °/h for a minute, twice.
+TEST(Rest, SlowTurnsStayInAndAreSaid) {
+  auto rate = ifog::simulate::noise({.N = 1e-6}, kRate, 60000, 5);
+  for (const std::size_t from : {10000U, 30000U})
+    for (std::size_t i = from; i < from + 6000; ++i) rate[i] += 4.85e-4;
+  const Rest rest = rest_of(rate);
+  EXPECT_EQ(rest.resting(), 60000U);
+  EXPECT_EQ(rest.slow_turns.count, 4U);
+  EXPECT_NEAR(static_cast<double>(rest.slow_turns.first) / kRate, 100.0, 11.0);
+  EXPECT_NEAR(rest.slow_turns.largest_radps, 4.85e-4, 2e-5);
+  EXPECT_NE(ifog::slow_turns_in_words(rest, 1.0 / kRate, 0.0).find("leaps by up to 100 °/h, 4 times"),
+            std::string::npos)
+      << ifog::slow_turns_in_words(rest, 1.0 / kRate, 0.0);
+}
+
+// Dwells of a table without a reference, a row in 16 s.
+TEST(Rest, DwellsWithoutAReferenceAreSaid) {
+  std::vector<double> rate = ifog::simulate::noise({.N = 1e-6}, 1.0 / 16.0, 200, 6);
+  const std::vector<std::span<const double>> axes{rate};
+  EXPECT_EQ(ifog::find_rest(axes, 16.0).slow_turns.count, 0U);
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] += 0.1 * static_cast<double>(i % 5);
+  const Rest rest = ifog::find_rest(std::vector<std::span<const double>>{rate}, 16.0);
+  EXPECT_EQ(rest.slow_turns.count, 160U);
+  EXPECT_FALSE(ifog::slow_turns_in_words(rest, 16.0, 0.0).empty());
 }
 
 TEST(Rest, ATurnAndAShakeAreFoundWhereTheyAre) {

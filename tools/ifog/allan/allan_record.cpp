@@ -17,6 +17,7 @@
 #include "filters/rest/rest.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/allan/filter_start.h"
+#include "tools/ifog/allan/rate_signal.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
@@ -34,24 +35,6 @@ const char* words_for(Deviation kind) {
   return kind == Deviation::kModified   ? "the modified deviation"
          : kind == Deviation::kHadamard ? "the Hadamard deviation"
                                         : "the overlapping deviation";
-}
-
-// "rate_x_radps" → signal "rate", axis "x"; of a denoised file "raw_x_radps" and so on.
-bool signal_of(const std::string& column, std::string& signal, std::string& axis) {
-  constexpr std::string_view kUnit = "_radps";
-  for (const char* prefix : {"rate", "raw", "compensated", "denoised"}) {
-    const std::string start = prefix;
-    if (!column.starts_with(start) || !column.ends_with(kUnit)) continue;
-    if (column.size() < start.size() + kUnit.size()) continue;
-    const std::string middle = column.substr(start.size(), column.size() - start.size() - kUnit.size());
-    if (!middle.empty() &&
-        (middle.size() < 2 || middle[0] != '_' || middle.find('_', 1) != std::string::npos))
-      continue;
-    signal = start;
-    axis = middle.empty() ? "" : middle.substr(1);
-    return true;
-  }
-  return false;
 }
 
 std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
@@ -136,9 +119,9 @@ double told_time_s(const LongTable& table, std::size_t row) {
 }
 
 // All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
-// rates.
+// rates. note: what the reader should know of turns that stay in.
 Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Rows& rows,
-             const SampleClock& clock, const AllanOptions& options) {
+             const SampleClock& clock, const AllanOptions& options, std::string& note) {
   std::vector<SeriesView> axes, references;
   std::string signal, axis;
   for (const LongColumn& column : table.columns) {
@@ -152,15 +135,27 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   Rest all;
   all.samples = rows.end - rows.begin;
   all.at_rest = {{0, all.samples}};
-  // Against a reference the sensor may turn.
-  if (options.keep_motion || options.minus_reference || axes.empty()) return all;
+  if (options.keep_motion || axes.empty()) return all;
+  if (options.minus_reference) {
+    // Against a reference the sensor may turn.
+    const std::size_t turned = find_rest(axes, references, clock.period_s).turned;
+    if (turned > 0)
+      note =
+          "turned in " + number(static_cast<double>(turned) * clock.period_s) +
+          " s: beside the reference the scale factor's error is left, which is no noise; ifog diagnose takes "
+          "it out";
+    return all;
+  }
   Rest rest = find_rest(axes, references, clock.period_s);
   try {
     require_rest(rest, clock.period_s, told_time_s(table, rows.begin));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(name + ": " + error.what() +
-                             (references.empty() ? "" : ", or --minus-reference") + ", or --moving keep");
+    throw std::runtime_error(
+        name + ": " + error.what() + (references.empty() ? "" : ", or --minus-reference") +
+        ", or --moving keep" +
+        (references.empty() ? "" : "; a sensor turned beside a reference is for ifog diagnose"));
   }
+  note = slow_turns_in_words(rest, clock.period_s, told_time_s(table, rows.begin));
   return rest;
 }
 
@@ -344,7 +339,8 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     throw std::runtime_error(name + ": " + error.what());
   }
   const Gaps gaps(name, table, rows.begin);
-  const Rest rest = rest_of(name, table, rows, clock, options);
+  std::string slow_turns;
+  const Rest rest = rest_of(name, table, rows, clock, options, slow_turns);
   std::vector<AllanRecord> records;
   std::string signal, axis;
   std::vector<std::string> axes, left_out;
@@ -382,6 +378,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     if (const std::string motion = in_words(rest, clock.period_s, told_time_s(table, rows.begin));
         !motion.empty())
       records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
+    if (!slow_turns.empty()) records.back().notes.push_back(name + ": " + slow_turns);
   }
   if (axes.empty()) refuse_header_of(table, name);
   if (records.empty() && !options.axis.empty() && !has_axis)
