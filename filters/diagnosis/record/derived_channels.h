@@ -23,6 +23,9 @@ struct DerivedRecords {
 // wraps by a whole one; 0 otherwise.
 double angle_period(const std::string& channel, std::span<const double> values);
 
+// Components of one vector, as "magnetic_x_uT" and "magnetic_y_uT": names that differ in their axis alone.
+bool of_one_vector(const std::string& one, const std::string& other);
+
 // Angles go on where they wrapped, in every record; RecordChannel::period says which they are.
 DerivedRecords with_unwrapped_angles(const std::vector<Record>& records);
 

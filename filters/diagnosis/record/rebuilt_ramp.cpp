@@ -53,12 +53,26 @@ double frequency_of(const RampComb& comb, const UnbrokenPart& part) {
   return comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s;
 }
 
+// A single line of a slow sensor is anybody's.
+bool worth_a_word(const RampComb& comb, const UnbrokenPart& part) {
+  return comb.plain > 1 || part.sample_s * kQuickSensor_hz < 1.0;
+}
+
 std::string fixed_in_words(const RampComb& comb, const UnbrokenPart& part) {
   return lines_in_words(comb, frequency_of(comb, part)) +
          " a machine's. A feedback ramp (phase modulator, 2 pi reset) that was not logged would make such, "
          "with " +
          std::to_string(std::lround(comb.cycles_per_rad)) +
          " cycles for each radian turned: the rate changed too little to show whether they move with it. A "
+         "capture at another rate would tell, and so would the feedback ramp, logged";
+}
+
+std::string lost_in_words(const RampComb& comb, const UnbrokenPart& part) {
+  return lines_in_words(comb, frequency_of(comb, part)) +
+         " a machine's. What is there moves as the rate does, as the lines of a feedback ramp (phase "
+         "modulator, 2 pi reset) that was not logged would, with " +
+         std::to_string(std::lround(comb.cycles_per_rad)) +
+         " cycles for each radian turned; its phase could not be followed, so nothing is corrected. A "
          "capture at another rate would tell, and so would the feedback ramp, logged";
 }
 
@@ -216,13 +230,14 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
     if (!combs[r] || combs[r]->over_fixed < kOverFixed) {
       const std::optional<RampComb> fixed = find_fixed_comb(part);
       if (fixed && (!combs[r] || combs[r]->ratio < fixed->ratio)) combs[r] = fixed;
-      const bool told = fixed && (fixed->plain > 1 || part.sample_s * kQuickSensor_hz < 1.0);
-      if (told && out.remark.empty()) out.remark = fixed_in_words(*fixed, part);
+      if (fixed && worth_a_word(*fixed, part) && out.remark.empty())
+        out.remark = fixed_in_words(*fixed, part);
       continue;
     }
     const double p_value = chance_of(*combs[r]);
     if (p_value > significance) continue;
     if (auto fit = fit_of(records, r, part, *combs[r], p_value, kMostWalk)) return {std::move(fit), ""};
+    if (worth_a_word(*combs[r], part) && out.remark.empty()) out.remark = lost_in_words(*combs[r], part);
   }
   RebuiltRamp between = rebuild_between(records, parts, combs, significance);
   return between.fit || !between.remark.empty() ? between : out;

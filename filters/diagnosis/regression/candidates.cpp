@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "filters/diagnosis/record/derived_channels.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -26,6 +27,8 @@ constexpr int kHarmonics = 2;      // of a turn: once, as a field does, and twic
 constexpr double kOfDifference =
     3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
 constexpr double kOfOtherAxis = 2.0;
+// What a field does has a direction: of its components the sum is a law, the product of two none.
+constexpr double kOfComponents = 4.0;
 // Another axis was turned when it moved as much as this share of the sensor's own; what runs with the own
 // rotation this closely is a picture of it.
 constexpr double kTurned = 0.05;
@@ -184,11 +187,12 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
 }
 
 // Two quantities of the surroundings that are no pictures of each other.
-Candidate product_of(std::size_t one, std::size_t other) {
+Candidate product_of(const BlockData& data, std::size_t one, std::size_t other) {
   Candidate candidate;
   candidate.form = Form::kProduct;
   candidate.channel = std::min(one, other);
   candidate.with_channel = std::max(one, other);
+  if (of_one_vector(data.channels[one].name, data.channels[other].name)) candidate.of_channel = kOfComponents;
   return candidate;
 }
 
@@ -219,7 +223,7 @@ void add_through_temperature(const BlockData& data, std::vector<Candidate>& foun
     if (!may_be_factor(data, one) || !warm(one)) continue;
     for (std::size_t other = 0; other < data.channels.size(); ++other)
       if (may_be_factor(data, other) && !warm(other) && !data.channels[other].two_valued)
-        found.push_back(product_of(one, other));
+        found.push_back(product_of(data, one, other));
   }
 }
 
@@ -269,7 +273,7 @@ std::vector<Candidate> library(const BlockData& data) {
     else
       add_channel(data, channel, found);
   }
-  for (const auto& [gate, other] : switched(data)) found.push_back(product_of(gate, other));
+  for (const auto& [gate, other] : switched(data)) found.push_back(product_of(data, gate, other));
   add_through_temperature(data, found);
   if (data.reference >= 0) add_reference(data, found);
   if (data.grid.dwells) return found;
@@ -325,7 +329,7 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
     pairs.push_back({candidate_of(Form::kLinear, channel), candidate_of(Form::kQuadratic, channel)});
   }
   for (const auto& [gate, other] : switched(data))
-    pairs.push_back({candidate_of(Form::kLinear, gate), product_of(gate, other)});
+    pairs.push_back({candidate_of(Form::kLinear, gate), product_of(data, gate, other)});
   add_scales(data, pairs);
   return pairs;
 }
@@ -335,7 +339,7 @@ std::vector<Candidate> products_of(const BlockData& data, std::size_t channel) {
   const bool of_axis = data.channels[channel].of_axis;
   if (!of_axis && !may_be_factor(data, channel)) return found;
   for (std::size_t other = 0; other < data.channels.size(); ++other)
-    if (other != channel && may_be_factor(data, other)) found.push_back(product_of(channel, other));
+    if (other != channel && may_be_factor(data, other)) found.push_back(product_of(data, channel, other));
   return found;
 }
 

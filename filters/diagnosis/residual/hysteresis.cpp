@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <cstdint>
 
 #include "filters/diagnosis/search/effective_tries.h"
 
@@ -67,6 +69,24 @@ Best best_share(const BlockGrid& grid, const Columns& base, const Columns& loops
     }
   }
   return best;
+}
+
+// Between the shares that were tried beside the best one: neighbours differ by a third, and what one explains
+// less than the width itself another form gets the credit for.
+double refined_width(const BlockData& data, const Columns& base, std::size_t channel, const Best& best) {
+  constexpr int kBits = 8;
+  const double range = data.channels[channel].high - data.channels[channel].low;
+  const auto at = std::find(kShares.begin(), kShares.end(), best.share);
+  const double low = at == kShares.begin() ? *at : *(at - 1);
+  const double high = at + 1 == kShares.end() ? *at : *(at + 1);
+  Columns columns(base.rows(), base.cols() + 1);
+  columns.leftCols(base.cols()) = base;
+  const auto value = [&](double share) {
+    columns.rightCols(1) = hysteresis_loop(data, channel, share * range);
+    return -fit_whitened(data.grid, best.shape, columns).log_likelihood;
+  };
+  std::uintmax_t most_evaluations = 12;
+  return range * boost::math::tools::brent_find_minima(value, low, high, kBits, most_evaluations).first;
 }
 
 bool may_have_a_loop(const BlockData& data, std::size_t channel) {
@@ -135,7 +155,7 @@ std::vector<LoopFit> fit_loops(const BlockData& data, const std::vector<Candidat
     if (2.0 * (best.log_likelihood - noise.log_likelihood) < kHopeless) continue;
     fit.channel = c;
     fit.loop.channel = data.channels[c].name;
-    fit.loop.half_width = best.share * range;
+    fit.loop.half_width = refined_width(data, base, c, best);
     Columns columns(base.rows(), base.cols() + 1);
     columns << base, hysteresis_loop(data, c, fit.loop.half_width);
     fit.noise = fit_noise(data.grid, columns, best.shape);
@@ -156,7 +176,9 @@ std::optional<Hysteresis> certain_hysteresis(const BlockData& data, const std::v
   const double each_parameter = std::log(static_cast<double>(data.grid.used()));
   for (const LoopFit& fit : fits) {
     const bool certain = tail(fit.loop.likelihood_ratio, 2) * tries <= kCertain * significance;
-    const bool plainer = fit.saved > 0.0 && fit.loop.likelihood_ratio + each_parameter * fit.saved > 0.0;
+    const bool claimed = std::any_of(fit.instead_of.begin(), fit.instead_of.end(),
+                                     [](const Candidate& each) { return each.form != Form::kLinear; });
+    const bool plainer = claimed && fit.loop.likelihood_ratio + each_parameter * fit.saved > 0.0;
     if (!certain && !plainer) continue;
     if (!found || fit.loop.likelihood_ratio > found->likelihood_ratio) found = fit.loop;
   }

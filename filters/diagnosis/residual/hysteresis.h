@@ -36,9 +36,9 @@ std::vector<LoopFit> fit_loops(const BlockData& data, const std::vector<Candidat
                                const NoiseFit& noise);
 
 // The one that overrules the model. A width and a channel were chosen, so it has to be certain: ten times
-// below `significance` after correction for that. Of a model with more parameters than the loop it need only
-// be the better by the Bayesian information criterion: effects of one channel that cancel each other can
-// imitate anything.
+// below `significance` after correction for that. Where the model claims more of the channel than a linear
+// effect, something bends there, and the loop need only be the better by the Bayesian information criterion:
+// as long as a channel does not turn, its rate or effects that cancel each other imitate it.
 std::optional<Hysteresis> certain_hysteresis(const BlockData& data, const std::vector<LoopFit>& fits,
                                              double significance);
 

@@ -2,7 +2,6 @@
 #include "filters/diagnosis/search/search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "filters/diagnosis/checks/proof.h"
@@ -12,17 +11,15 @@
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
+#include "filters/diagnosis/search/unfold.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
 constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
-constexpr double kSecondLag = 16.0;    // and a second time constant
-constexpr std::array<double, 2> kPowerAverages_s = {0.4, 2.5};  // that are refined
-constexpr std::array<double, 2> of_lag(double lag_s) { return {0.1 * lag_s, 0.5 * lag_s}; }
-constexpr double kLikeness = 6.0;     // loss below which another effect cannot be told from the chosen one
-constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
+constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
+constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
 // What a natural pair has to bring beyond its two effects' complexity: it has one more coefficient than a
 // form about a known point.
@@ -56,7 +53,7 @@ class EffectSearch {
     noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
     revise_pairs();
     drop_what_slow_denies();
-    try_second_time_constants();
+    unfold();
     finish(result);
     return result;
   }
@@ -192,30 +189,14 @@ class EffectSearch {
     }
   }
 
-  // A coil inside a housing follows the thermometer through two time constants, and a bias follows the power
-  // of vibration as fast as it may. One more parameter has to earn what it costs after the choice of one is
-  // made.
-  void try_second_time_constants() {
-    for (std::size_t i = options_.given.size(); i < model_.size(); ++i) {
-      const bool power = model_[i].form == Form::kBandPower;
-      if (model_[i].form != Form::kLagged && !power) continue;
-      const double before = noise_.log_likelihood;
-      for (const double start_s : power ? kPowerAverages_s : of_lag(model_[i].time_constant_s)) {
-        std::vector<Candidate> trial = model_;
-        trial[i].second_time_constant_s = start_s;
-        for (int round = 0; round < 2; ++round) {
-          refine(data_, noise_.shape, trial, i, &Candidate::second_time_constant_s);
-          refine(data_, noise_.shape, trial, i);
-        }
-        const NoiseFit noise = fit_noise(data_.grid, design(data_, trial), noise_.shape);
-        if (2.0 * (noise.log_likelihood - before) < kSecondLag ||
-            noise.log_likelihood <= noise_.log_likelihood) {
-          continue;
-        }
-        model_ = trial;
-        noise_ = noise;
-      }
-    }
+  void unfold() {
+    FittedModel model{model_, noise_};
+    const std::size_t first = options_.given.size();
+    try_factors_apart(data_, first, model);
+    try_second_time_constants(data_, first, model);
+    try_second_layers(data_, first, model);
+    model_ = std::move(model.effects);
+    noise_ = std::move(model.noise);
   }
 
   // Two effects that hide each other: neither passes alone, or a third stood for both.

@@ -89,6 +89,17 @@ TEST(Hysteresis, IsFoundWithItsWidthAndItsSize) {
   EXPECT_NEAR(found->coefficient * found->half_width, 0.4 * 4.2, 0.3);
 }
 
+// Between the widths that are tried, which lie 1.4 apart here.
+TEST(Hysteresis, ItsWidthIsFoundBetweenThoseTried) {
+  for (const double half_width : {3.9, 4.2, 5.5}) {
+    BlockData data = quiet(3);
+    add(data, 3.0 * hysteresis_loop(data, 0, half_width));
+    const auto found = found_in(data, {linear()});
+    ASSERT_TRUE(found) << half_width;
+    EXPECT_NEAR(found->half_width, half_width, 0.15) << half_width;
+  }
+}
+
 // A lag is a loop, too, but of a form that is known, and better described by that.
 TEST(Hysteresis, IsNeitherChanceNorALag) {
   int of_chance = 0;

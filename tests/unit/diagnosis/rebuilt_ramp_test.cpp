@@ -39,7 +39,8 @@ struct Made {
 enum class Comb { kNone, kOfTheAngle, kFixed };
 
 // The sensor's noise is in its ramp as well, as that of a closed loop is: the loop follows what it measures.
-Made made(std::size_t samples, double rate, Comb comb, unsigned seed) {
+// walk: of the phase beside the angle, cycles/sqrt(s).
+Made made(std::size_t samples, double rate, Comb comb, unsigned seed, double walk = 0.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   Made out;
@@ -49,6 +50,7 @@ Made made(std::size_t samples, double rate, Comb comb, unsigned seed) {
     const double turned =
         rate * (1.0 + 2e-3 * std::sin(static_cast<double>(i) * kStep_s / 15.0)) + kNoise * normal(random);
     phase += kCycles * kStep_s * (comb == Comb::kFixed ? rate : turned);
+    if (walk > 0.0) phase += walk * std::sqrt(kStep_s) * normal(random);
     out.time.push_back(kStep_s * static_cast<double>(i));
     out.rate.push_back(turned + (comb == Comb::kNone ? 0.0 : (nonlinearity(phase) - before) / kStep_s));
   }
@@ -97,6 +99,14 @@ TEST(RebuiltRamp, AMachineNearbyIsNone) {
     EXPECT_FALSE(found.fit.has_value());
     EXPECT_NE(found.remark.find("A capture at another rate would tell"), std::string::npos) << found.remark;
   }
+}
+
+// Its lines move with the rate, its phase is not the angle's: said, and left alone.
+TEST(RebuiltRamp, OneThatCannotBeFollowedIsSaid) {
+  const RebuiltRamp found = rebuild_ramp({made(40000, 5.4e-5, Comb::kOfTheAngle, 1, 0.01).record()}, 0.01);
+  EXPECT_FALSE(found.fit);
+  EXPECT_NE(found.remark.find("feedback ramp"), std::string::npos) << found.remark;
+  EXPECT_NE(found.remark.find("nothing is corrected"), std::string::npos) << found.remark;
 }
 
 TEST(RebuiltRamp, NoiseIsNone) {
