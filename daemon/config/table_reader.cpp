@@ -13,7 +13,7 @@
 namespace ifog {
 namespace {
 
-std::string shortest(double value) {
+std::string in_digits(double value) {
   std::ostringstream out;
   out << value;
   return out.str();
@@ -21,13 +21,13 @@ std::string shortest(double value) {
 
 std::string describe(Range range) {
   if (range.without_least)
-    return "a number > " + shortest(range.least) +
-           (std::isinf(range.most) ? "" : " and <= " + shortest(range.most));
+    return "a number > " + in_digits(range.least) +
+           (std::isinf(range.most) ? "" : " and <= " + in_digits(range.most));
   if (std::isinf(range.most)) {
     if (std::isinf(range.least)) return "a number";
-    return "a number >= " + shortest(range.least);
+    return "a number >= " + in_digits(range.least);
   }
-  return "a number " + shortest(range.least) + " ... " + shortest(range.most);
+  return "a number " + in_digits(range.least) + " ... " + in_digits(range.most);
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 // silence of more than kLongSilence_s. Where that time is one in which frames may have been held up, those
 // that follow are waited for: what was held up comes with less time between them than they took, and what was
 // lost does not. What else comes late and continues the count is only late; where it has not drained for
-// kStands_s, the labels follow it. So exactly whole rounds that are lost within kLongSilence_s cannot be told
-// from a late delivery or a pause and are taken for one; behind a longer silence only those that fit it as
-// closely as a pause would by chance alone (kNoChance).
+// Lateness::kStands_s, the labels follow it. So exactly whole rounds that are lost within kLongSilence_s
+// cannot be told from a late delivery or a pause and are taken for one; behind a longer silence only those
+// that fit it as closely as a pause would by chance alone (kNoChance).
 #pragma once
 
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include <optional>
 
 #include "drivers/ifog/arrivals.h"
+#include "drivers/ifog/lateness.h"
 #include "drivers/ifog/measured_period.h"
 #include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
@@ -97,41 +98,34 @@ class DeviceCount {
     recent_.add(place_, 0, frame.digest);
     if (step.gap || step.clock_moved)
       period_.broken();
-    else if (elapsed >= 0.0 && late_s_ == 0.0 && step.late_s == 0.0)
+    else if (elapsed >= 0.0 && late_.now_s() == 0.0 && step.late_s == 0.0)
       period_.came(static_cast<double>(samples), elapsed);
+    const auto counted = std::max<std::uint64_t>(difference(frame.sequence), 1);
     if (step.by_clock) took_by_clock_s_ = step.dt_s / static_cast<double>(samples);
-    if (step.by_clock)
-      each_by_clock_s_ =
-          step.dt_s / static_cast<double>(std::max<std::uint64_t>(difference(frame.sequence), 1));
+    if (step.by_clock) each_by_clock_s_ = step.dt_s / static_cast<double>(counted);
     if (step.by_clock && !step.gap) period_.ticked(static_cast<double>(samples), step.dt_s);
     if (elapsed >= 0.0) prompt_.came(elapsed, step.dt_s);
     refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
     follow_doubt(frame, step);
-    follow_lateness(frame, elapsed, step);
+    late_.follow(step.late_s, elapsed, held_again(frame));
     last_ = frame;
   }
-  // What the clock of the frame just taken is held for.
-  void keep_time(std::int64_t time_ns) noexcept { last_.time_ns = time_ns; }
+  void keep_time(std::int64_t time_ns) noexcept { last_.time_ns = time_ns; }  // the frame's just taken
 
  private:
   static constexpr std::uint64_t kMostBack = RecentFrames::kKept;
   static constexpr std::uint64_t kBackUntimed = 8;  // so far frames change places, where no time says more
   static constexpr double kLate_s = 1.0;
   static constexpr double kLongSilence_s = 2.0;
-  static constexpr double kStands_s = 1.5;    // it has come to stand when for so long it has not become less
-  static constexpr double kShrinks_s = 0.03;  // by more than this
-  static constexpr double kLongest_s = 60.0;  // and what does not come to stand is left at that
-  static constexpr double kDrains = 0.02;     // of the time: what was held up drains by more
-  static constexpr double kPaces = 200.0;     // so many times what times scatter by tell that
+  static constexpr double kDrains = 0.02;  // of the time: what was held up drains by more
+  static constexpr double kPaces = 200.0;  // so many times what times scatter by tell that
   static constexpr int kPaceFrames = 8;
   static constexpr double kNoChance = 5.0;  // periods: half of the rounds that are lost to one of the pauses
   static constexpr double kAgain_s = 0.25;  // a silence of more is another one
   static constexpr double kNoPause_s = 0.25;  // no device begins anew within it
   static constexpr double kRateDoubt = 0.05;  // of the rate that the configuration says
   static constexpr double kScatters = 4.0;    // times what times scatter by is not by chance
-  // Clock and counter of one device agree within this.
-  static constexpr double kClockSamples = 2.0;
-  static constexpr double kClockDoubt = 0.01;
+  static constexpr double kClockSamples = 2.0, kClockDoubt = 0.01;  // clock and counter agree within this
   static constexpr double kLonger = 8.0;  // than a sample took: a rate that was stated wrong, a late one
 
   struct Timed : Frame {
@@ -153,7 +147,8 @@ class DeviceCount {
     place_ = kFirstPlace;
     recent_.forget();
     recent_.add(place_, 0, frame.digest);
-    late_s_ = took_by_clock_s_ = each_by_clock_s_ = 0.0;
+    late_.forget();
+    took_by_clock_s_ = each_by_clock_s_ = 0.0;
     period_.forget();
     prompt_.forget();
     refused_ = false;
@@ -171,7 +166,7 @@ class DeviceCount {
     if (frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
       return false;  // nothing is late behind it
     const bool timed = frame.elapsed_s >= 0.0;
-    const double elapsed_s = frame.elapsed_s + late_s_;
+    const double elapsed_s = frame.elapsed_s + late_.now_s();
     const double forward_s = static_cast<double>(difference) * nominal_s_;
     const double passed_s = clocked(frame) ? this->passed_s(frame) : 0.0;
     if (passed_s > 0.5 * forward_s && (!timed || !ifog::restarted(passed_s, elapsed_s))) return false;
@@ -201,7 +196,7 @@ class DeviceCount {
     if (!clocked(frame)) return false;
     const double passed_s = this->passed_s(frame);
     if (passed_s == 0.0) return false;  // the same frame again, or a clock of coarse ticks
-    const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_s_;
+    const double elapsed_s = frame.elapsed_s < 0.0 ? -1.0 : frame.elapsed_s + late_.now_s();
     const double counted_s = static_cast<double>(difference) * nominal_s_;
     const bool possible =
         passed_s > 0.0 && !ifog::restarted(passed_s, elapsed_s < 0.0 ? counted_s : elapsed_s);
@@ -272,48 +267,28 @@ class DeviceCount {
   [[nodiscard]] bool held_again(const Frame& frame) const noexcept {
     return frame.quiet_s > kAgain_s + static_cast<double>(difference(frame.sequence)) * nominal_s_;
   }
-  // Whether lateness has come to stand: for some time of arrival it has not become less. What drains from a
-  // line that is but little faster than the sensor still becomes less.
-  [[nodiscard]] bool stands(const Timed& frame, double late_s) const noexcept {
-    return late_s_ > 0.0 && !held_again(frame) && late_s >= window_late_s_ - kShrinks_s &&
-           window_s_ + frame.elapsed_s >= kStands_s;
-  }
-  // Nothing is to be told of it any more: it has drained, or will not stand.
-  [[nodiscard]] bool over(const Timed& frame, double late_s) const noexcept {
-    return late_s < kPrompt_s || episode_s_ + frame.elapsed_s >= kLongest_s;
-  }
   // How far behind its clock a frame is that is held up.
   void lateness(const Timed& frame, double late_s, Step& step) const noexcept {
-    if (stands(frame, late_s))
+    if (late_.stands(late_s, frame.elapsed_s, held_again(frame)))
       step.clock_moved = late_s > kLate_s;
-    else if (late_s_ > 0.0 ? !over(frame, late_s) : late_s > kLate_s)
+    else if (late_.now_s() > 0.0 ? !late_.over(late_s, frame.elapsed_s) : late_s > kLate_s)
       step.late_s = late_s;
   }
-  // Before the frame is the last one.
-  void follow_lateness(const Frame& frame, double elapsed_s, const Step& step) noexcept {
-    if (late_s_ == 0.0 || held_again(frame) || step.late_s < window_late_s_ - kShrinks_s) {
-      window_late_s_ = step.late_s;
-      window_s_ = 0.0;
-    } else {
-      window_s_ += std::max(0.0, elapsed_s);
-    }
-    episode_s_ = late_s_ == 0.0 ? 0.0 : episode_s_ + std::max(0.0, elapsed_s);
-    late_s_ = step.late_s;
-  }
-
   // Rounds may have been lost where this one is.
   [[nodiscard]] static bool doubtful(const Frame& frame, std::uint64_t difference) noexcept {
     return difference != 1 || frame.quiet_s > kLongSilence_s;
   }
   // So long frames have to come at the pace at which they were taken.
-  [[nodiscard]] double paced_s() const noexcept { return std::clamp(kPaces * scatter_s_, 0.1, kStands_s); }
+  [[nodiscard]] double paced_s() const noexcept {
+    return std::clamp(kPaces * scatter_s_, 0.1, Lateness::kStands_s);
+  }
   [[nodiscard]] bool at_pace(const Timed& frame, double late_s) const noexcept {
     return doubt_.frames >= kPaceFrames && std::abs(late_s - doubt_.late_s) <= kDrains * paced_s() &&
            doubt_.paced_s + frame.elapsed_s >= paced_s();
   }
   void follow_doubt(const Frame& frame, const Step& step) noexcept {
     const std::uint64_t difference = this->difference(frame.sequence);
-    if (step.late_s == 0.0 || (late_s_ == 0.0 && !doubtful(frame, difference))) {
+    if (step.late_s == 0.0 || (late_.now_s() == 0.0 && !doubtful(frame, difference))) {
       doubt_ = {};
       return;
     }
@@ -346,15 +321,15 @@ class DeviceCount {
   void by_arrival(const Timed& frame, std::uint64_t difference, Step& step) const noexcept {
     const double period = period_.by_arrival_s();
     const bool known = frame.elapsed_s >= 0.0;
-    const double elapsed_s = frame.elapsed_s + late_s_;
+    const double elapsed_s = frame.elapsed_s + late_.now_s();
     step.samples = difference;
-    step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_s_;
+    step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_.now_s();
     // So do the times of arrival say it at the end of a backlog, whose own were not known.
     const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
     // The same count again is a round on, or nothing.
     const bool at_once = frame.reopened || on_bus_ || after_backlog || difference == 0 ||
-                         (late_s_ == 0.0 && doubtful(frame, difference) && step.late_s <= kLate_s);
-    const bool came_to_stand = stands(frame, step.late_s);
+                         (late_.now_s() == 0.0 && doubtful(frame, difference) && step.late_s <= kLate_s);
+    const bool came_to_stand = late_.stands(step.late_s, frame.elapsed_s, held_again(frame));
     const bool told = doubt_.rounds && (came_to_stand || at_pace(frame, step.late_s));
     if (known && elapsed_s > 0.0 && (at_once || told)) {
       // While a frame came again and again no round was lost: the device stood still.
@@ -371,13 +346,13 @@ class DeviceCount {
       // but the labels follow.
       step.clock_moved = step.late_s > kLate_s || rounds_in(step.late_s, elapsed_s) >= 1.0;
       step.late_s = 0.0;
-    } else if (late_s_ > 0.0 ? over(frame, step.late_s)
-                             : step.late_s < std::max(kLate_s, 3.0 * period) &&
-                                   rounds_in(step.late_s, elapsed_s) < 1.0) {
+    } else if (late_.now_s() > 0.0 ? late_.over(step.late_s, frame.elapsed_s)
+                                   : step.late_s < std::max(kLate_s, 3.0 * period) &&
+                                         rounds_in(step.late_s, elapsed_s) < 1.0) {
       step.late_s = 0.0;
     }
     if (step.samples == 0) {
-      step.late_s = late_s_;
+      step.late_s = late_.now_s();
       step.gap = true;
       step.dt_s = nominal_s_;
       return;
@@ -406,16 +381,14 @@ class DeviceCount {
   Arrivals arrivals_;
   // Of frames that are late where rounds may have been lost.
   struct Doubt {
-    bool rounds = false, gap = false;    // the latter: a gap has been told
-    bool counts = false;                 // by the count, too, some are missing
+    // gap: one has been told; counts: by the count, too, some are missing
+    bool rounds = false, gap = false, counts = false;
     double quiet_s = 0.0;                // in all, beside what was counted
     double late_s = 0.0, paced_s = 0.0;  // since it last became less or more; so long
     int frames = 0;
   };
   Doubt doubt_;
-  double window_late_s_ = 0.0, window_s_ = 0.0;  // since lateness last became less
-  double episode_s_ = 0.0;                       // since it began
-  double late_s_ = 0.0;                          // the last frame, undecided
+  Lateness late_;  // of the last frame, undecided
   MeasuredPeriod period_;
   double scatter_s_ = 1e-3;
   PromptArrivals prompt_;

@@ -270,6 +270,7 @@ class Run {
     report_effects();
     count_rates_from_the_bias(errors_, result_.effects);
     run_written_model(records_, result_, data_.grid.sample_s, errors_);
+    leave_as_written(errors_);
     if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
   }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "filters/diagnosis/regression/projection.h"
 
@@ -57,8 +59,11 @@ struct Place {
 // By block, each from the coefficients of the others' folds; a step or a line helps to fit them and is then
 // left where it is, as online. Each fold's fit has a constant of its own: without it a channel far from zero
 // would step from fold to fold.
-Eigen::VectorXd held_out_effects(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
-                                 const std::vector<Candidate>& effects) {
+// second: by the coefficients of all folds.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> held_out_effects(const BlockGrid& grid, const NoiseShape& shape,
+                                                             const Columns& columns,
+                                                             const std::vector<Candidate>& effects,
+                                                             const Eigen::VectorXd& of_all) {
   const std::vector<Eigen::VectorXd> coefficients = coefficients_without_each_fold(grid, shape, columns);
   const std::vector<int> fold = fold_of_block(grid);
   Columns centred = columns.rightCols(columns.cols() - 1 - grid.constants());
@@ -73,7 +78,7 @@ Eigen::VectorXd held_out_effects(const BlockGrid& grid, const NoiseShape& shape,
     const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
     sum[b] = centred.row(b).dot(coefficients[held_out]);
   }
-  return sum;
+  return {sum, centred * of_all};
 }
 
 }  // namespace
@@ -103,25 +108,29 @@ void subtract_effects(const BlockData& data, const std::vector<Candidate>& effec
   const Eigen::Index p = columns.cols() - 1 - grid.constants();
   Eigen::VectorXd all = Eigen::VectorXd::Zero(columns.rows());
   Eigen::VectorXd held_out = all;
+  Eigen::VectorXd held_in = all;
   if (p > 0) {
     all = columns.rightCols(p) * coefficients.tail(p);
-    held_out = held_out_effects(grid, shape, columns, effects);
+    std::tie(held_out, held_in) = held_out_effects(grid, shape, columns, effects, coefficients.tail(p));
   }
   for (std::size_t r = 0; r < errors.size(); ++r) {
     EvenError& error = errors[r];
     if (p == 0) {
       error.after = error.rest;
       error.held_out = error.rest_held_out;
+      error.held_in = error.rest;
       continue;
     }
     Samples& after = error.after.anew(error.rest.size());
     Samples& without = error.held_out.anew(error.rest_held_out.size());
+    Samples& within = error.held_in.anew(error.rest.size());
     for (std::size_t i = 0; i < after.size(); ++i) {
       const double at =
           static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
       const Place place(grid.records[r], at);
       after[i] = error.rest[i] - place.of(all);
       without[i] = error.rest_held_out[i] - place.of(held_out);
+      within[i] = error.rest[i] - place.of(held_in);
     }
   }
 }

@@ -20,6 +20,7 @@ struct EvenError {
   SharedSamples after;          // less the effects, too
   // Less what is corrected online, by coefficients that were fitted without the sample's own part.
   SharedSamples held_out;
+  SharedSamples held_in;  // less the same by coefficients of all samples
   SharedSamples written;  // what the daemon's own correction leaves of `before`, by the model as written
   SharedSamples logged;   // the same with channels as they were logged, faults and all
 };

@@ -51,6 +51,29 @@ void run_written_model(const std::vector<Record>& records, const Diagnosis& diag
                             : on_even_grid(records[r], sample_s, compensated_error(records[r], model));
 }
 
+void leave_as_written(std::vector<EvenError>& errors) {
+  for (EvenError& error : errors) {
+    if (!error.rest.is(error.before) || error.written.is(error.before)) continue;
+    if (error.held_in.size() != error.written.size()) continue;
+    double sum = 0.0;
+    double n = 0.0;
+    for (std::size_t i = 0; i < error.written.size(); ++i) {
+      const double between = error.written[i] - error.held_in[i];
+      if (!std::isfinite(between)) continue;
+      sum += between;
+      n += 1.0;
+    }
+    const double mean = n > 0.0 ? sum / n : 0.0;
+    Samples& held_out = error.held_out.own();
+    Samples& after = error.after.own();
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const double between = error.written[i] - error.held_in[i] - mean;
+      held_out[i] += between;
+      after[i] += between;
+    }
+  }
+}
+
 void run_as_logged(const std::vector<Record>& records, const std::vector<Record>& logged,
                    const Diagnosis& diagnosis, double sample_s, std::vector<EvenError>& errors) {
   Model model;

@@ -21,6 +21,11 @@ void count_rates_from_the_bias(const std::vector<EvenError>& errors, std::vector
 // ranges, run sample by sample over the record. One error a record. Throws as Compensator does.
 void run_written_model(const std::vector<Record>& records, const Diagnosis& diagnosis, double sample_s,
                        std::vector<EvenError>& errors);
+// Effects are fitted on means over blocks, and what lies between the blocks' middles was taken for straight:
+// of what steps from one sample to the next that is not so. `after` and `held_out` become what the daemon's
+// own correction leaves of each sample, but for what it does not correct, and for what other coefficients
+// make of it. Of records that have lost ramps, lines or a dead zone before, both stay.
+void leave_as_written(std::vector<EvenError>& errors);
 
 // `logged` of each error: the same with the channels of `logged`, as many records of as many rows, where they
 // have one of that name: what a logger's faults, which the fit was spared, do to the correction.

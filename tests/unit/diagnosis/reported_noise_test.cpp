@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "filters/diagnosis/diagnose.h"
 #include "tests/unit/diagnosis/gaussian_deviate.h"
@@ -39,6 +40,29 @@ TEST(ReportedNoise, ABiasThatComesBackIsThereWithItsTime) {
 TEST(ReportedNoise, WhereNothingComesBackThereIsNone) {
   const Diagnosis found = diagnosed(0.0);
   EXPECT_FALSE(found.markov.has_value() && found.markov->present);
+}
+
+// A supply that is switched, twenty samples a second: what is left is the noise, to the sample.
+TEST(ReportedNoise, OfAChannelThatStepsIsTheSensorsOwn) {
+  std::vector<double> time, rate, supply;
+  for (std::uint32_t i = 0; i < 36000; ++i) {
+    const double volts = 12.0 + 0.4 * gaussian_deviate(i / 740, 3, 17, 8);
+    time.push_back(0.05 * i);
+    rate.push_back(1e-6 * gaussian_deviate(i, 4, 17, 8) + 1e-4 * (volts - 12.0));
+    supply.push_back(volts + 1e-4 * gaussian_deviate(i, 5, 17, 8));
+  }
+  Record record;
+  record.time_s = time;
+  record.rate_radps = rate;
+  record.channels = {{"supply_V", supply}};
+  const Diagnosis found = diagnose({record}, {});
+  ASSERT_EQ(found.effects.size(), 1U);
+  EXPECT_EQ(found.effects[0].effect.channel, "supply_V");
+  EXPECT_NEAR(found.after.at("residual_rms_radps"), 1e-6, 0.02e-6);
+  EXPECT_NEAR(found.after.at("rms_1s_radps"), 1e-6 / std::sqrt(20.0), 0.05e-6 / std::sqrt(20.0));
+  EXPECT_FALSE(found.noise.Q.has_value());
+  ASSERT_TRUE(found.noise.N.has_value());
+  EXPECT_NEAR(*found.noise.N, 1e-6 * std::sqrt(0.05), 0.05e-6 * std::sqrt(0.05));
 }
 
 }  // namespace
