@@ -88,7 +88,7 @@ nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
     const NoiseCoefficient& c = found.*named.member;
     out[named.letter] = {{"value", c.value},         {"std_error", finite(c.std_error)},
                          {"upper", finite(c.upper)}, {"unit", named.si_unit},
-                         {"present", c.present},     {"from_s", c.from_s}};
+                         {"present", c.present},     {"from_tau_s", c.from_s}};
   }
   return out;
 }

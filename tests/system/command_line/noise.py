@@ -130,7 +130,7 @@ class Noise:
         path = self.folder / "table.csv"
         dwells = (0.2 * (i % 9 - 4) for i in range(400))
         path.write_text("time_s,rate_radps,reference_rate_radps\n" +
-                        "".join(f"{16 * i},{1.0005 * rate + 1e-6 * (i * 7919 % 13 - 6)!r},{rate!r}\n" for i, rate in enumerate(dwells)))
+                        "".join(f"{16 * i + 0.5},{1.0005 * rate + 1e-6 * (i * 7919 % 13 - 6)!r},{rate!r}\n" for i, rate in enumerate(dwells)))
         for command in ("allan", "tune"):
             refused(1, command, path, says=["mostly at rest", "ifog diagnose"])
         assert "ifog diagnose" in ifog("allan", path, "--minus-reference")
