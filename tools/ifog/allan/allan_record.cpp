@@ -1,108 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/allan/allan_record.h"
-#include "filters/units/field_units.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
+#include <exception>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
-#include "filters/allan/row_times.h"
-#include "filters/rest/glitches.h"
 #include "filters/rest/rest.h"
+#include "filters/threads/share_out.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/allan/filter_start.h"
+#include "tools/ifog/allan/logged_rate.h"
 #include "tools/ifog/allan/rate_signal.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
 namespace {
-
-constexpr double kTrustedDegrees = 8.0;  // relative error of the deviation 1/√(2·8), a quarter
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
-
-const char* words_for(Deviation kind) {
-  return kind == Deviation::kModified   ? "the modified deviation"
-         : kind == Deviation::kHadamard ? "the Hadamard deviation"
-                                        : "the overlapping deviation";
-}
-
-std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
-                                         std::size_t samples) {
-  std::vector<std::size_t> m;
-  for (const double tau : options.tau_s) {
-    const double exact = tau / period;
-    const std::size_t most = longest_average(options.kind, samples);
-    if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most)))
-      throw std::runtime_error(name + ": --tau " + number(tau) + " s is outside what " +
-                               words_for(options.kind) + " can tell of the longest stretch, expected " +
-                               number(period) + " to " + number(static_cast<double>(most) * period) + " s");
-    m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
-  }
-  return m;
-}
-
-double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation kind, double period) {
-  std::vector<std::size_t> samples;
-  for (const AngleSum::Part& part : sum.parts()) samples.push_back(part.angles - 1);
-  double trusted = 0.0;
-  for (std::size_t m = 1; m <= longest_average(kind, sum.longest()); m *= 2)
-    if (EstimateVariance(kind, m, samples).degrees(noise) >= kTrustedDegrees)
-      trusted = static_cast<double>(m) * period;
-  return trusted;
-}
-
-std::string in_words(const std::vector<FrequencyRange>& ranges) {
-  constexpr std::size_t kShown = 6;
-  std::string words;
-  for (std::size_t i = 0; i < std::min(kShown, ranges.size()); ++i)
-    words += (i > 0 ? ", " : "") + number(ranges[i].low) + "–" + number(ranges[i].high);
-  if (ranges.size() > kShown) words += " and " + std::to_string(ranges.size() - kShown) + " more";
-  return words + " Hz";
-}
-
-void note_what_was_left_out(const std::string& column, AllanRecord& record) {
-  const std::string start = record.capture + ": " + column + ": ";
-  if (!record.fit->lines_hz.empty())
-    record.notes.push_back(start + "lines, left out of the noise terms: " + in_words(record.fit->lines_hz));
-  if (!record.fit->left_out_hz.empty())
-    record.notes.push_back(start +
-                           "left out of the noise terms, because no sum of them comes near (resonance, "
-                           "vibration, a filter): " +
-                           in_words(record.fit->left_out_hz));
-  const std::string markov = markov_in_words(*record.fit);
-  if (!markov.empty()) record.notes.push_back(start + markov);
-  if (record.fit->misfit > 0.0 && markov.empty())
-    record.notes.push_back(start + "the terms miss the curve by " + number(100.0 * record.fit->misfit) +
-                           " % beyond chance; the error bars allow for it");
-}
-
-// Where a row stands in its file: "file:line", or the sample's number where the file is no text.
-class Gaps {
- public:
-  Gaps(std::string file, const RowNotes& lines, std::size_t first_row)
-      : file_(std::move(file)), lines_(lines), first_row_(first_row) {}
-  [[nodiscard]] std::string place(std::size_t row) const {
-    const std::size_t line = lines_.line_of_row(row + first_row_);
-    return line > 0 ? file_ + ":" + std::to_string(line)
-                    : file_ + ": sample " + std::to_string(row + first_row_);
-  }
-
- private:
-  std::string file_;
-  const RowNotes& lines_;
-  std::size_t first_row_;
-};
 
 // No value at all in a column's rows.
 bool is_dead(const SeriesView& values) {
@@ -141,7 +58,7 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
     const std::size_t turned = find_rest(axes, references, clock.period_s).turned;
     if (turned > 0)
       note =
-          "turned in " + number(static_cast<double>(turned) * clock.period_s) +
+          "turned in " + six_digits(static_cast<double>(turned) * clock.period_s) +
           " s: beside the reference the scale factor's error is left, which is no noise; ifog diagnose takes "
           "it out";
     return all;
@@ -157,124 +74,6 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   }
   note = slow_turns_in_words(rest, clock.period_s, told_time_s(table, rows.begin));
   return rest;
-}
-
-// A rate as it was logged: its name in the file, when its rows were taken, and where the sensor rested.
-// time_s: since the origin.
-struct LoggedRate {
-  const std::string& capture;
-  std::string column;
-  const TimeOrigin& origin;
-  const SeriesView& time_s;
-  const SeriesView& rate;
-  const SampleClock& clock;
-  const Gaps& gaps;
-
-  [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s.at(row)); }
-};
-
-// What is said of holes and of uneven stamps. Throws std::runtime_error where holes are to be refused.
-void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
-  const SampleClock& clock = logged.clock;
-  const Gaps& gaps = logged.gaps;
-  const auto note = [&](std::size_t row, const std::string& what) {
-    if (refuse) throw std::runtime_error(gaps.place(row) + ": " + what + ", expected none");
-    record.notes.push_back(gaps.place(row) + ": " + what);
-  };
-  std::size_t nans = 0, first_nan = 0;
-  for_each_piece(logged.rate, 0, logged.rate.size(), [&](std::span<const double> values, std::size_t first) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (std::isnan(values[i]) && nans++ == 0) first_nan = first + i;
-  });
-  record.missing = nans + clock.missing;
-  if (clock.gaps > 0)
-    note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
-                              " in the time column (" + std::to_string(clock.missing) +
-                              " samples missing), the first after " +
-                              told_time(logged.told_time_s(clock.first_gap)) + " s");
-  if (nans > 0)
-    note(first_nan, missing_in_words(logged.column, nans, logged.rate.size(), logged.told_time_s(first_nan)));
-  if (clock.worst_jitter_s > 0.1 * clock.period_s)
-    record.notes.push_back(
-        logged.capture + ": time is uneven by up to " + number(clock.worst_jitter_s * 1e3) +
-        " ms; taken as jitter of the stamps of an even clock of " + number(record.sample_rate_hz) + " Hz");
-}
-
-// The deviations with their intervals, and the noise that they show.
-void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& options, double period,
-             AllanRecord& record) {
-  const std::string& name = logged.capture;
-  // A quarter of the longest stretch: beyond, a handful of differences decide.
-  const std::vector<std::size_t> m =
-      options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
-                            : asked_multiples(name, options, period, record.longest);
-  try {
-    record.fit = noise_coefficients(sum, period);
-  } catch (const std::invalid_argument& error) {
-    record.notes.push_back(name + ": " + logged.column + ": no coefficients: " + error.what());
-  }
-  const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
-  record.points = deviation(sum, m, options.kind);
-  record.intervals = allan_intervals(sum, options.kind, record.points, noise, options.confidence);
-  // What a bias that comes back is at each τ.
-  if (record.fit && record.fit->markov && record.fit->markov->present)
-    for (std::size_t i = 0; i < m.size(); ++i)
-      record.intervals[i] =
-          allan_intervals(sum, options.kind, std::span(record.points).subspan(i, 1),
-                          equivalent_terms(record.fit->markov->fit, static_cast<double>(m[i])),
-                          options.confidence)
-              .front();
-  if (options.long_tau) record.longer = theo1(sum, noise, options.confidence, options.per_decade);
-  for (LongPoint& point : record.longer) point.tau *= period;
-  for (const std::size_t k : m) record.tau_s.push_back(static_cast<double>(k) / record.sample_rate_hz);
-  for (std::size_t i = 0; i < options.tau_s.size(); ++i)
-    if (std::abs(record.tau_s[i] / options.tau_s[i] - 1.0) > 1e-6)
-      record.notes.push_back(name + ": --tau " + number(options.tau_s[i]) +
-                             " s is no multiple of the sample time, taken at " + number(record.tau_s[i]) +
-                             " s");
-  record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
-}
-
-AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
-                    const Rest& rest, const AllanOptions& options) {
-  const std::string &name = logged.capture, &column = logged.column;
-  AllanRecord record;
-  record.capture = name;
-  record.axis = axis;
-  record.signal = signal;
-  record.sample_rate_hz = rounded_rate(logged.clock.period_s);
-  record.worst_jitter_s = logged.clock.worst_jitter_s;
-  record.gaps = logged.clock.gaps;
-  const double period = 1.0 / record.sample_rate_hz;
-  note_holes(logged, options.refuse_gaps, record);
-
-  const std::vector<Stretch> parts =
-      common(stretches(logged.time_s, logged.rate, logged.clock), rest.at_rest);
-  if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const AngleSum sum(logged.rate, parts);
-  record.samples = sum.samples();
-  record.longest = sum.longest();
-  record.mean_radps = sum.mean_radps();
-  if (record.longest < 2)
-    throw std::runtime_error(name + ": " + column +
-                             " has no two samples in a row, expected a record without so many gaps");
-  if (parts.size() > 1)
-    record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(parts.size()) +
-                           " stretches; averages never reach across a hole, the longest stretch is " +
-                           number(static_cast<double>(record.longest) * period) + " s");
-
-  const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
-  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
-  if (const std::string leaps =
-          signal == "denoised" ? "" : in_words(find_glitches(logged.rate, parts), told_time_s);
-      !leaps.empty())
-    record.notes.push_back(name + ": " + column + ": " + leaps);
-  measure(logged, sum, options, period, record);
-  record.noise_changes = noise_changes(logged.rate, parts, period, told_time_s);
-  if (const std::string change = in_words(record.noise_changes); !change.empty())
-    record.notes.push_back(name + ": " + column + ": " + change);
-  if (record.fit) note_what_was_left_out(column, record);
-  return record;
 }
 
 [[noreturn]] void refuse_header_of(const LongTable& table, const std::string& name) {
@@ -315,6 +114,79 @@ std::size_t start_of_filter(const LongTable& table, const LongColumn& column, co
   return 0;
 }
 
+// A column that is analysed.
+struct AnalysedRate {
+  const LongColumn& column;
+  std::string signal, axis;
+};
+
+// What of the table is analysed; throws where nothing is left.
+std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& table,
+                                   const TimePart::Rows& rows, const std::string& wanted) {
+  std::vector<AnalysedRate> rates;
+  std::string signal, axis;
+  std::vector<std::string> axes, left_out;
+  for (const LongColumn& column : table.columns) {
+    if (!signal_of(column.name, signal, axis)) continue;
+    if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
+    if (!wanted.empty() && axis != wanted) continue;
+    if (is_dead(SeriesView(column.values).part(rows.begin, rows.end)))
+      left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
+    else
+      rates.push_back({column, signal, axis});
+  }
+  if (axes.empty()) refuse_header_of(table, name);
+  if (rates.empty() && left_out.empty())
+    throw std::runtime_error(name + ": --axis is " + in_quotes(wanted) + ", expected " + expected_axes(axes));
+  if (rates.empty()) refuse_without_rates(name, rows.end - rows.begin);
+  for (const std::string& dead : left_out) tell_left_out(name, dead, rows.end - rows.begin);
+  return rates;
+}
+
+// A capture's part that is analysed, and what holds for all of its rates.
+struct AnalysedPart {
+  const std::string& name;
+  const LongTable& table;
+  const TimePart::Rows& rows;
+  const SeriesView& time_s;
+  const SampleClock& clock;
+  const Rest& rest;
+  const std::string& slow_turns;
+};
+
+AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const AllanOptions& options) {
+  const TimePart::Rows& rows = of.rows;
+  const auto& [column, signal, axis] = wanted;
+  SeriesView rate = column.values;
+  std::string shown = signal;
+  LongSeries error;
+  if (options.minus_reference && signal == "rate") {
+    error = less_reference(of.name, of.table, rate, axis);
+    rate = error;
+    shown = "error";
+  }
+  // A part that ends before the filter has started has nothing else to show.
+  const std::size_t started = start_of_filter(of.table, column, signal, axis);
+  const bool later = started > rows.begin && started < rows.end;
+  const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
+  Rest analysed = of.rest;
+  analysed.at_rest = common(of.rest.at_rest, running);
+  const Gaps gaps(of.name, of.table, rows.begin);
+  const SeriesView part = rate.part(rows.begin, rows.end);
+  const LoggedRate logged{
+      of.name, shown + (axis.empty() ? "" : "_" + axis), of.table.origin, of.time_s, part, of.clock, gaps};
+  AllanRecord record = analyse(logged, shown, axis, analysed, options);
+  if (later)
+    record.notes.push_back(of.name + ": " + column.name + ": until " +
+                           told_time(told_time_s(of.table, started)) +
+                           " s the filter had not started and this is the compensated rate: left out");
+  if (const std::string motion = in_words(of.rest, of.clock.period_s, told_time_s(of.table, rows.begin));
+      !motion.empty())
+    record.notes.push_back(of.name + ": " + motion + "; only the rest is analysed");
+  if (!of.slow_turns.empty()) record.notes.push_back(of.name + ": " + of.slow_turns);
+  return record;
+}
+
 }  // namespace
 
 std::string AllanRecord::label() const {
@@ -338,54 +210,22 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(name + ": " + error.what());
   }
-  const Gaps gaps(name, table, rows.begin);
   std::string slow_turns;
   const Rest rest = rest_of(name, table, rows, clock, options, slow_turns);
-  std::vector<AllanRecord> records;
-  std::string signal, axis;
-  std::vector<std::string> axes, left_out;
-  bool has_axis = false;
-  for (const LongColumn& column : table.columns) {
-    if (!signal_of(column.name, signal, axis)) continue;
-    if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
-    if (!options.axis.empty() && axis != options.axis) continue;
-    has_axis = true;
-    SeriesView rate = column.values;
-    if (is_dead(rate.part(rows.begin, rows.end))) {
-      left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
-      continue;
+  const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
+  const AnalysedPart part{name, table, rows, time_s, clock, rest, slow_turns};
+  // Side by side; of what several of them refuse the first is told.
+  std::vector<AllanRecord> records(rates.size());
+  std::vector<std::exception_ptr> refused(rates.size());
+  share_out(rates.size(), 0, [&](std::size_t i) {
+    try {
+      records[i] = record_of(part, rates[i], options);
+    } catch (...) {
+      refused[i] = std::current_exception();
     }
-    LongSeries error;
-    if (options.minus_reference && signal == "rate") {
-      error = less_reference(name, table, rate, axis);
-      rate = error;
-      signal = "error";
-    }
-    // A part that ends before the filter has started has nothing else to show.
-    const std::size_t started = start_of_filter(table, column, signal, axis);
-    const bool later = started > rows.begin && started < rows.end;
-    const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
-    Rest analysed = rest;
-    analysed.at_rest = common(rest.at_rest, running);
-    const SeriesView part = rate.part(rows.begin, rows.end);
-    const LoggedRate logged{
-        name, signal + (axis.empty() ? "" : "_" + axis), table.origin, time_s, part, clock, gaps};
-    records.push_back(analyse(logged, signal, axis, analysed, options));
-    if (later)
-      records.back().notes.push_back(
-          name + ": " + column.name + ": until " + told_time(told_time_s(table, started)) +
-          " s the filter had not started and this is the compensated rate: left out");
-    if (const std::string motion = in_words(rest, clock.period_s, told_time_s(table, rows.begin));
-        !motion.empty())
-      records.back().notes.push_back(name + ": " + motion + "; only the rest is analysed");
-    if (!slow_turns.empty()) records.back().notes.push_back(name + ": " + slow_turns);
-  }
-  if (axes.empty()) refuse_header_of(table, name);
-  if (records.empty() && !options.axis.empty() && !has_axis)
-    throw std::runtime_error(name + ": --axis is " + in_quotes(options.axis) + ", expected " +
-                             expected_axes(axes));
-  if (records.empty()) refuse_without_rates(name, time_s.size());
-  for (const std::string& dead : left_out) tell_left_out(name, dead, time_s.size());
+  });
+  for (const std::exception_ptr& first : refused)
+    if (first) std::rethrow_exception(first);
   return records;
 }
 

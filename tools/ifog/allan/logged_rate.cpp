@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/allan/logged_rate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+#include "filters/allan/row_times.h"
+#include "filters/rest/glitches.h"
+#include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
+#include "tools/ifog/captures/usable_axes.h"
+
+namespace ifog::tools {
+namespace {
+
+constexpr double kTrustedDegrees = 8.0;  // relative error of the deviation 1/√(2·8), a quarter
+
+const char* words_for(Deviation kind) {
+  return kind == Deviation::kModified   ? "the modified deviation"
+         : kind == Deviation::kHadamard ? "the Hadamard deviation"
+                                        : "the overlapping deviation";
+}
+
+std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
+                                         std::size_t samples) {
+  std::vector<std::size_t> m;
+  for (const double tau : options.tau_s) {
+    const double exact = tau / period;
+    const std::size_t most = longest_average(options.kind, samples);
+    if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most)))
+      throw std::runtime_error(name + ": --tau " + six_digits(tau) + " s is outside what " +
+                               words_for(options.kind) + " can tell of the longest stretch, expected " +
+                               six_digits(period) + " to " + six_digits(static_cast<double>(most) * period) +
+                               " s");
+    m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
+  }
+  return m;
+}
+
+double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation kind, double period) {
+  std::vector<std::size_t> samples;
+  for (const AngleSum::Part& part : sum.parts()) samples.push_back(part.angles - 1);
+  double trusted = 0.0;
+  for (std::size_t m = 1; m <= longest_average(kind, sum.longest()); m *= 2)
+    if (EstimateVariance(kind, m, samples).degrees(noise) >= kTrustedDegrees)
+      trusted = static_cast<double>(m) * period;
+  return trusted;
+}
+
+std::string in_words(const std::vector<FrequencyRange>& ranges) {
+  constexpr std::size_t kShown = 6;
+  std::string words;
+  for (std::size_t i = 0; i < std::min(kShown, ranges.size()); ++i)
+    words += (i > 0 ? ", " : "") + six_digits(ranges[i].low) + "–" + six_digits(ranges[i].high);
+  if (ranges.size() > kShown) words += " and " + std::to_string(ranges.size() - kShown) + " more";
+  return words + " Hz";
+}
+
+void note_what_was_left_out(const std::string& column, AllanRecord& record) {
+  const std::string start = record.capture + ": " + column + ": ";
+  if (!record.fit->lines_hz.empty())
+    record.notes.push_back(start + "lines, left out of the noise terms: " + in_words(record.fit->lines_hz));
+  if (!record.fit->left_out_hz.empty())
+    record.notes.push_back(start +
+                           "left out of the noise terms, because no sum of them comes near (resonance, "
+                           "vibration, a filter): " +
+                           in_words(record.fit->left_out_hz));
+  const std::string markov = markov_in_words(*record.fit);
+  if (!markov.empty()) record.notes.push_back(start + markov);
+  if (record.fit->misfit > 0.0 && markov.empty())
+    record.notes.push_back(start + "the terms miss the curve by " + six_digits(100.0 * record.fit->misfit) +
+                           " % beyond chance; the error bars allow for it");
+}
+
+// What is said of holes and of uneven stamps. Throws std::runtime_error where holes are to be refused.
+void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
+  const SampleClock& clock = logged.clock;
+  const Gaps& gaps = logged.gaps;
+  const auto note = [&](std::size_t row, const std::string& what) {
+    if (refuse) throw std::runtime_error(gaps.place(row) + ": " + what + ", expected none");
+    record.notes.push_back(gaps.place(row) + ": " + what);
+  };
+  std::size_t nans = 0, first_nan = 0;
+  for_each_piece(logged.rate, 0, logged.rate.size(), [&](std::span<const double> values, std::size_t first) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isnan(values[i]) && nans++ == 0) first_nan = first + i;
+  });
+  record.missing = nans + clock.missing;
+  if (clock.gaps > 0)
+    note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
+                              " in the time column (" + std::to_string(clock.missing) +
+                              " samples missing), the first after " +
+                              told_time(logged.told_time_s(clock.first_gap)) + " s");
+  if (nans > 0)
+    note(first_nan, missing_in_words(logged.column, nans, logged.rate.size(), logged.told_time_s(first_nan)));
+  if (clock.worst_jitter_s > 0.1 * clock.period_s)
+    record.notes.push_back(logged.capture + ": time is uneven by up to " +
+                           six_digits(clock.worst_jitter_s * 1e3) +
+                           " ms; taken as jitter of the stamps of an even clock of " +
+                           six_digits(record.sample_rate_hz) + " Hz");
+}
+
+// The deviations with their intervals, and the noise that they show.
+void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& options, double period,
+             AllanRecord& record) {
+  const std::string& name = logged.capture;
+  // A quarter of the longest stretch: beyond, a handful of differences decide.
+  const std::vector<std::size_t> m =
+      options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
+                            : asked_multiples(name, options, period, record.longest);
+  try {
+    record.fit = noise_coefficients(sum, period);
+  } catch (const std::invalid_argument& error) {
+    record.notes.push_back(name + ": " + logged.column + ": no coefficients: " + error.what());
+  }
+  const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
+  record.points = deviation(sum, m, options.kind);
+  record.intervals = allan_intervals(sum, options.kind, record.points, noise, options.confidence);
+  // What a bias that comes back is at each τ.
+  if (record.fit && record.fit->markov && record.fit->markov->present)
+    for (std::size_t i = 0; i < m.size(); ++i)
+      record.intervals[i] =
+          allan_intervals(sum, options.kind, std::span(record.points).subspan(i, 1),
+                          equivalent_terms(record.fit->markov->fit, static_cast<double>(m[i])),
+                          options.confidence)
+              .front();
+  if (options.long_tau) record.longer = theo1(sum, noise, options.confidence, options.per_decade);
+  for (LongPoint& point : record.longer) point.tau *= period;
+  for (const std::size_t k : m) record.tau_s.push_back(static_cast<double>(k) / record.sample_rate_hz);
+  for (std::size_t i = 0; i < options.tau_s.size(); ++i)
+    if (std::abs(record.tau_s[i] / options.tau_s[i] - 1.0) > 1e-6)
+      record.notes.push_back(name + ": --tau " + six_digits(options.tau_s[i]) +
+                             " s is no multiple of the sample time, taken at " + six_digits(record.tau_s[i]) +
+                             " s");
+  record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
+}
+
+}  // namespace
+
+std::string six_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
+                    const Rest& rest, const AllanOptions& options) {
+  const std::string &name = logged.capture, &column = logged.column;
+  AllanRecord record;
+  record.capture = name;
+  record.axis = axis;
+  record.signal = signal;
+  record.sample_rate_hz = rounded_rate(logged.clock.period_s);
+  record.worst_jitter_s = logged.clock.worst_jitter_s;
+  record.gaps = logged.clock.gaps;
+  const double period = 1.0 / record.sample_rate_hz;
+  note_holes(logged, options.refuse_gaps, record);
+
+  const std::vector<Stretch> parts =
+      common(stretches(logged.time_s, logged.rate, logged.clock), rest.at_rest);
+  if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
+  const AngleSum sum(logged.rate, parts);
+  record.samples = sum.samples();
+  record.longest = sum.longest();
+  record.mean_radps = sum.mean_radps();
+  if (record.longest < 2)
+    throw std::runtime_error(name + ": " + column +
+                             " has no two samples in a row, expected a record without so many gaps");
+  if (parts.size() > 1)
+    record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(parts.size()) +
+                           " stretches; averages never reach across a hole, the longest stretch is " +
+                           six_digits(static_cast<double>(record.longest) * period) + " s");
+
+  const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
+  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
+  if (const std::string leaps =
+          signal == "denoised" ? "" : in_words(find_glitches(logged.rate, parts), told_time_s);
+      !leaps.empty())
+    record.notes.push_back(name + ": " + column + ": " + leaps);
+  measure(logged, sum, options, period, record);
+  record.noise_changes = noise_changes(logged.rate, parts, period, told_time_s);
+  if (const std::string change = in_words(record.noise_changes); !change.empty())
+    record.notes.push_back(name + ": " + column + ": " + change);
+  if (record.fit) note_what_was_left_out(column, record);
+  return record;
+}
+
+}  // namespace ifog::tools
