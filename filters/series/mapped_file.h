@@ -11,7 +11,7 @@
 
 namespace ifog {
 
-inline constexpr std::size_t kMostResident = std::size_t{256} << 20U;  // bytes
+inline constexpr std::size_t kMostResident = std::size_t{128} << 20U;  // bytes
 
 // Files that were given back and wait for the next that asks for as much.
 inline constexpr std::size_t kMostSpare = 4;

@@ -9,6 +9,12 @@
 #include "filters/allan/stretches.h"
 
 namespace ifog {
+namespace {
+
+// Several axes are diagnosed at once, and each of them holds this many: 40 MiB.
+constexpr std::size_t kAtOnce = kAnglesAtOnce / 4;
+
+}  // namespace
 
 const KnownAngles::Known& KnownAngles::known(std::span<const double> series) {
   return known_.of(series, [](std::span<const double> all) {
@@ -22,7 +28,8 @@ std::vector<DeviationPoint> KnownAngles::points(std::span<const double> series,
   std::vector<std::size_t> missing;
   for (const std::size_t each : m)
     if (!mine.points.contains(each)) missing.push_back(each);
-  for (const DeviationPoint& point : deviation(mine.sum, missing)) mine.points[point.m] = point;
+  for (const DeviationPoint& point : deviation(mine.sum, missing, Deviation::kAllan, kAtOnce))
+    mine.points[point.m] = point;
   std::vector<DeviationPoint> points;
   points.reserve(m.size());
   for (const std::size_t each : m) points.push_back(mine.points.at(each));
