@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The gyro of the loop in the field, whose temperature effect nobody declared."""
 
+CYCLE_S = 2700  # of the temperature
+
 
 def scenario(hertz, duration_s, coefficient=2.0e-8):
     return f"""
@@ -16,7 +18,7 @@ name = "temperature_degC"
 shape = "cycle"
 level = 27.0
 amplitude = 4.0
-period_s = 2700
+period_s = {CYCLE_S}
 noise = 0.02
 resolution = 0.01
 every_s = 1.0
