@@ -59,7 +59,7 @@ class CaptureBuilder {
 
  private:
   double believable(std::size_t channel, double value);
-  void add_rates(const ifog_sample& sample, double elapsed, double period);
+  void add_rates(const ifog_sample& sample, const SampleTimes::Taken& taken);
   void hold_to_what_can_be(const ifog_sample& sample);
 
   ifog_description description_;

@@ -191,10 +191,17 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
     begin_anew(sample);
     now = seconds(sample);
   }
-  Taken taken{now, first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_, 0.0, anew};
+  Taken taken;
+  taken.since_s = now;
+  taken.elapsed_s = first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_;
+  taken.anew = anew;
   taken.period_s = taken.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
   if ((first || anew || bunched_) && description_.nominal_rate_hz > 0.0)
     taken.period_s = 1.0 / description_.nominal_rate_hz;
+  const bool told = step.same_gap || (undecided_ && step.samples >= description_.sequence_modulus);
+  taken.undecided = step.undecided && !undecided_;
+  taken.turned_s = told ? taken.period_s : taken.elapsed_s;
+  undecided_ = step.undecided;
   last_s_ = now;
   last_arrival_ns_ = sample.arrival_ns;
   ++taken_;

@@ -32,6 +32,9 @@ class SampleTimes {
     double elapsed_s = 0.0;  // since the sample before; NaN of the first
     double period_s = 0.0;   // of the sample itself, also behind a gap
     bool anew = false;       // it does not join what came before
+    // It ends a silence that may have been longer: that is told, with the time, at a later sample.
+    bool undecided = false;
+    double turned_s = 0.0;  // elapsed_s, less what is so told
   };
   // Nothing: it came twice, or after one that follows it. Throws std::runtime_error with one line when time
   // does not go on (the sample's number, both times, the cause), or where there is none.
@@ -83,8 +86,9 @@ class SampleTimes {
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;
-  bool bunched_ = false;  // several samples have one time of arrival, or times that scatter
-  Silence silence_;       // of arrival times
+  bool undecided_ = false;  // how long the last silence was
+  bool bunched_ = false;    // several samples have one time of arrival, or times that scatter
+  Silence silence_;         // of arrival times
   std::optional<std::int64_t> zero_of_stamps_ns_;
 };
 

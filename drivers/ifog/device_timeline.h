@@ -42,6 +42,7 @@ class DeviceTimeline {
     bool clock_moved = false;  // as in DeviceCount::Step
     double late_s = 0.0;       // likewise
     bool same_gap = false;     // likewise
+    bool undecided = false;    // likewise
     bool by_count = false;     // dt_s is by the counter, or the rate, and not what time_ns has moved on by
     bool clock_set = false;    // that is because the device's clock was set while it measured on
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
@@ -169,6 +170,7 @@ class DeviceTimeline {
     step.clock_moved = counted.clock_moved;
     step.late_s = counted.late_s;
     step.same_gap = counted.same_gap;
+    step.undecided = counted.undecided;
     return step;
   }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "drivers/ifog/turn.h"
+
 namespace ifog {
 namespace {
 
@@ -43,6 +45,11 @@ double Incrementer::interval_error() const noexcept {
     return row_s_ / static_cast<double>(gaps_in_a_row_) / period_s_ - 1.0;
   const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
+}
+
+// Whole rounds were lost where a silence was, as this sample tells.
+bool Incrementer::rounds_told(const Step& step) const noexcept {
+  return step.same_gap || (undecided_ && step.samples >= facts_.sequence_modulus);
 }
 
 DeviceTimeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
@@ -86,10 +93,30 @@ Incrementer::Step Incrementer::step(const Reading& reading, const DeviceTimeline
   return step;
 }
 
+Verdict Incrementer::turn_of_angle(std::size_t axis, double value, Turn& out) noexcept {
+  PlausibleAngle& angle = angle_[axis];
+  OpenTurn& open = open_turn_[axis];
+  if (silence_begins_s_ > 0.0) {
+    const std::optional<Turn> turned = angle.proposed(value, facts_.angle_wrap_rad);
+    if (turned && hides_more(turned->angle_rad / turned->covered_s, angle.rate_radps())) {
+      const bool known = angle.take_unjudged(value, facts_.angle_wrap_rad, silence_begins_s_);
+      open.begin(*turned, silence_begins_s_, known);
+      out = {};
+      return Verdict::plausible;
+    }
+  }
+  Verdict verdict = angle.take(value, facts_.angle_wrap_rad, rate_[axis], out);
+  if (verdict == Verdict::plausible && out.covered_s > 0.0 && open.open() && !undecided_) {
+    mean_radps_[axis] = open.close(out);
+    verdict = rate_[axis].take(*mean_radps_[axis]);
+  }
+  return verdict;
+}
+
 Verdict Incrementer::turn(std::size_t axis, double value, double own_s, Turn& out) noexcept {
   switch (facts_.kind) {
     case SensorKind::angle:
-      return angle_[axis].take(value, facts_.angle_wrap_rad, rate_[axis], out);
+      return turn_of_angle(axis, value, out);
     case SensorKind::delta_angle:
       out = {value, own_s};
       return rate_[axis].take(value / period_s_);
@@ -108,7 +135,12 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
     counts_.invalid += std::exchange(without_unseen_, 0);
   for (int i = 0; i < facts_.axes; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    angle_[axis].pass(step.dt_s);
+    // What is found to be missing where a silence was is no time of this sample's turn.
+    const double belated_s = belated_ ? step.dt_s - own_s : 0.0;
+    angle_[axis].pass(step.dt_s - belated_s);
+    open_turn_[axis].lost(belated_s);
+    if (silence_ends_) open_turn_[axis].rest_was(step.clock_moved);
+    mean_radps_[axis].reset();
     Turn turned;
     if (((reading.valid_axes >> i) & 1u) == 0) {
       const bool known = axes_seen_ == 0 || ((axes_seen_ >> i) & 1u) != 0;
@@ -124,8 +156,9 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
     out.covered_s[axis] = turned.covered_s;
     // A rate is passed on as sent: dividing the product again would cost its last bit.
     if (turned.covered_s > 0.0) {
-      out.rate_radps[axis] =
-          facts_.kind == SensorKind::rate ? reading.value[axis] : turned.angle_rad / turned.covered_s;
+      out.rate_radps[axis] = facts_.kind == SensorKind::rate
+                                 ? reading.value[axis]
+                                 : mean_radps_[axis].value_or(turned.angle_rad / turned.covered_s);
       out.valid_axes |= 1u << i;
       if (check_.stuck(axis, reading.value[axis])) out.stuck_axes |= 1u << i;
     } else {
@@ -210,11 +243,13 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     sequence_ = reading.has_sequence ? reading.sequence : 0;
     now.time_ns = timeline_.first(frame);
   }
+  belated_ = rounds_told(now);
   out.flags = 0;
   if (started_ && now.gap) {
     out.flags |= kGapBefore;
     for (PlausibleRate& rate : rate_) rate.forget();
-    for (PlausibleAngle& angle : angle_) angle.miss();
+    if (!belated_)
+      for (PlausibleAngle& angle : angle_) angle.miss();
     for (PlausibleValue& channel : frame_channel_) channel.forget();
     counts_.gaps += now.same_gap ? 0 : 1;
     counts_.missing += now.samples - 1;
@@ -231,7 +266,11 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     ++counts_.restarts;
     // An angle counts from power-up: after a restart it says nothing about the turn since the last one.
     for (PlausibleAngle& angle : angle_) angle.forget();
+    for (OpenTurn& open : open_turn_) open.forget();
   }
+  silence_begins_s_ = now.undecided && !undecided_ ? now.late_s : 0.0;
+  silence_ends_ = undecided_ && !now.undecided;
+  undecided_ = now.undecided;
   out.samples = 1;
   out.status = reading.status;
   out.sequence = sequence_;

@@ -11,11 +11,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/device_timeline.h"
 #include "drivers/ifog/silence.h"
 #include "filters/chain/fitted_clock.h"
+#include "filters/chain/open_turn.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
 #include "filters/estimator/sensor_check.h"
@@ -62,12 +64,14 @@ class Incrementer {
  private:
   using Step = DeviceTimeline::Step;
   [[nodiscard]] Step step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept;
+  [[nodiscard]] bool rounds_told(const Step& step) const noexcept;
   [[nodiscard]] DeviceTimeline::Frame frame_of(const Reading& reading) const noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading) noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
   [[nodiscard]] Verdict turn(std::size_t axis, double value, double own_s, Turn& out) noexcept;
+  [[nodiscard]] Verdict turn_of_angle(std::size_t axis, double value, Turn& out) noexcept;
 
   SensorFacts facts_;
   double period_s_;
@@ -88,6 +92,12 @@ class Incrementer {
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle
+  std::array<OpenTurn, kMaxAxes> open_turn_;
+  std::array<std::optional<double>, kMaxAxes> mean_radps_;  // of a sample that closes one
+  bool undecided_ = false;                                  // so is how long the last silence was
+  bool belated_ = false;                                    // whole rounds are told that were lost in it
+  bool silence_ends_ = false;                               // it was, until this sample
+  double silence_begins_s_ = 0.0;  // by so much at most, of the sample that ends it; else 0
   SensorCheck check_;
   std::uint32_t axes_seen_ = 0;
   std::uint64_t without_unseen_ = 0;  // samples that lack nothing but axes that have never been there

@@ -44,6 +44,41 @@ TEST(CaptureBuilder, OverAGapInWhichAnAngleMayHaveGoneRoundNoRateIsMadeUp) {
   }
 }
 
+// Ten seconds of 1 °/s are lost, some rounds of the counter, which only what follows can tell: no row turns
+// faster, and the one that tells is not slower.
+TEST(CaptureBuilder, OfAnAngleOverASilenceThatIsNotDecidedNoRateIsMadeUp) {
+  constexpr double kRate = std::numbers::pi / 180.0;
+  for (const double wrap : {0.0, 8.0 * std::numbers::pi / 180.0}) {
+    ifog_description d{};
+    d.axes = 1;
+    d.kind = IFOG_ANGLE;
+    d.angle_wrap_rad = wrap;
+    d.nominal_rate_hz = 500.0;
+    d.sequence_modulus = 256;
+    CaptureBuilder builder(d);
+    for (int n = 0; n < 10'000; ++n) {
+      if (n >= 2500 && n < 7500) continue;
+      ifog_sample sample{};
+      sample.arrival_ns = kStart_ns + std::int64_t{n} * 2'000'000 + n % 7 * 10'000;
+      sample.valid_axes = 1;
+      sample.value[0] = wrap > 0.0 ? std::remainder(kRate * n / 500.0, wrap) : kRate * n / 500.0;
+      sample.flags = IFOG_SAMPLE_SEQUENCE;
+      sample.sequence = static_cast<std::uint32_t>(n) % 256U;
+      builder.add(sample);
+    }
+    EXPECT_EQ(builder.missing(), 5000U) << wrap;
+    const Capture made = builder.finish();
+    ASSERT_EQ(made.size(), 5000U) << wrap;
+    int without = 0;
+    for (std::size_t i = 1; i < made.size(); ++i) {
+      const double rate = made.rate_radps[0][i];
+      without += std::isnan(rate) ? 1 : 0;
+      EXPECT_FALSE(std::abs(rate - kRate) > 1e-6) << i << ": " << rate;
+    }
+    EXPECT_EQ(without, 1) << wrap;
+  }
+}
+
 TEST(CaptureBuilder, AClockOfMillisecondsAtFiveKilohertzLosesNoSample) {
   for (const std::uint32_t modulus : {0U, 16U}) {
     ifog_description d{};
