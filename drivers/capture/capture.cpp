@@ -98,6 +98,7 @@ void write_capture(const Capture& capture, const std::string& path) {
   for (const CaptureColumn& channel : capture.channels) columns.emplace_back(channel.name, &channel.values);
 
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const auto& column : columns) names.push_back(column.first);
   std::string comments;
   for (const std::string& comment : capture.comments) comments += comment + '\n';

@@ -106,7 +106,7 @@ TimeStamps::TimeStamps(std::string_view first, double unit_s) {
   if (!read_plain(first, time) || std::abs(static_cast<double>(time.whole)) * unit_s < kFineTimes_s) return;
   const std::int64_t below = time.whole - (time.fraction < 0 ? 1 : 0);
   const auto part = std::find(kTen.begin(), kTen.begin() + 10, whole(1.0 / unit_s));  // of a second: a unit
-  if (part != kTen.begin() + 10) {
+  if (part != kTen.begin() + 10 && *part > 0) {
     const std::int64_t of_second = *part, ns_a_unit = kNsPerSecond / of_second;
     whole_ = below;
     decimals_ = 9 - static_cast<int>(part - kTen.begin());  // of a ns in this unit

@@ -18,6 +18,7 @@ std::string fixed_text(const char* at, std::size_t size, bool blanks) {
 void write_texts(hid_t object, const char* name, const Hdf5Id& space, const std::vector<std::string>& texts) {
   const Hdf5Id type(H5Tcopy(H5T_C_S1));
   std::vector<const char*> at;
+  at.reserve(texts.size());
   for (const std::string& text : texts) at.push_back(text.c_str());
   const bool made =
       type.good() && H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;

@@ -28,7 +28,7 @@ std::string unit_of(const std::string& name) {
                                                                                       {"degps", "deg/s"}}};
   const std::size_t line = name.rfind('_');
   if (line == std::string::npos) return "";
-  const std::string unit = name.substr(line + 1);
+  std::string unit = name.substr(line + 1);
   for (const auto& [suffix, written] : kWritten)
     if (unit == suffix) return std::string(written);
   return unit;

@@ -275,6 +275,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   data.grid = steps_and_blocks(records, most_blocks);
   std::vector<double> error;
   std::vector<std::vector<std::size_t>> starts;  // by record: the first samples of its steps
+  starts.reserve(records.size());
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
   if (data.grid.used() < kLeastBlocks) throw std::invalid_argument(too_few(records, data.grid));

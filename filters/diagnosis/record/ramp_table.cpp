@@ -73,6 +73,12 @@ std::array<TableSums, kRampParts> sums_by_part(const UnbrokenPart& part, double 
   return sums;
 }
 
+// Of a column: each harmonic has two, its cosine and its sine.
+double order_of(Eigen::Index column) {
+  const Eigen::Index order = column / 2 + 1;
+  return static_cast<double>(order);
+}
+
 // Variance of a sample over that of the harmonics' angles times their squared order, which is much the same
 // for all harmonics of anything with an edge. At a constant rate a harmonic may stand still from sample to
 // sample: without this its angle is anything, and at another rate a large error.
@@ -82,7 +88,7 @@ double stiffness(const TableSums& sums, double variance) {
       sums.gram.topLeftCorner(columns, columns).ldlt().solve(sums.moment.head(columns));
   double square = 0.0;
   for (Eigen::Index i = 0; i < columns; ++i) {
-    const auto order = static_cast<double>(i / 2 + 1);
+    const double order = order_of(i);
     square += order * order * first[i] * first[i] / static_cast<double>(columns);
   }
   return variance / std::max(square, 1e-300);
@@ -91,7 +97,7 @@ double stiffness(const TableSums& sums, double variance) {
 Eigen::VectorXd solved(const TableSums& sums, Eigen::Index columns, double stiff) {
   Eigen::MatrixXd gram = sums.gram.topLeftCorner(columns, columns);
   for (Eigen::Index i = 0; i < columns; ++i) {
-    const auto order = static_cast<double>(i / 2 + 1);
+    const double order = order_of(i);
     gram(i, i) += stiff * order * order;
     // A stroboscopic one has no column of its own.
     if (!(sums.gram(i, i) > 0.0)) gram(i, i) = 1.0;
@@ -154,7 +160,7 @@ void measure_phase(const UnbrokenPart& part, double square_left, RampTable& tabl
     walk += (step * step - error[p] - error[p - 1]) / (2.0 / 3.0 * piece_s * (kPhasePieces - 1));
   }
   const double span_s = samples * part.sample_s;
-  const double least = kWalkSeen / (2.0 * std::numbers::pi * static_cast<double>(table.harmonics.size() / 2));
+  const double least = kWalkSeen / (2.0 * std::numbers::pi * order_of(table.harmonics.size() - 1));
   table.phase_walk = std::sqrt(std::max(walk, least * least / span_s));
   table.walk_error = table.phase_walk / std::sqrt(2.0 * static_cast<double>(kPhasePieces - 1));
   const double turned = std::abs(part.angle_rad.back() - part.angle_rad.front());
@@ -220,7 +226,7 @@ std::optional<RampTable> fit_ramp_table(const UnbrokenPart& part, const RampComb
   const Eigen::Index columns = table.harmonics.size();
   Eigen::MatrixXd gram = all.gram.topLeftCorner(columns, columns);
   for (Eigen::Index i = 0; i < columns; ++i)
-    gram(i, i) += gram(i, i) > 0.0 ? stiff * std::pow(static_cast<double>(i / 2 + 1), 2.0) : 1e300;
+    gram(i, i) += gram(i, i) > 0.0 ? stiff * std::pow(order_of(i), 2.0) : 1e300;
   const Eigen::MatrixXd inverse = gram.ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
   table.angle_error = std::sqrt(0.5 * square / static_cast<double>(part.size()) * inverse.trace());
   measure_phase(part, square, table);
