@@ -115,6 +115,25 @@ double scattered_period(const SeriesView& time_s, double near_s) {
   return even ? all_s : out.period_s;
 }
 
+// Of an even clock whose stamps are in ticks of more than half its period, as those of single precision far
+// from 0 are: steps of one tick and of two, which would be holes. 0: they are none. A stamp is never further
+// from an even clock than a tick; of holes by chance so many are, or there are few of them.
+double even_period(const SeriesView& time_s, double tick_s) {
+  constexpr double kFewest = 16.0, kRounding = 1.0 + 1e-6;
+  const auto count = static_cast<double>(time_s.size() - 1);
+  const double first_s = time_s.at(0), period_s = (time_s.at(time_s.size() - 1) - first_s) / count;
+  const double of_two = (period_s / tick_s - 1.0) * count;
+  if (of_two < kFewest || count - of_two < kFewest) return 0.0;
+  std::vector<double> room;
+  for (std::size_t begin = 0; begin < time_s.size(); begin += kSeriesPiece) {
+    const std::size_t piece = std::min(kSeriesPiece, time_s.size() - begin);
+    double even = static_cast<double>(begin);
+    for (const double time : time_s.piece(begin, piece, room))
+      if (std::abs(time - first_s - period_s * even++) > kRounding * tick_s) return 0.0;
+  }
+  return period_s;
+}
+
 }  // namespace
 
 SampleClock sample_clock(const SeriesView& time_s) {
@@ -130,12 +149,17 @@ SampleClock sample_clock(const SeriesView& time_s) {
   double period = middle_of(some);
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
-  // Coarse stamps make the median one tick too short or too long; a second round with the mean settles it.
-  for (int round = 0; round < 2; ++round) period = mean_period(time_s, period, false).period_s;
   SampleClock clock;
-  for (double& step : some) step = std::abs(step - period);
-  clock.scatter = 1.4826 * middle_of(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
-  if (clock.scatters()) period = scattered_period(time_s, period);
+  if (const double even_s = even_period(time_s, period); even_s > 0.0) {
+    clock.scatter = period / (std::sqrt(12.0) * even_s);  // of what is rounded
+    period = even_s;
+  } else {
+    // Coarse stamps make the median one tick too short or too long; a second round with the mean settles it.
+    for (int round = 0; round < 2; ++round) period = mean_period(time_s, period, false).period_s;
+    for (double& step : some) step = std::abs(step - period);
+    clock.scatter = 1.4826 * middle_of(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
+    if (clock.scatters()) period = scattered_period(time_s, period);
+  }
   clock.period_s = period;
 
   const std::vector<Hole> gaps = holes(time_s, clock);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "filters/allan/stretches.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -72,6 +73,17 @@ double median_period(const std::vector<Record>& records) {
   }
   if (steps.empty()) throw std::invalid_argument(too_few(records.size()));
   return median(std::move(steps));
+}
+
+// The true one, where stamps are rounded: at 128 Hz those in whole milliseconds have steps of 8 ms and seldom
+// of 7. By the first record, as all are of one sensor; of rows that keep no beat, such as a table's points,
+// the median.
+double sample_period(const std::vector<Record>& records) {
+  constexpr double kRounded = 1.0, kExact = 1e-9;  // of the median
+  const double step_s = median_period(records);
+  const double clock_s = sample_clock(records.front().time_s).period_s;
+  const double apart = std::abs(clock_s / step_s - 1.0);
+  return apart > kExact && apart < kRounded ? clock_s : step_s;
 }
 
 }  // namespace
@@ -190,7 +202,7 @@ void describe(FineChannel& channel) {
 // Lengths of blocks and of the fine grid's steps, so that there are at most so many blocks.
 BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
   BlockGrid grid;
-  grid.sample_s = median_period(records);
+  grid.sample_s = sample_period(records);
   grid.white_variance = white_variance(records);
   double span = 0.0;
   for (const Record& record : records) span += record.time_s.back() - record.time_s.front() + grid.sample_s;

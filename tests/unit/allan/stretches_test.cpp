@@ -95,6 +95,31 @@ TEST(SampleClock, OfCoarseStampsALostSampleIsFoundWhereverItIs) {
   }
 }
 
+// Single precision at 1e5 s tells times of 1/128 s apart: an even 100 Hz then has steps of one such tick and
+// of two, and no sample is lost; the record's length is then known to one tick. Of a device that has a sample
+// in each tick and loses one in four by chance, they are lost.
+TEST(SampleClock, StampsInTicksOfMoreThanHalfAPeriodAreNoGaps) {
+  for (const double hertz : {68.0, 97.3, 100.0, 122.0}) {
+    std::vector<double> time;
+    for (int n = 0; n < 20000; ++n) time.push_back(static_cast<double>(static_cast<float>(1e5 + n / hertz)));
+    const SampleClock clock = sample_clock(time);
+    EXPECT_NEAR(clock.period_s * 19999, 19999 / hertz, 1.0 / 128.0) << hertz;
+    EXPECT_EQ(clock.gaps, 0U) << hertz;
+  }
+  std::mt19937_64 engine(7);
+  std::vector<double> time;
+  std::size_t lost = 0;
+  for (int n = 0; n < 20000; ++n) {
+    if (n > 0 && n < 19999 && engine() % 4 == 0)
+      ++lost;
+    else
+      time.push_back(n / 128.0);
+  }
+  const SampleClock clock = sample_clock(time);
+  EXPECT_NEAR(clock.period_s * 128.0, 1.0, 1e-9);
+  EXPECT_EQ(clock.missing, lost);
+}
+
 // Runs of samples at 100 Hz whose stamps are off by up to 3 ms, each begun so long after the one before.
 SampleClock clock_of_runs(unsigned seed, int runs, int samples, double apart_s) {
   std::mt19937_64 engine(seed);

@@ -57,6 +57,16 @@ TEST(Blocks, AreMeansOverEqualTimes) {
   for (Eigen::Index b = 0; b < 100; ++b) EXPECT_NEAR(means[b], double(b) + 0.45, 1e-9);
 }
 
+// In whole milliseconds most steps of 128 Hz are 8 ms, and of 150 Hz 7 ms: no sample took so long.
+TEST(Blocks, AreOfTheTrueRateWhereStampsAreRounded) {
+  for (const double hertz : {128.0, 150.0, 100.0, 333.3}) {
+    Arrays arrays(20000);
+    for (std::size_t i = 0; i < arrays.time.size(); ++i)
+      arrays.time[i] = 1e-3 * std::round(1e3 * static_cast<double>(i) / hertz);
+    EXPECT_NEAR(cut_to_blocks({arrays.record()}).grid.sample_s * hertz, 1.0, 1e-5) << hertz;
+  }
+}
+
 // A day between two minutes: the samples are many, and what they are too few for is said.
 TEST(Blocks, AHoleThatIsNearlyAllOfTheTimeIsSaid) {
   Arrays arrays(1000);

@@ -18,7 +18,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kOneDegree = std::numbers::pi / 180.0;
 
 // A STIM300 that turns at a steady rate; its frames have a counter of 8 bits and no clock that goes on.
 class TurningStim {
@@ -78,7 +78,7 @@ class TurningStim {
     Reading reading;
     reading.valid_axes = 1;
     reading.value[0] =
-        std::remainder(angle_deg_ * kDegree, facts_.angle_wrap_rad > 0.0 ? facts_.angle_wrap_rad : 1e9);
+        std::remainder(angle_deg_ * kOneDegree, facts_.angle_wrap_rad > 0.0 ? facts_.angle_wrap_rad : 1e9);
     reading.has_sequence = true;
     reading.sequence = static_cast<std::uint32_t>(sequence_ % facts_.sequence_modulus);
     reading.arrival_ns = kStart_ns + static_cast<std::int64_t>((arrival_s + scatter_(random_)) * 1e9);
@@ -87,11 +87,11 @@ class TurningStim {
     if (!begun_) first_deg_ = angle_deg_;
     if (begun_) passed_s += out.dt_s;
     begun_ = true;
-    turned_deg += out.delta_theta_rad[0] / kDegree;
+    turned_deg += out.delta_theta_rad[0] / kOneDegree;
     covered_s += out.covered_s[0];
     if (!std::isfinite(out.rate_radps[0]) || out.covered_s[0] == 0.0) return;
-    fastest_degps = std::max(fastest_degps, out.rate_radps[0] / kDegree);
-    slowest_degps = std::min(slowest_degps, out.rate_radps[0] / kDegree);
+    fastest_degps = std::max(fastest_degps, out.rate_radps[0] / kOneDegree);
+    slowest_degps = std::min(slowest_degps, out.rate_radps[0] / kOneDegree);
   }
 
   double period_s_, rate_degps_;
