@@ -202,7 +202,7 @@ Candump parse_candump(std::string_view text, const std::string& path, std::strin
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
   std::optional<bool> differences = told_by(file.head());
   if (!differences && !file.reopens()) {
-    const Candump log = parse_candump(file.text(), file.path(), interface);
+    Candump log = parse_candump(file.text(), file.path(), interface);
     for (std::size_t i = 0; i < log.frames.size(); ++i) sink(log.frames[i], log.interfaces[log.on[i]]);
     return log;
   }

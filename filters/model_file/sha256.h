@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-struct _GChecksum;  // GLib's
+struct _GChecksum;  // GLib's NOLINT(bugprone-reserved-identifier)
 
 namespace ifog {
 

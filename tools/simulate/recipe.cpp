@@ -167,6 +167,7 @@ void complete_numbers(Recipe& recipe, const std::vector<Key>& keys) {
         std::find_if(keys.begin(), keys.end(), [&n = name](const Key& k) { return n == k.name; });
     if (key == keys.end()) {
       std::vector<std::string_view> known;
+      known.reserve(keys.size());
       for (const Key& k : keys) known.emplace_back(k.name);
       throw std::invalid_argument("key " + in_quotes(name) + " is unknown for " + recipe.kind +
                                   meant_or_known(name, known));
@@ -221,6 +222,7 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
       std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return recipe.kind == k.name; });
   if (kind == kinds.end()) {
     std::vector<std::string_view> known;
+    known.reserve(kinds.size());
     for (const Kind& k : kinds) known.emplace_back(k.name);
     throw std::invalid_argument(in_quotes(recipe.kind) + " is unknown" + meant_or_known(recipe.kind, known));
   }

@@ -120,8 +120,8 @@ std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCyc
   std::sort(scored.begin(), scored.end());
   std::vector<double> bins;
   for (const auto& [score, bin] : scored) {
-    const bool known =
-        std::any_of(bins.begin(), bins.end(), [&, at = bin](double other) { return std::abs(other - at) < 1.0; });
+    const bool known = std::any_of(bins.begin(), bins.end(),
+                                   [&, at = bin](double other) { return std::abs(other - at) < 1.0; });
     if (!known && bins.size() < kRefined) bins.push_back(bin);
   }
   return bins;

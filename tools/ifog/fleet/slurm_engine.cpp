@@ -63,8 +63,7 @@ std::string how(const Ran& ran) { return ran.ended + (ran.said.empty() ? "" : ":
 class SlurmEngine : public Engine {
  public:
   SlurmEngine(const Results& results, std::size_t jobs)
-      : results_(results),
-        jobs_(jobs),
+      : jobs_(jobs),
         folder_(std::filesystem::absolute(results.folder()).lexically_normal().string()),
         name_("ifog-fleet-" + sha256_hex(folder_).substr(0, 12)) {}
 
@@ -91,6 +90,7 @@ class SlurmEngine : public Engine {
     for (const std::size_t gyro : gyros)
       arrays[gyro / kLargestArray * kLargestArray].push_back(gyro % kLargestArray);
     std::vector<std::string> texts;
+    texts.reserve(arrays.size());
     for (const auto& [first, numbers] : arrays) texts.push_back(script(first, numbers));
     return texts;
   }
@@ -150,7 +150,6 @@ class SlurmEngine : public Engine {
     }
   }
 
-  const Results& results_;
   std::size_t jobs_;
   std::string folder_, name_;
 };

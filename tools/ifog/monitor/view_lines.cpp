@@ -118,6 +118,7 @@ std::vector<std::string> health(const status_t& status) {
 // Empty without any.
 std::vector<std::string> counted(const std::string& when, const std::vector<SensorView::Count>& counts) {
   std::vector<std::string> out;
+  out.reserve(counts.size());
   for (const SensorView::Count& each : counts)
     out.push_back((out.empty() ? when + " " : "") + std::string(each.name) + " " + n(each.count));
   return out;
