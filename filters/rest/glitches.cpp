@@ -20,13 +20,14 @@ constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 // differences no deviation is taken, and of as many it is off by a fifth at times.
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLouder = 2.0;
+constexpr std::size_t kOneInAtMost = 1000;
 constexpr double kRounding = 1e-12;       // of a value
 constexpr std::size_t kEnough = 100'000;  // second differences whose median is as good as that of all
 
-// A sample with two neighbours: how far it is from their middle, they from each other, and it from the one
-// before.
+// A sample with two neighbours: what is between them, how far it is from there, they from each other, and it
+// from the one before.
 struct Middle {
-  double value = 0.0, away = 0.0, apart = 0.0, step = 0.0;
+  double value = 0.0, between = 0.0, away = 0.0, apart = 0.0, step = 0.0;
 };
 
 // use(i, middle) for each.
@@ -37,8 +38,9 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
     for_each_piece(rate, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
       for (std::size_t k = 0; k < values.size(); ++k) {
         if (first + k >= part.begin + 2)
-          use(first + k - 1, Middle{middle, std::abs(middle - 0.5 * (before + values[k])),
-                                    std::abs(values[k] - before), std::abs(middle - before)});
+          use(first + k - 1,
+              Middle{middle, 0.5 * (before + values[k]), std::abs(middle - 0.5 * (before + values[k])),
+                     std::abs(values[k] - before), std::abs(middle - before)});
         before = middle;
         middle = values[k];
       }
@@ -99,12 +101,36 @@ class Yardstick {
 Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts) {
   Glitches out;
   const Yardstick yardstick(rate, parts);
+  std::size_t samples = 0;
+  for (const Stretch& part : parts) samples += part.end - part.begin;
+  // One in the shortest of records is no habit of its sensor yet.
+  const std::size_t most = samples / kOneInAtMost + 1;
+  std::optional<std::size_t> last;
   for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
     if (!(middle.away > 0.0) || middle.apart >= 0.5 * middle.away) return;
     const double deviation = yardstick.at(i);
     if (!(deviation > 0.0) || middle.away <= kFar * deviation) return;
+    // Between two that leap the one in the middle stands apart as well.
+    if (last && *last + 1 == i) return;
+    last = i;
     if (out.count++ == 0) out.first = i;
     out.most_times = std::max(out.most_times, middle.away / deviation);
+    if (out.count <= most) out.few.push_back({i, middle.between});
+  });
+  if (out.count > most) out.few.clear();
+  return out;
+}
+
+std::optional<LongSeries> without_leaps(const SeriesView& rate, const Glitches& glitches) {
+  if (glitches.few.empty()) return std::nullopt;
+  std::optional<LongSeries> out(std::in_place);
+  auto leap = glitches.few.begin();
+  std::vector<double> repaired;
+  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
+    repaired.assign(values.begin(), values.end());
+    for (; leap != glitches.few.end() && leap->sample < first + values.size(); ++leap)
+      repaired[leap->sample - first] = leap->between;
+    out->add(repaired);
   });
   return out;
 }
@@ -112,13 +138,13 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts) {
 std::string in_words(const Glitches& glitches, const std::function<double(std::size_t)>& time_s) {
   if (glitches.count == 0) return "";
   const bool one = glitches.count == 1;
-  std::array<char, 200> text{};
+  std::array<char, 240> text{};
   std::snprintf(text.data(), text.size(),
-                "%zu sample%s away and back (%sat %s s, up to %.2g times the noise): a fault of the logger "
-                "or the line, which "
-                "these figures take for noise",
-                glitches.count, one ? " leaps" : "s leap", one ? "" : "the first ",
-                told_time(time_s(glitches.first)).c_str(), glitches.most_times);
+                "%zu sample%s away and back (%sat %s s, up to %.2g times the noise): %s", glitches.count,
+                one ? " leaps" : "s leap", one ? "" : "the first ", told_time(time_s(glitches.first)).c_str(),
+                glitches.most_times,
+                glitches.few.empty() ? "more than one in a thousand, which these figures take for noise"
+                                     : "a fault of the logger or the line, left out of these figures");
   return text.data();
 }
 

@@ -6,16 +6,26 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "filters/allan/stretches.h"
+#include "filters/series/long_series.h"
 
 namespace ifog {
 
 struct Glitches {
+  struct Leap {
+    std::size_t sample = 0;
+    double between = 0.0;  // the middle of the samples beside it, rad/s
+  };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
+  // All of them while they are few, at most one in a thousand samples; empty where there are more, which is
+  // how the sensor is.
+  std::vector<Leap> few;
   // The largest leap over the standard deviation of the noise, by the median of second differences.
   double most_times = 0.0;
 };
@@ -26,8 +36,12 @@ struct Glitches {
 // is no fault of the logger; and half the smallest step of a coarse sensor at least.
 [[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts);
 
-// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..."; empty for none. time_s: of a
-// sample.
+// The rate with what stands between its neighbours in place of each leap; nothing where there is none, or too
+// many to be no noise.
+[[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate_radps, const Glitches& glitches);
+
+// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..." and whether it is left out, as
+// without_leaps() does; empty for none. time_s: of a sample.
 [[nodiscard]] std::string in_words(const Glitches& glitches,
                                    const std::function<double(std::size_t)>& time_s);
 

@@ -211,6 +211,22 @@ json noise_json(const NoiseByAxis& noise) {
   return axes;
 }
 
+// Single leaps are out of the capture afterwards, repaired holds what is there instead.
+void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
+                     std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    std::span<const double>& rate = capture.rate_radps[a];
+    const Glitches leaps = find_glitches(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest));
+    if (const std::string said = in_words(leaps, [&](std::size_t i) { return capture.told_time_s(i); });
+        !said.empty())
+      notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + said);
+    if (std::optional<LongSeries> without = without_leaps(rate, leaps)) {
+      repaired.push_back(*std::move(without));
+      rate = repaired.back().all();
+    }
+  }
+}
+
 // An axis too short for them has none, and is said to.
 NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<std::string>& notes) {
@@ -227,10 +243,6 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
       if (const std::string change = in_words(found.changes); !change.empty())
         notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + change);
       noise[capture.axes[a]] = std::move(found);
-      if (const std::string leaps =
-              in_words(find_glitches(rate, parts), [&](std::size_t i) { return capture.told_time_s(i); });
-          !leaps.empty())
-        notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + leaps);
     } catch (const std::invalid_argument& error) {
       notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
                       error.what());
@@ -292,6 +304,9 @@ void run(const TuneArguments& options) {
                     options.states.empty() ? default_candidates().size() : options.states.size());
   const Rest rest = rest_of(capture, period, options.capture);
   std::vector<std::string> notes;
+  std::vector<LongSeries> repaired;
+  repaired.reserve(capture.axes.size());
+  leave_out_leaps(capture, clock, rest, repaired, notes);
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
   if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");

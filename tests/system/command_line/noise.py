@@ -59,8 +59,8 @@ class Noise:
             has(noise["std_error"], key)
         assert not allan["B"]["present"] and noise.get("B_radps") is None
 
-    def check_a_glitch_is_said(self):
-        """One sample of a radian a second, which no gyro has turned."""
+    def check_a_glitch_is_said_and_left_out(self):
+        """One sample of a radian a second, which no gyro has turned: the figures are those without it."""
         lines = self.capture.read_text().splitlines()
         row = next(i for i, line in enumerate(lines) if line.startswith("100,") or line.startswith("100.0"))
         lines[row] = lines[row].split(",")[0] + ",1.0"
@@ -71,6 +71,10 @@ class Noise:
                 result = ran(command, capture)
                 assert result.returncode == 0, result.stderr
                 assert ("leaps away and back" in result.stdout + result.stderr) == said, f"{command} {capture}: {result.stdout}{result.stderr}"
+        with_it, without = (self.json("allan", path)["axes"][0]["coefficients"]["N"]["value"] for path in (glitch, self.capture))
+        near(with_it, without, 0.01 * without, "N beside a glitch")
+        with_it, without = ({m["state"]: m["log_likelihood"] for m in self.json("tune", path)["models"]} for path in (glitch, self.capture))
+        assert max(abs(with_it[state] - without[state]) for state in without) < 5.0, f"{with_it} beside a glitch, {without} without"
 
     def check_no_average_beyond_the_estimator(self):
         third = SECONDS / 3

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -31,6 +32,38 @@ TEST(Glitches, ASampleThatLeapsAwayAndBackIsFound) {
   const std::string said = in_words(found, [](std::size_t i) { return 0.01 * static_cast<double>(i); });
   EXPECT_NE(said.find("2 samples leap away and back (the first at 123.45 s"), std::string::npos) << said;
   EXPECT_EQ(find_glitches(rate, std::vector<Stretch>{{0, 12000}}).count, 0U);
+}
+
+TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
+  const std::vector<double> before = white(20000, 3);
+  std::vector<double> rate = before;
+  // The one between two of a kind is none.
+  rate[300] = rate[302] = 2.0;
+  rate[16384] = -5.0;  // where a piece begins
+  const std::vector<Stretch> all{{0, rate.size()}};
+  const Glitches found = find_glitches(rate, all);
+  EXPECT_EQ(found.count, 3U);
+  EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("left out of these figures"),
+            std::string::npos);
+  const std::optional<LongSeries> without = without_leaps(rate, found);
+  ASSERT_TRUE(without);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double value = SeriesView(*without).at(i);
+    if (i == 16384)
+      EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1]));
+    else if (i != 300 && i != 302)
+      EXPECT_EQ(value, before[i]) << i;
+    else
+      EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1])) << i;
+  }
+  EXPECT_FALSE(without_leaps(before, find_glitches(before, all)));
+
+  for (std::size_t i = 50; i < rate.size(); i += 500) rate[i] = 1.0;
+  const Glitches many = find_glitches(rate, all);
+  EXPECT_GT(many.count, 21U);
+  EXPECT_TRUE(many.few.empty());
+  EXPECT_FALSE(without_leaps(rate, many));
+  EXPECT_NE(in_words(many, [](std::size_t) { return 0.0; }).find("take for noise"), std::string::npos);
 }
 
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
@@ -162,7 +163,12 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   const std::vector<Stretch> parts =
       common(stretches(logged.time_s, logged.rate, logged.clock), rest.at_rest);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const AngleSum sum(logged.rate, parts);
+  const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
+  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
+  const Glitches leaps = signal == "denoised" ? Glitches{} : find_glitches(logged.rate, parts);
+  const std::optional<LongSeries> repaired = without_leaps(logged.rate, leaps);
+  const SeriesView rate = repaired ? SeriesView(*repaired) : logged.rate;
+  const AngleSum sum(rate, parts);
   record.samples = sum.samples();
   record.longest = sum.longest();
   record.mean_radps = sum.mean_radps();
@@ -174,14 +180,10 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
                            " stretches; averages never reach across a hole, the longest stretch is " +
                            six_digits(static_cast<double>(record.longest) * period) + " s");
 
-  const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
-  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
-  if (const std::string leaps =
-          signal == "denoised" ? "" : in_words(find_glitches(logged.rate, parts), told_time_s);
-      !leaps.empty())
-    record.notes.push_back(name + ": " + column + ": " + leaps);
+  if (const std::string said = in_words(leaps, told_time_s); !said.empty())
+    record.notes.push_back(name + ": " + column + ": " + said);
   measure(logged, sum, options, period, record);
-  record.noise_changes = noise_changes(logged.rate, parts, period, told_time_s);
+  record.noise_changes = noise_changes(rate, parts, period, told_time_s);
   if (const std::string change = in_words(record.noise_changes); !change.empty())
     record.notes.push_back(name + ": " + column + ": " + change);
   if (record.fit) note_what_was_left_out(column, record);
