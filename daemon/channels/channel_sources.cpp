@@ -41,8 +41,8 @@ class Entrance {
   [[nodiscard]] const std::shared_ptr<ChannelTable>& table() const { return wanted_.table; }
 
   // again: the reading that came last has come once more. It agrees with itself, which shows nothing, and is
-  // counted once.
-  void put(double number, std::int64_t time_ns, bool again = false) {
+  // counted once. Whether it is held now.
+  bool put(double number, std::int64_t time_ns, bool again = false) {
     const double value = number * wanted_.config.scale + wanted_.config.offset;
     again = again && value == last_;
     if (!again) good_ = plausible_.take(value);
@@ -54,6 +54,7 @@ class Entrance {
       wanted_.table->miss(wanted_.index, fault);
     else
       refuse(fault);
+    return good_;
   }
   // What came is no value.
   void refuse(const ChannelFault& fault) { wanted_.table->refuse(wanted_.index, fault); }
@@ -124,13 +125,15 @@ class LcmChannel {
     const bool dated = utime > 0 && utime < INT64_MAX / 1000;
     const std::int64_t now_ns = realtime_ns(), measured_ns = (dated ? utime : message.recv_utime) * 1000;
     // A date that is still to come shows that its clock, or this computer's, has been set back.
-    const bool comparable = dated && held_ns_ > 0 && held_ns_ <= now_ns;
-    if (comparable && measured_ns < held_ns_ - kSameTime_ns)
+    if (dated && held_ns_ > 0 && held_ns_ <= now_ns && measured_ns < held_ns_ - kSameTime_ns)
       return in_.refuse({.kind = ChannelFault::Kind::late});
-    const bool again = comparable && measured_ns <= held_ns_ + kSameTime_ns;
-    if (dated && !again) held_ns_ = measured_ns;
-    // What was measured in the future was measured now: else it would never grow old.
-    in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, now_ns - measured_ns), again);
+    const bool again = dated && last_ns_ > 0 && std::abs(measured_ns - last_ns_) <= kSameTime_ns;
+    if (dated && !again) last_ns_ = measured_ns;
+    // What was measured in the future was measured now: else it would never grow old. What is refused is not
+    // held, whatever its date: those before it are not late for it.
+    const bool held =
+        in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, now_ns - measured_ns), again);
+    if (held && dated && !again) held_ns_ = measured_ns;
   }
 
  private:
@@ -139,7 +142,8 @@ class LcmChannel {
 
   Entrance in_;
   LcmField field_;
-  std::int64_t held_ns_ = 0;  // by its own clock, the latest that came; 0: none that tells
+  std::int64_t last_ns_ = 0,
+               held_ns_ = 0;  // by its own clock, of the last and of the value held; 0: none that tells
 };
 
 // All signals wanted from one CAN interface.
