@@ -26,6 +26,7 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
+#include "tools/ifog/captures/lcm_events.h"
 #include "tools/ifog/captures/status_beside.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -37,7 +38,7 @@ bool carries_rates(const std::string& channel) {
   return channel_name(channel).content == ChannelContent::rate;
 }
 
-// LCM reads a log by its name and from any place in it. One that comes packed, through a pipe or as a flight
+// A log is read several times, by its name. One that comes packed, through a pipe or as a flight
 // recording is kept in a file without one, under a name that only this process knows.
 class NamedLog {
  public:
@@ -82,8 +83,8 @@ class NamedLog {
 
 // "": there is none.
 std::string first_channel(const NamedLog& source) {
-  lcm::LogFile log(source.name(), "r");
-  while (const lcm::LogEvent* event = log.readNextEvent())
+  LcmEvents log(source.name());
+  while (const LcmEvents::Event* event = log.next())
     if (carries_rates(event->channel)) return event->channel;
   return "";
 }
@@ -93,8 +94,6 @@ std::string first_channel(const NamedLog& source) {
 struct ChosenLog {
   ChosenLog(InputFile& file, const std::string& channel)
       : path(file.path()), source(file), asked_for(!channel.empty()) {
-    if (!lcm::LogFile(source.name(), "r").good())
-      throw std::runtime_error(path + ": cannot open as an LCM log");
     rates = asked_for ? channel : first_channel(source);
     if (rates.empty()) throw std::runtime_error(path + ": has no channel IFOG_<NAME>");
   }
@@ -150,17 +149,6 @@ class SensorSeconds {
   std::int64_t start_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0, shift_ns_ = 0;
 };
 
-std::size_t bytes_of(lcm::LogFile& log) {
-  std::fseek(log.getFilePtr(), 0, SEEK_END);
-  const long bytes = std::ftell(log.getFilePtr());
-  std::rewind(log.getFilePtr());
-  return static_cast<std::size_t>(std::max(0L, bytes));
-}
-
-std::span<const std::uint8_t> content_of(const lcm::LogEvent& event) {
-  return {static_cast<const std::uint8_t*>(event.data), static_cast<std::size_t>(event.datalen)};
-}
-
 using RateSink = std::function<void(const rate_t&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
@@ -168,24 +156,22 @@ using OtherSink = std::function<void(const std::string&, std::span<const std::ui
 // and those of all others to `others`, which may be empty. What is not later is left out, and said.
 void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
   const std::string &path = chosen.path, &wanted = chosen.rates;
-  lcm::LogFile log(chosen.source.name(), "r");
+  LcmEvents log(chosen.source.name());
   std::size_t number = 0, axes = 0, left_out = 0;
   SensorSeconds seconds;
-  Progress progress("reading " + std::filesystem::path(path).filename().string(), bytes_of(log));
-  long end = 0;  // of the last whole message
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
+  Progress progress("reading " + std::filesystem::path(path).filename().string(), log.size());
+  while (const LcmEvents::Event* event = log.next()) {
     ++number;
-    end = std::ftell(log.getFilePtr());
-    progress.at(static_cast<std::size_t>(end));
+    progress.at(log.at());
     if (event->channel != wanted) {
-      if (others) others(event->channel, content_of(*event));
+      if (others) others(event->channel, event->data);
       continue;
     }
     const auto refuse = [&](const std::string& why) {
       throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
     };
     rate_t message;
-    if (!decode_message(event->data, static_cast<std::size_t>(event->datalen), message))
+    if (!decode_message(event->data.data(), event->data.size(), message))
       refuse("is no ifog.rate_t of this version");
     const bool first = axes == 0;
     if (first) axes = message.raw.size();
@@ -204,10 +190,13 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
         "at "
         "once, or a clock was set back)\n",
         path.c_str(), left_out, printable(wanted).c_str());
-  // LCM's reader does not tell the end of the file from a message that is cut off.
-  std::fseek(log.getFilePtr(), 0, SEEK_END);
-  if (const long left = std::ftell(log.getFilePtr()) - end; left > 0)
-    warn("%s: its last %ld bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
+  if (log.places() > 0)
+    warn(
+        "%s: %zu bytes in %zu place(s) are no messages and are left out, the first from byte %zu on (is the "
+        "file damaged?)\n",
+        path.c_str(), log.damaged(), log.places(), log.first_place());
+  if (const std::size_t left = log.size() - log.at(); left > 0)
+    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
 }
 
 struct FirstLook {
@@ -221,19 +210,18 @@ FirstLook look_through(const ChosenLog& chosen) {
   LcmChannelNames names(chosen.rates);
   std::set<std::string> with_rates;
   StatusBeside beside;
-  lcm::LogFile log(chosen.source.name(), "r");
-  Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(),
-                    bytes_of(log));
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
-    progress.at(static_cast<std::size_t>(std::ftell(log.getFilePtr())));
+  LcmEvents log(chosen.source.name());
+  Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(), log.size());
+  while (const LcmEvents::Event* event = log.next()) {
+    progress.at(log.at());
     if (event->channel == chosen.rates) {
       names.end_row();
-      beside.rate(event->timestamp);
+      beside.rate(event->timestamp_us);
       continue;
     }
     if (!chosen.asked_for && carries_rates(event->channel)) with_rates.insert(event->channel);
     if (event->channel == chosen.rates + std::string(kStatusEnding)) beside.status();
-    names.take(event->channel, content_of(*event));
+    names.take(event->channel, event->data);
   }
   if (with_rates.empty()) return {names.of_status(), beside};
   with_rates.insert(chosen.rates);

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/lcm_events.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/endian/conversion.hpp>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
+constexpr std::size_t kHead = 28;
+// LCM_MAX_CHANNEL_NAME_LENGTH is 63; a message goes into at most 2^16 fragments of a datagram, 4 GB that
+// nobody sends.
+constexpr std::int32_t kLongestName = 255, kLongestData = 1 << 28;
+constexpr std::size_t kBlock = std::size_t{1} << 16U;
+
+}  // namespace
+
+LcmEvents::LcmEvents(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+  if (!file_) throw std::runtime_error(path + ": cannot open as an LCM log: " + std::strerror(errno));
+  fseeko(file_.get(), 0, SEEK_END);
+  size_ = static_cast<std::size_t>(std::max<off_t>(0, ftello(file_.get())));
+  std::rewind(file_.get());
+}
+
+const LcmEvents::Event* LcmEvents::next() {
+  const std::size_t before = at_;
+  // As a rule an event stands behind the other.
+  for (std::optional<std::size_t> begin = before; begin; begin = magic_in(*begin + 1, size_)) {
+    if (!read_event(*begin)) continue;
+    if (*begin > before) {
+      if (places_++ == 0) first_place_ = before;
+      damaged_ += *begin - before;
+    }
+    return &event_;
+  }
+  return nullptr;
+}
+
+bool LcmEvents::read_event(std::size_t from) {
+  std::span<const std::uint8_t> bytes = window(from, kHead);
+  if (bytes.size() < kHead || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin())) return false;
+  const std::int32_t name = boost::endian::load_big_s32(&bytes[20]);
+  const std::int32_t data = boost::endian::load_big_s32(&bytes[24]);
+  if (name < 1 || name > kLongestName || data < 0 || data > kLongestData) return false;
+  const std::size_t name_bytes = static_cast<std::size_t>(name);
+  const std::size_t whole = kHead + name_bytes + static_cast<std::size_t>(data), end = from + whole;
+  if (end > size_) return false;
+  bytes = window(from, whole + kMagic.size());
+  // Where something else follows, this is what is damaged, or its lengths are: they cannot be told apart.
+  if (bytes.size() < whole ||
+      !std::equal(bytes.begin() + static_cast<std::ptrdiff_t>(whole), bytes.end(), kMagic.begin()))
+    return false;
+  bytes = bytes.first(whole);
+  event_.number = boost::endian::load_big_s64(&bytes[4]);
+  event_.timestamp_us = boost::endian::load_big_s64(&bytes[12]);
+  event_.channel.assign(bytes.begin() + kHead,
+                        bytes.begin() + static_cast<std::ptrdiff_t>(kHead + name_bytes));
+  event_.data = bytes.subspan(kHead + name_bytes);
+  at_ = end;
+  return true;
+}
+
+std::optional<std::size_t> LcmEvents::magic_in(std::size_t from, std::size_t to) {
+  while (from + kMagic.size() <= to) {
+    const std::span<const std::uint8_t> bytes = window(from, std::min(kBlock, to - from));
+    const auto found = std::search(bytes.begin(), bytes.end(), kMagic.begin(), kMagic.end());
+    if (found != bytes.end()) return from + static_cast<std::size_t>(found - bytes.begin());
+    if (bytes.size() < kMagic.size()) break;
+    from += bytes.size() - (kMagic.size() - 1);  // they may lie across
+  }
+  return std::nullopt;
+}
+
+std::span<const std::uint8_t> LcmEvents::window(std::size_t from, std::size_t bytes) {
+  const std::size_t read_to = read_from_ + read_.size();
+  if (from < read_from_ || from + bytes > read_to) {
+    if (from < read_from_ || from > read_to)
+      read_.clear();
+    else
+      read_.erase(read_.begin(), read_.begin() + static_cast<std::ptrdiff_t>(from - read_from_));
+    read_from_ = from;
+    const std::size_t kept = read_.size(), wanted = std::max(bytes, kBlock);
+    read_.resize(wanted);
+    if (fseeko(file_.get(), static_cast<off_t>(from + kept), SEEK_SET) != 0) fail();
+    read_.resize(kept + std::fread(read_.data() + kept, 1, wanted - kept, file_.get()));
+    if (std::ferror(file_.get()) != 0) fail();
+  }
+  const std::span<const std::uint8_t> all(read_);
+  return all.subspan(from - read_from_, std::min(bytes, all.size() - (from - read_from_)));
+}
+
+void LcmEvents::fail() const { throw std::runtime_error(path_ + ": " + std::strerror(errno)); }
+
+}  // namespace ifog::tools
