@@ -18,9 +18,12 @@ std::vector<std::string> split(std::string_view line, char separator) {
   for (;;) {
     const std::size_t end = line.find(separator);
     names.emplace_back(unquoted(line.substr(0, end)));
-    if (end == std::string_view::npos) return names;
+    if (end == std::string_view::npos) break;
     line.remove_prefix(end + 1);
   }
+  // As rows are that end with a separator.
+  if (names.size() > 1 && names.back().empty()) names.pop_back();
+  return names;
 }
 
 bool is_number(std::string_view text) {

@@ -14,6 +14,16 @@
 namespace ifog {
 namespace {
 
+// What R, pandas, databases and spreadsheets write where there is no value.
+bool is_no_value(std::string_view cell) {
+  constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
+  return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
+    return std::equal(cell.begin(), cell.end(), word.begin(), word.end(), [](char c, char small) {
+      return (c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) == small;
+    });
+  });
+}
+
 double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell,
               std::string_view digits) {
   if (cell.empty()) return kMissing;
@@ -21,9 +31,11 @@ double number(const std::string& path, std::size_t line, const std::string& colu
   const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range)
     fail_at(path, line, printable(column) + " is " + in_quotes(cell) + ", outside what a double holds");
-  if (error != std::errc() || end != digits.data() + digits.size())
+  if (error != std::errc() || end != digits.data() + digits.size()) {
+    if (is_no_value(cell)) return kMissing;
     fail_at(path, line,
             printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing");
+  }
   if (std::isinf(value))
     fail_at(path, line, printable(column) + " is infinite, expected a finite number, 'nan' or nothing");
   return value;
@@ -60,6 +72,8 @@ class Rows {
     std::size_t place = 0;
     for (std::string_view rest = line;;) {
       const std::size_t end = rest.find(separator_);
+      // Some writers end each row with a separator.
+      if (place == to_.size() && end == std::string_view::npos && trimmed(rest).empty()) break;
       if (place == to_.size())
         fail_at(path_, number,
                 "more cells than the " + std::to_string(to_.size()) + " columns of the header");

@@ -71,6 +71,27 @@ TEST_F(CaptureFile, RefusesWithFileLineValueAndExpectation) {
             "c.csv:2: rate_radps is infinite, expected a finite number, 'nan' or nothing");
 }
 
+// What R, pandas, databases and spreadsheets make of a missing value, and of the end of a row.
+TEST_F(CaptureFile, WordsForNoValueAndSeparatorsAtTheEnd) {
+  for (const std::string word : {"NA", "na", "N/A", "#N/A", "null", "NULL", "None", "-", "NaN", ""})
+    for (const std::string header_end : {"", ",", ", "})
+      for (const std::string row_end : {"", ",", ", "}) {
+        const ifog::Capture c =
+            ifog::read_capture(file("time_s,rate_radps,temperature_degC" + header_end + "\n0,1," + word +
+                                    row_end + "\n1," + word + ",7" + row_end + "\n2,3,8\n"));
+        ASSERT_EQ(c.size(), 3U) << word;
+        EXPECT_TRUE(std::isnan(c.rate_radps[0][1])) << word;
+        ASSERT_EQ(c.channels.size(), 1U) << word;
+        EXPECT_TRUE(std::isnan(c.channels[0].values[0])) << word;
+        EXPECT_EQ(c.channels[0].values[1], 7.0) << word;
+      }
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1,NAN1\n"),
+            "c.csv:3: rate_radps is 'NAN1', expected a number, 'nan' or nothing");
+  EXPECT_EQ(refusal("time_s,rate_radps\n0,1,,\n"), "c.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(refusal("time_s,rate_radps,\n0,1,5\n"), "c.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(refusal("time_s,rate_radps\nNA,1\n"), "c.csv:2: time_s is missing, expected a time");
+}
+
 TEST_F(CaptureFile, GzipReadsBackTheSameBitsAndATruncatedOneIsRefused) {
   ifog::Capture c;
   c.axes = {""};

@@ -322,51 +322,19 @@ TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
             path_ + ": times count from the first message, which is of 1700000000 s since 1970\n");
 }
 
-// LCM's reader ends at the first of these, or takes a length of 2 GB or less than nothing for what it says.
-TEST_F(LcmLog, BehindWhatIsDamagedItIsReadOn) {
-  for (int n = 0; n < 12; ++n) add("IFOG_NOSE", sample(n, 1));
+TEST_F(LcmLog, WhatIsDamagedIsLeftOutAndSaid) {
+  for (int n = 0; n < 4; ++n) add("IFOG_NOSE", sample(n, 1));
   finish();
-  std::string whole;
-  {
-    std::ifstream file(path_, std::ios::binary);
-    whole.assign(std::istreambuf_iterator<char>(file), {});
-  }
-  const std::size_t event = whole.size() / 12;
-  const auto with = [&](std::size_t at, const std::string& bytes, std::size_t instead_of) {
-    std::string damaged = whole;
-    damaged.replace(at, instead_of, bytes);
-    std::ofstream(path_, std::ios::binary) << damaged;
-    testing::internal::CaptureStderr();
-    const std::size_t rows = read("").time_s.size();
-    return std::pair(rows, testing::internal::GetCapturedStderr());
-  };
-  const auto place = [&](std::size_t bytes, std::size_t from) {
-    return path_ + ": " + std::to_string(bytes) +
-           " bytes in 1 place(s) are no messages and are left out, the first from byte " +
-           std::to_string(from) + " on (is the file damaged?)\n";
-  };
-  const std::string four(4, '\xFF'), two_gb("\x7F\xFF\xFF\xFF", 4), some("\0\0\0\x21", 4), none(4, '\0');
-  for (const std::size_t length : {20UL, 24UL})  // of the channel's name, of the data
-    for (const std::string& bytes : {four, two_gb, some, none}) {
-      const auto [rows, said] = with(5 * event + length, bytes, 4);
-      EXPECT_EQ(rows, 11U) << length;
-      EXPECT_NE(said.find(place(event, 5 * event)), std::string::npos) << length << ' ' << said;
-    }
-  // Bytes that came between; a beginning; the last one.
-  const std::string junk(100'000, 'j');
-  const auto [rows, said] = with(7 * event, junk, 0);
-  EXPECT_EQ(rows, 11U);
-  EXPECT_NE(said.find(place(event + junk.size(), 6 * event)), std::string::npos) << said;
-  const auto [without_one, begin_said] = with(3 * event, "\xED\xA1\xDA\x02", 4);
-  EXPECT_EQ(without_one, 10U);
-  EXPECT_NE(begin_said.find(place(2 * event, 2 * event)), std::string::npos) << begin_said;
-  const auto [without_last, last_said] = with(11 * event + 24, four, 4);
-  EXPECT_EQ(without_last, 11U);
-  EXPECT_NE(last_said.find("its last " + std::to_string(event) + " bytes"), std::string::npos) << last_said;
-  // A part that was lost: the event that it begins in reaches into the next one.
-  const auto [cut, cut_said] = with(4 * event + 40, "", 60);
-  EXPECT_EQ(cut, 11U);
-  EXPECT_NE(cut_said.find(place(event - 60, 4 * event)), std::string::npos) << cut_said;
+  const auto event = static_cast<std::streamoff>(fs::file_size(path_) / 4);
+  std::fstream(path_, std::ios::binary | std::ios::in | std::ios::out).seekp(event + 24).write("\xFF", 1);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(read("").time_s.size(), 3U);
+  EXPECT_NE(
+      testing::internal::GetCapturedStderr().find(path_ + ": " + std::to_string(event) +
+                                                  " bytes in 1 place(s) are no messages and are left out, "
+                                                  "the first from byte " +
+                                                  std::to_string(event) + " on (is the file damaged?)\n"),
+      std::string::npos);
 }
 
 // Rows that are handed on are gone.
