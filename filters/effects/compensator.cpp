@@ -111,7 +111,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(place_of(effect) + ": " + error.what());
   }
-  place(std::move(term), effect, axes);
+  place(term, effect, axes);
 }
 
 void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>& axes) {
@@ -173,7 +173,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
   term.factors.push_back(std::move(factor));
 }
 
-void Compensator::place(Term term, const Effect& effect, const std::vector<std::string>& axes) {
+void Compensator::place(const Term& term, const Effect& effect, const std::vector<std::string>& axes) {
   bool placed = false;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     if (!effect.axis.empty() && effect.axis != axes[axis]) continue;

@@ -125,7 +125,7 @@ class Compensator {
   void add_zone(const Effect& effect, const std::vector<std::string>& axes);
   void add_factor(Term& term, ShapeSettings settings, const std::string& channel,
                   const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges);
-  void place(Term term, const Effect& effect, const std::vector<std::string>& axes);
+  void place(const Term& term, const Effect& effect, const std::vector<std::string>& axes);
   void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
   void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;

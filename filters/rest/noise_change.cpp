@@ -211,7 +211,7 @@ Loudness loudness_of(const Octave& octave) {
   const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
   if (!(least > 0.0)) return {};
   out.deviation = least;
-  for (const std::size_t together : {1, 2, 4})
+  for (const std::size_t together : {1U, 2U, 4U})
     out.deviation = std::max(out.deviation, deviation_by(out.root, together));
   return out;
 }
@@ -317,6 +317,7 @@ std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t sam
   std::sort(held.begin(), held.end(), [](const Stretch& a, const Stretch& b) { return a.size() > b.size(); });
   held.resize(std::min(held.size(), kMostChanges));
   std::vector<NoiseChange> out;
+  out.reserve(held.size());
   for (const Stretch& each : held)
     out.push_back({time_s(each.begin), time_s(each.end - 1), 0.0, {0.0, 0.5 / period_s}});
   return out;

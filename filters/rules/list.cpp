@@ -22,6 +22,7 @@ std::span<const RuleEntry> rules() { return kRules; }
 
 std::vector<std::string_view> rule_names() {
   std::vector<std::string_view> names;
+  names.reserve(kRules.size());
   for (const RuleEntry& entry : kRules) names.emplace_back(entry.name);
   return names;
 }

@@ -81,6 +81,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
 
   const std::vector<std::string> asked = with_help_as_option(app, argc, argv);
   std::vector<const char*> arguments;
+  arguments.reserve(asked.size());
   for (const std::string& word : asked) arguments.push_back(word.c_str());
   const auto count = static_cast<int>(arguments.size());
   int status = 0;

@@ -28,7 +28,7 @@ double Moments::deviation() const {
 }
 
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
-    : output_(std::move(output)), part_(part), keep_(keep || smooth), smooth_(smooth) {}
+    : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
 
 void DenoisedRows::begin(const std::vector<std::string>& axes) {
   axes_ = axes;

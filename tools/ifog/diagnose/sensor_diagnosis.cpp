@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -53,9 +53,12 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
   return record;
 }
 
+// One not-a-number is the other.
+std::uint64_t bits(double rate) { return std::bit_cast<std::uint64_t>(rate); }
+
 bool same_row(const CaptureView& a, std::size_t i, const CaptureView& b, std::size_t j) {
   for (std::size_t axis = 0; axis < a.rate_radps.size(); ++axis)
-    if (std::memcmp(&a.rate_radps[axis][i], &b.rate_radps[axis][j], sizeof(double)) != 0) return false;
+    if (bits(a.rate_radps[axis][i]) != bits(b.rate_radps[axis][j])) return false;
   return true;
 }
 

@@ -155,7 +155,7 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
            in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
            in_hours(arguments_.least_rest_s) + " at least: waits for more";
   }
-  if (const std::string why = not_to_be_judged(in_use, recorded); !why.empty()) return why;
+  if (std::string why = not_to_be_judged(in_use, recorded); !why.empty()) return why;
   judge_last_adoption(files, in_use);
   std::string said = diagnose(recorded, files, in_use);
   gone_through_ = true;

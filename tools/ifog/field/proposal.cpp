@@ -32,7 +32,7 @@ std::string inside(const std::string& state, const std::string& file) {
 
 // A file that the index names lies beside it and nowhere else.
 std::string plain_name(const json& from, const std::string& path) {
-  const auto name = from.get<std::string>();
+  auto name = from.get<std::string>();
   if (name.empty() || name != fs::path(name).filename().string())
     throw std::runtime_error(path + ": names a file that does not lie beside it");
   return name;

@@ -51,8 +51,7 @@ std::unique_ptr<Engine> engine_named(const Arguments& arguments, const Results& 
 class FleetRun {
  public:
   FleetRun(const Arguments& arguments, const Manifest& manifest, const Results& results)
-      : arguments_(arguments),
-        manifest_(manifest),
+      : manifest_(manifest),
         results_(results),
         options_(arguments.settings.text()),
         level_(arguments.settings.wanted.significance),
@@ -235,7 +234,6 @@ class FleetRun {
     say("%s\n%s\n", results_.path("fleet.html").c_str(), results_.path("fleet.json").c_str());
   }
 
-  const Arguments& arguments_;
   const Manifest& manifest_;
   const Results& results_;
   std::string options_;

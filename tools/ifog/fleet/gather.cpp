@@ -105,6 +105,7 @@ std::vector<PopulationParameter> noise_parameters(const Diagnosed& diagnosed) {
   for (const std::size_t gyro : diagnosed.gyros)
     for (const auto& [axis, terms] : diagnosed.noise.at(gyro)) add_noise(terms, axis, gyro, found);
   std::vector<PopulationParameter> parameters;
+  parameters.reserve(found.size());
   for (auto& [key, parameter] : found) parameters.push_back(std::move(parameter));
   return parameters;
 }

@@ -42,7 +42,7 @@ std::string words(const std::string& path, const toml::table& table, const char*
 std::string serial_of(const std::string& path, const toml::table& table) {
   constexpr const char* kExpected =
       "up to 64 letters, digits, '.', '_' and '-', the first a letter, digit or '_'";
-  const std::string serial = words(path, table, "serial", kExpected);
+  std::string serial = words(path, table, "serial", kExpected);
   const bool plain = std::all_of(serial.begin(), serial.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c) != 0) || c == '.' || c == '_' || c == '-';
   });
