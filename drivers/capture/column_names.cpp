@@ -42,8 +42,8 @@ std::string unit_by_name(const std::string& header, const std::string& unit, con
 }
 
 void refuse_header(const std::string& path, std::size_t line_number, const std::string& what,
-                   const std::vector<std::string>& names) {
-  const std::string options = suggested_options(names);
+                   const std::vector<std::string>& names, bool dated) {
+  const std::string options = suggested_options(names, dated);
   fail_at(path, line_number, what + (options.empty() ? "" : "; to read it as it is: " + options));
 }
 

@@ -22,8 +22,9 @@ std::string shortest(double value);
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
 // Of a column that was chosen without a unit, whose own name says another than was wanted.
 std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option);
-// As fail_at() of a header, with the options that read it as it is where its names tell them.
+// As fail_at() of a header, with the options that read it as it is where its names tell them;
+// dated as there.
 [[noreturn]] void refuse_header(const std::string& path, std::size_t line, const std::string& what,
-                                const std::vector<std::string>& names);
+                                const std::vector<std::string>& names, bool dated = false);
 
 }  // namespace ifog

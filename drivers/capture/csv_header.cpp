@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/column_names.h"
+#include "drivers/capture/date_time.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/ifog/quoted.h"
 
@@ -52,9 +53,25 @@ void refuse_numbers(std::string_view line, const std::string& path, std::size_t 
               ", …, expected a header before them: 'time_s,rate_radps,…'");
 }
 
-void check_names(const std::vector<std::string>& names, const std::string& path, std::size_t line) {
+// Whether a cell of the first row is a date.
+bool dated(Lines rows, char separator) {
+  std::string_view row;
+  while (rows.next(row) && (trimmed(row).empty() || row.front() == '#')) {
+  }
+  for (std::size_t from = 0; from <= row.size();) {
+    const std::size_t to = std::min(row.find(separator, from), row.size());
+    if (is_date(unquoted(row.substr(from, to - from)))) return true;
+    from = to + 1;
+  }
+  return false;
+}
+
+void check_names(const std::vector<std::string>& names, const std::string& path, const Lines& rows,
+                 char separator) {
+  const std::size_t line = rows.number();
   if (names.front() != "time_s")
-    refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names);
+    refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names,
+                  dated(rows, separator));
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (name.empty()) fail_at(path, line, "a column has no name");
@@ -160,7 +177,7 @@ bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& lay
       layout.separator == ',' && !separator.empty())
     fail_at(path, header.line,
             "no comma in the header " + in_quotes(line) + "; expected commas, or " + separator);
-  if (!layout.chooses()) check_names(names, path, header.line);
+  if (!layout.chooses()) check_names(names, path, lines, layout.separator);
   choose(names, layout, path, header);
   return true;
 }

@@ -95,8 +95,9 @@ std::optional<std::string> rate_axis(const std::string& base) {
 }
 
 bool is_time(const std::string& base) {
-  constexpr std::array<std::string_view, 8> kNames{"t",        "time", "timestamp", "time_stamp",
-                                                   "utc_time", "zeit", "seconds",   "elapsed"};
+  constexpr std::array<std::string_view, 15> kNames{
+      "t",         "time",          "timestamp", "time_stamp", "utc",  "utc_time", "time_utc", "datetime",
+      "date_time", "timestamp_utc", "date",      "iso_time",   "zeit", "seconds",  "elapsed"};
   return std::find(kNames.begin(), kNames.end(), base) != kNames.end();
 }
 
@@ -189,7 +190,7 @@ std::string option_for(const CsvTime& time, const std::string& unit) {
   return "--time " + shell_word(time.header + ":" + unit);
 }
 
-std::string suggested_options(const std::vector<std::string>& headers) {
+std::string suggested_options(const std::vector<std::string>& headers, bool dated) {
   std::string time, columns;
   bool timed = false, renamed = false;
   std::vector<std::string> taken, named;
@@ -198,8 +199,8 @@ std::string suggested_options(const std::vector<std::string>& headers) {
     const Parts parts = parts_of(header);
     if (!timed && is_time(parts.base)) {
       timed = true;
-      const bool known = time_unit(parts.unit).has_value();
-      if (header != "time_s") time = " " + option_for(CsvTime{header}, known ? parts.unit : "UNIT");
+      const std::string unit = dated ? "s" : time_unit(parts.unit) ? parts.unit : "UNIT";
+      if (header != "time_s") time = " " + option_for(CsvTime{header}, unit);
       continue;
     }
     const auto axis = rate_axis(parts.base);

@@ -46,10 +46,10 @@ struct CsvLayout {
 
 // The options with which a file of these headers may be read, "" if nothing in them looks like a gyro's:
 // "--time Time:ms --column rate_x_radps=GyroX:deg/s". UNIT stands where the header names none. Of the other
-// columns those whose unit is known.
+// columns those whose unit is known. dated: the times are dates, whose unit is no question.
 std::string option_for(const CsvColumn& column, const std::string& unit);
 std::string option_for(const CsvTime& time, const std::string& unit);
-std::string suggested_options(const std::vector<std::string>& headers);
+std::string suggested_options(const std::vector<std::string>& headers, bool dated = false);
 // The separator that the line may have been meant with: "--separator ';'", "" for none.
 std::string suggested_separator(const std::string& header_line);
 

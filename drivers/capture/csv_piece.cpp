@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/column_names.h"
+#include "drivers/capture/date_time.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
@@ -48,12 +49,32 @@ std::string_view cell_at(std::string_view line, std::size_t place, char separato
   return trimmed(line.substr(0, line.find(separator)));
 }
 
+// What a cell says, a decimal comma as a point.
+class CsvDigits {
+ public:
+  CsvDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
+    if (!decimal_comma || cell.size() > with_point_.size()) return;
+    const std::size_t comma = cell.find(',');
+    if (comma == std::string_view::npos) return;
+    std::copy(cell.begin(), cell.end(), with_point_.begin());
+    with_point_[comma] = '.';
+    digits_ = {with_point_.data(), cell.size()};
+  }
+  CsvDigits(const CsvDigits&) = delete;
+  CsvDigits& operator=(const CsvDigits&) = delete;
+  operator std::string_view() const { return digits_; }
+
+ private:
+  std::array<char, 64> with_point_;
+  std::string_view digits_;
+};
+
 // One row after the other, into the columns of a piece.
 class Rows {
  public:
-  Rows(CsvPiece& piece, const CsvHeader& header, char separator, const TimeStamps& stamps,
+  Rows(CsvPiece& piece, const CsvHeader& header, char separator, const TimeStamps& stamps, double unit_s,
        const std::string& path)
-      : piece_(piece), header_(header), separator_(separator), stamps_(stamps), path_(path) {
+      : piece_(piece), header_(header), separator_(separator), stamps_(stamps), unit_s_(unit_s), path_(path) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.cells.size());
     for (std::size_t i = 0; i < header.cells.size(); ++i)
@@ -92,12 +113,16 @@ class Rows {
   void take(std::size_t place, std::string_view text, std::size_t line) {
     const CsvCell& cell = header_.cells[place];
     text = unquoted(text);
-    const CsvDigits digits(text, separator_ != ',');
-    if (cell.column == CsvCell::kTime) return take_time(place, text, digits, line);
-    keep(place, number(path_, line, cell.name, text, digits), 0.0, text);
+    if (cell.column == CsvCell::kTime) return take_time(place, text, line);
+    keep(place, number(path_, line, cell.name, text, CsvDigits(text, separator_ != ',')), 0.0, text);
   }
 
-  void take_time(std::size_t place, std::string_view text, std::string_view digits, std::size_t line) {
+  void take_time(std::size_t place, std::string_view text, std::size_t line) {
+    const TimeDigits digits(text, separator_ != ',');
+    if (digits.is_date() && unit_s_ != 1.0)
+      fail_at(path_, line,
+              printable(header_.cells[place].name) + " is " + in_quotes(text) +
+                  ", a date, which says its own unit, expected no other one of --time");
     double since = 0.0;
     if (!stamps_.since(digits, since, piece_.most_decimals)) {
       since = stamps_.since(number(path_, line, header_.cells[place].name, text, digits));
@@ -120,6 +145,7 @@ class Rows {
   const CsvHeader& header_;
   char separator_;
   const TimeStamps& stamps_;
+  double unit_s_;
   const std::string& path_;
   std::vector<std::vector<double>*> to_;
 };
@@ -146,7 +172,7 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char se
                          std::size_t lines_before, double time_before) {
   CsvPiece piece;
   piece.rows.origin = stamps.origin();
-  Rows rows(piece, header, separator, stamps, path);
+  Rows rows(piece, header, separator, stamps, unit_s, path);
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   rows.reserve(text.size() / length + text.size() / length / 16 + 1);
@@ -172,7 +198,8 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char se
       fail_at(path, lines.number(),
               what_no_sensor_measures(time.name, in_quotes(piece.impossible[header.time_place].first),
                                       time.range));
-    if (times.size() == 1) piece.decimals = said().find('.') != std::string_view::npos;
+    if (times.size() == 1)
+      piece.decimals = said().find('.') != std::string_view::npos || is_date(unquoted(said()));
     if (std::isnan(times.back()))
       fail_at(path, lines.number(), printable(time.name) + " is missing, expected a time");
     const double before = times.size() > 1 ? times[times.size() - 2] : time_before;

@@ -19,26 +19,6 @@
 
 namespace ifog {
 
-// What a cell says, a decimal comma as a point.
-class CsvDigits {
- public:
-  CsvDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
-    if (!decimal_comma || cell.size() > with_point_.size()) return;
-    const std::size_t comma = cell.find(',');
-    if (comma == std::string_view::npos) return;
-    std::copy(cell.begin(), cell.end(), with_point_.begin());
-    with_point_[comma] = '.';
-    digits_ = {with_point_.data(), cell.size()};
-  }
-  CsvDigits(const CsvDigits&) = delete;
-  CsvDigits& operator=(const CsvDigits&) = delete;
-  operator std::string_view() const { return digits_; }
-
- private:
-  std::array<char, 64> with_point_;
-  std::string_view digits_;
-};
-
 struct CsvPiece {
   RowBlock rows;                             // times since the stamps' origin and values in the file's units
   std::string comments;                      // as in RowNotes

@@ -15,6 +15,7 @@
 
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/csv_piece.h"
+#include "drivers/capture/date_time.h"
 #include "drivers/capture/row_checks.h"
 
 namespace ifog {
@@ -129,7 +130,7 @@ void CsvRows::begin(TextPieces& pieces, std::string& text) {
 void CsvRows::count_from_first(std::string_view text) {
   if (stamps_) return;
   if (const auto first = first_time(text, header_, layout_.separator))
-    stamps_.emplace(CsvDigits(*first, layout_.separator != ','), unit_s());
+    stamps_.emplace(TimeDigits(*first, layout_.separator != ','), unit_s());
 }
 
 void CsvRows::in_order(TextPieces& pieces, std::string text) {

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "drivers/capture/date_time.h"
 #include "drivers/ifog/decimal.h"
 
 namespace ifog {
@@ -90,7 +91,9 @@ TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
   return {first_ns / kNsPerSecond - (over < 0 ? 1 : 0), over < 0 ? over + kNsPerSecond : over};
 }
 
-std::optional<SaidTime> SaidTime::parse(std::string_view text) {
+std::optional<SaidTime> SaidTime::parse(std::string_view said) {
+  const TimeDigits digits(said, false);
+  const std::string_view text = digits;
   if (Plain time; read_plain(text, time))
     return SaidTime{static_cast<double>(time.whole),
                     static_cast<double>(time.fraction) / static_cast<double>(ten_to(time.decimals))};

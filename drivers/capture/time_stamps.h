@@ -47,7 +47,7 @@ struct TimeOrigin {
 struct SaidTime {
   double whole_s = 0.0, beyond_s = 0.0;
 
-  // Of any decimal number; nothing of what is none, or not finite.
+  // Of any decimal number or date; nothing of what is neither, or not finite.
   [[nodiscard]] static std::optional<SaidTime> parse(std::string_view text);
   // Whether a time is before this one, by half a ns or more.
   [[nodiscard]] bool is_after(const TimeOrigin& origin, double since_s) const {

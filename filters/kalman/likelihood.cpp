@@ -40,7 +40,7 @@ class Pass {
   }
 
   LikelihoodTerms over(const LikelihoodRecord::Group& group) {
-    CovarianceDoubling<n> doubling(transition_, driving_, core_.h, noise_);
+    CovarianceDoubling doubling(transition_, driving_, core_.h, noise_);
     const double* row = group.rows.data();
     LikelihoodTerms terms;
     std::size_t measured = 0;

@@ -2,9 +2,7 @@
 // What a filter whose gain stays as it is does to a slow signal: x(k) = F x(k-1) + K z(k), F = (I - K h')A.
 #pragma once
 
-#include <Eigen/Core>
-
-#include "filters/state_models/state_model.h"
+#include "filters/state_models/few_states.h"
 
 namespace ifog {
 
@@ -13,11 +11,6 @@ struct Settled {
   double lag = 0.0;          // group delay of r'x behind z at zero frequency
   double correlation = 0.0;  // sum of the autocorrelation of the error r'x - rate over lags from 0
 };
-
-// As many states as there are, up to kMaxStates, and no allocation.
-using FewStatesMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxStates, kMaxStates>;
-using FewStatesVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxStates, 1>;
 
 // The output is r'x, the part of h'x that is the rate. With G(q) = r'(I - F/q)^-1 K: G(1) = r'(I-F)^-1 K,
 // delay = r'(I-F)^-1 F (I-F)^-1 K / G(1). The error obeys e(k) = F e(k-1) + noise, so its autocovariance is

@@ -38,11 +38,13 @@ void TimePart::add_to(CLI::App& command, const std::string& of_from, const std::
   const auto add = [&command](const char* name, Bound& bound, const std::string& help) {
     const auto take = [name, &bound](const std::string& text) {
       const std::optional<SaidTime> said = SaidTime::parse(text);
-      if (!said) throw CLI::ValidationError(name, "is " + in_quotes(text) + ", expected a number");
+      if (!said)
+        throw CLI::ValidationError(
+            name, "is " + in_quotes(text) + ", expected a number of seconds or a date, 2026-05-01T12:00:00Z");
       static_cast<SaidTime&>(bound) = *said;
       bound.text = text;
     };
-    command.add_option_function<std::string>(name, take, help)->type_name("FLOAT");
+    command.add_option_function<std::string>(name, take, help)->type_name("TIME");
   };
   add("--from", from, of_from);
   add("--to", to, of_to);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/date_time.h"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+namespace ifog {
+namespace {
+
+// What is still to be read of a text.
+class Rest {
+ public:
+  explicit Rest(std::string_view text) : text_(text) {}
+
+  // Exactly so many digits.
+  bool number(std::size_t digits, int& value) {
+    if (text_.size() < digits) return false;
+    value = 0;
+    for (const char c : text_.substr(0, digits)) {
+      if (c < '0' || c > '9') return false;
+      value = 10 * value + (c - '0');
+    }
+    text_.remove_prefix(digits);
+    return true;
+  }
+  bool one_of(std::string_view wanted) {
+    if (text_.empty() || wanted.find(text_.front()) == std::string_view::npos) return false;
+    text_.remove_prefix(1);
+    return true;
+  }
+  bool word(std::string_view wanted) {
+    if (!text_.starts_with(wanted)) return false;
+    text_.remove_prefix(wanted.size());
+    return true;
+  }
+  std::string_view digits() {
+    const std::size_t end = std::min(text_.find_first_not_of("0123456789"), text_.size());
+    const std::string_view found = text_.substr(0, end);
+    text_.remove_prefix(end);
+    return found;
+  }
+  [[nodiscard]] bool ended() const { return text_.empty(); }
+
+ private:
+  std::string_view text_;
+};
+
+struct Moment {
+  std::int64_t s = 0;
+  std::string_view fraction;  // digits behind the point
+};
+
+// hh:mm, hh:mm:ss or hh:mm:ss.f…
+bool time_of_day(Rest& rest, bool seconds_needed, Moment& moment) {
+  int hours = 0, minutes = 0, seconds = 0;
+  if (!rest.number(2, hours) || !rest.one_of(":") || !rest.number(2, minutes)) return false;
+  const bool told = rest.one_of(":");
+  if (told ? !rest.number(2, seconds) : seconds_needed) return false;
+  if (hours > 23 || minutes > 59 || seconds > 60) return false;
+  moment.s += (hours * 60 + minutes) * 60 + seconds;
+  if (told && rest.one_of(".,")) {
+    moment.fraction = rest.digits();
+    if (moment.fraction.empty()) return false;
+  }
+  return true;
+}
+
+// What local time is ahead of UTC by.
+std::optional<std::int64_t> offset_s(Rest& rest) {
+  rest.one_of(" ");
+  if (rest.ended() || rest.one_of("Zz") || rest.word("UTC")) return 0;
+  const bool behind = rest.one_of("-");
+  int hours = 0, minutes = 0;
+  if ((!behind && !rest.one_of("+")) || !rest.number(2, hours)) return std::nullopt;
+  if (!rest.ended() && ((rest.one_of(":"), !rest.number(2, minutes)))) return std::nullopt;
+  if (hours > 23 || minutes > 59) return std::nullopt;
+  const std::int64_t by_s = (hours * 60 + minutes) * 60;
+  return behind ? -by_s : by_s;
+}
+
+std::optional<Moment> moment_of(std::string_view text) {
+  Moment moment;
+  Rest rest(text);
+  if (text.size() > 2 && text[2] == ':')
+    return time_of_day(rest, true, moment) && rest.ended() ? std::optional(moment) : std::nullopt;
+  int year = 0, month = 0, day = 0;
+  if (!rest.number(4, year)) return std::nullopt;
+  const char* const between = rest.word("-") ? "-" : rest.word("/") ? "/" : nullptr;
+  if (between == nullptr || !rest.number(2, month) || !rest.one_of(between) || !rest.number(2, day))
+    return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) return std::nullopt;
+  moment.s = std::chrono::sys_seconds(std::chrono::sys_days(date)).time_since_epoch().count();
+  if (rest.ended()) return moment;
+  if (!rest.one_of("Tt ") || !time_of_day(rest, false, moment)) return std::nullopt;
+  const auto ahead_s = offset_s(rest);
+  if (!ahead_s || !rest.ended()) return std::nullopt;
+  moment.s -= *ahead_s;
+  return moment;
+}
+
+}  // namespace
+
+std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to) {
+  constexpr std::size_t kWhole = 24;  // characters of any number of seconds
+  // No number has these there: of numbers, which most times are, nothing more is asked.
+  if (text.size() < 5 || (text[2] != ':' && text[4] != '-' && text[4] != '/')) return {};
+  auto moment = moment_of(text);
+  if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
+  // Before 1970 the digits behind the point count on, and those of a negative number count back.
+  if (moment->s < 0 && !moment->fraction.empty()) return {};
+  char* end = std::to_chars(to.data(), to.data() + kWhole, moment->s).ptr;
+  if (!moment->fraction.empty()) {
+    *end++ = '.';
+    end = std::copy(moment->fraction.begin(), moment->fraction.end(), end);
+  }
+  return {to.data(), static_cast<std::size_t>(end - to.data())};
+}
+
+TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
+  if (const std::string_view date = date_in_digits(cell, made_); !date.empty()) {
+    digits_ = date;
+    date_ = true;
+    return;
+  }
+  const std::size_t comma = decimal_comma ? cell.find(',') : std::string_view::npos;
+  if (comma == std::string_view::npos || cell.size() > made_.size()) return;
+  std::copy(cell.begin(), cell.end(), made_.begin());
+  made_[comma] = '.';
+  digits_ = {made_.data(), cell.size()};
+}
+
+}  // namespace ifog

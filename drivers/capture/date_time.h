@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Times that loggers write as dates (ISO 8601, RFC 3339), as the decimal digits of a number of seconds: what
+// reads numbers reads them then, with every digit that stood there.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace ifog {
+
+inline constexpr std::size_t kLongestDate = 64;
+
+// The seconds since 1970 of "2026-05-01T12:00:00.25Z": date and time of day, or a day alone; "/" for "-", a
+// space for "T", seconds left out, a comma for the point, an offset of "+02:00", "+0200", "+02", "UTC";
+// without one it is UTC. Of a time of day alone, "12:00:00.25", those since midnight. A leap second is the
+// second behind it. `to` takes the digits; the text is empty for what is no such date.
+std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to);
+
+[[nodiscard]] inline bool is_date(std::string_view text) {
+  std::array<char, kLongestDate> digits;
+  return !date_in_digits(text, digits).empty();
+}
+
+// A cell of a time: the digits of a date, or what stands there, a decimal comma as a point.
+class TimeDigits {
+ public:
+  TimeDigits(std::string_view cell, bool decimal_comma);
+  TimeDigits(const TimeDigits&) = delete;
+  TimeDigits& operator=(const TimeDigits&) = delete;
+  operator std::string_view() const { return digits_; }
+  [[nodiscard]] bool is_date() const { return date_; }
+
+ private:
+  std::array<char, kLongestDate> made_;
+  std::string_view digits_;
+  bool date_ = false;
+};
+
+}  // namespace ifog
