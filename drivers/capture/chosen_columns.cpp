@@ -51,11 +51,22 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   }
 }
 
+// In which the sensor collects an increment, whenever its rows came: the median of the steps between them.
+double period_of(const std::vector<double>& time_s, const ExactSteps& steps) {
+  std::vector<double> between;
+  between.reserve(time_s.size());
+  for (std::size_t i = 1; i < time_s.size(); ++i) between.push_back(steps.between(time_s[i - 1], time_s[i]));
+  if (between.empty()) return kMissing;
+  const auto middle = between.begin() + static_cast<std::ptrdiff_t>(between.size() / 2);
+  std::nth_element(between.begin(), middle, between.end());
+  return *middle;
+}
+
 }  // namespace
 
 UnitConversion conversion_of(const CsvColumn& column) {
   if (column.unit.empty()) return {};
-  if (column.is_angle()) return {angle_unit(column.unit, false, false).value_or(1.0)};
+  if (const auto angle_rad = column.angle_rad()) return {*angle_rad};
   return convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
 }
 
@@ -84,9 +95,14 @@ void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, c
               const std::string& path) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const CsvColumn& column = layout.columns[i];
-    if (!column.is_angle()) continue;
+    if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
-    differentiate(values, all.time_s, steps);
+    if (column.is_increment()) {
+      const double period_s = period_of(all.time_s, steps);
+      for (double& value : values) value /= period_s;
+    } else {
+      differentiate(values, all.time_s, steps);
+    }
     // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)

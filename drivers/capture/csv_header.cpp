@@ -53,6 +53,30 @@ void refuse_numbers(std::string_view line, const std::string& path, std::size_t 
               ", …, expected a header before them: 'time_s,rate_radps,…'");
 }
 
+// A row below the names that says their units joins them, where it is one: each cell a text, at least one of
+// them a unit.
+void join_units(Lines& lines, const std::string& path, char separator, std::vector<std::string>& names) {
+  Lines ahead = lines;
+  std::string_view line;
+  if (!ahead.next(line) || line.size() > kLongestLine || line.starts_with('#')) return;
+  std::vector<std::string> units = split(line, separator);
+  if (units.size() != names.size()) return;
+  const auto value = [](const std::string& cell) {
+    return (cell != "1" && is_number(cell)) || is_date(cell);
+  };
+  if (std::any_of(units.begin(), units.end(), value) || std::none_of(units.begin(), units.end(), is_unit))
+    return;
+  lines = ahead;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto joined = name_with_unit(names[i], units[i]);
+    if (!joined)
+      fail_at(path, lines.number(),
+              "the row of units says " + in_quotes(units[i]) + " of " + in_quotes(names[i]) +
+                  ", expected the unit of its name");
+    names[i] = *joined;
+  }
+}
+
 // Whether a cell of the first row is a date.
 bool dated(Lines rows, char separator) {
   std::string_view row;
@@ -66,9 +90,8 @@ bool dated(Lines rows, char separator) {
   return false;
 }
 
-void check_names(const std::vector<std::string>& names, const std::string& path, const Lines& rows,
-                 char separator) {
-  const std::size_t line = rows.number();
+void check_names(const std::vector<std::string>& names, const std::string& path, std::size_t line,
+                 const Lines& rows, char separator) {
   if (names.front() != "time_s")
     refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names,
                   dated(rows, separator));
@@ -167,18 +190,27 @@ bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& lay
   }
   if (names.empty()) return false;
   header.line = lines.number();
+  const std::vector<std::string> as_written = names;
+  join_units(lines, path, layout.separator, names);
+  header.last_line = lines.number();
+  CsvLayout joined = layout;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (CsvColumn& column : joined.columns)
+      if (column.header == as_written[i]) column.header = names[i];
+    if (joined.time && joined.time->header == as_written[i]) joined.time->header = names[i];
+  }
   // Numbers may be the names of columns that were asked for by them.
   const auto asked_for = [&](const std::string& column) {
     return std::find(names.begin(), names.end(), column) != names.end();
   };
-  if (!layout.chooses() || !asked_for(layout.time.value_or(CsvTime{}).header))
+  if (!layout.chooses() || !asked_for(joined.time.value_or(CsvTime{}).header))
     refuse_numbers(line, path, header.line);
   if (const std::string separator = suggested_separator(std::string(line));
       layout.separator == ',' && !separator.empty())
     fail_at(path, header.line,
             "no comma in the header " + in_quotes(line) + "; expected commas, or " + separator);
-  if (!layout.chooses()) check_names(names, path, lines, layout.separator);
-  choose(names, layout, path, header);
+  if (!layout.chooses()) check_names(names, path, header.line, lines, layout.separator);
+  choose(names, joined, path, header);
   return true;
 }
 

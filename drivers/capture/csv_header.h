@@ -46,6 +46,7 @@ struct CsvHeader {
   std::vector<std::string> names;        // of the capture's columns beside the time
   std::string comments;                  // that stood before it, as in RowNotes
   std::size_t line = 0, time_place = 0;  // its number; which cell is the time
+  std::size_t last_line = 0;             // of a row of units below it, else its own
 };
 
 // The first line that is neither empty nor a comment; `lines` goes on behind it. False where there is none in

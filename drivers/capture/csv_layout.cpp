@@ -18,6 +18,7 @@ namespace ifog {
 namespace {
 
 constexpr std::string_view kRateUnit = "radps";
+constexpr std::string_view kPerSample = "/sample";
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {
   throw std::runtime_error(in_quotes(text) + ", expected " + expected);
@@ -95,9 +96,10 @@ std::optional<std::string> rate_axis(const std::string& base) {
 }
 
 bool is_time(const std::string& base) {
-  constexpr std::array<std::string_view, 15> kNames{
-      "t",         "time",          "timestamp", "time_stamp", "utc",  "utc_time", "time_utc", "datetime",
-      "date_time", "timestamp_utc", "date",      "iso_time",   "zeit", "seconds",  "elapsed"};
+  constexpr std::array<std::string_view, 17> kNames{
+      "t",        "time",     "timestamp", "time_stamp",    "utc",    "utc_time",
+      "time_utc", "datetime", "date_time", "timestamp_utc", "date",   "iso_time",
+      "zeit",     "seconds",  "elapsed",   "tow",           "gps_tow"};
   return std::find(kNames.begin(), kNames.end(), base) != kNames.end();
 }
 
@@ -131,17 +133,30 @@ CsvColumn CsvColumn::parse(const std::string& text) {
   const std::string wanted = unit_of_name(out.name);
   if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
   if (wanted.empty() || out.header.empty()) refuse(text, form);
-  if (out.unit.empty() || out.is_angle() || convert_unit(out.unit, wanted)) return out;
+  if (out.unit.empty() || out.angle_rad() || convert_unit(out.unit, wanted)) return out;
   const std::string known = units_beside(wanted);
-  refuse(text, known.empty() ? "the unit " + wanted + ", which is known by its name only"
-                             : "a unit that becomes " + wanted + ": " + known +
-                                   (out.is_rate() ? ", or deg, rad of an angle" : ""));
+  refuse(
+      text,
+      known.empty()
+          ? "the unit " + wanted + ", which is known by its name only"
+          : "a unit that becomes " + wanted + ": " + known +
+                (out.is_rate() ? ", or deg, rad of an angle, deg/sample, rad/sample of its increments" : ""));
 }
 
 bool CsvColumn::is_rate() const { return names_a_rate(name); }
 
 bool CsvColumn::is_angle() const {
   return is_rate() && !angle_unit(unit, true, false) && angle_unit(unit, false, false).has_value();
+}
+
+bool CsvColumn::is_increment() const {
+  return is_rate() && unit.ends_with(kPerSample) && angle_rad().has_value();
+}
+
+std::optional<double> CsvColumn::angle_rad() const {
+  if (is_angle()) return angle_unit(unit, false, false);
+  if (!is_rate() || !unit.ends_with(kPerSample)) return std::nullopt;
+  return angle_unit(unit.substr(0, unit.size() - kPerSample.size()), false, false);
 }
 
 std::string CsvColumn::other_unit() const {
@@ -153,7 +168,7 @@ std::string CsvColumn::other_unit() const {
   if (stated.empty()) return "";
   CsvColumn told = *this;
   told.unit = stated;
-  return told.is_angle() || is_another(stated, unit_of_name(name)) ? stated : "";
+  return told.angle_rad() || is_another(stated, unit_of_name(name)) ? stated : "";
 }
 
 std::string CsvTime::other_unit() const {
@@ -183,7 +198,12 @@ char CsvLayout::parse_separator(const std::string& text) {
 }
 
 std::string option_for(const CsvColumn& column, const std::string& unit) {
-  return "--column " + shell_word(column.name + "=" + column.header + ":" + unit);
+  CsvColumn told = column;
+  told.unit = unit;
+  return "--column " + shell_word(column.name + "=" + column.header + ":" + unit) +
+         (told.is_angle()
+              ? " (or " + unit + std::string(kPerSample) + ", of what was turned since the row before)"
+              : "");
 }
 
 std::string option_for(const CsvTime& time, const std::string& unit) {
@@ -220,6 +240,28 @@ std::string suggested_options(const std::vector<std::string>& headers, bool date
   if (!timed || taken.empty()) return "";
   const std::string all = time + (renamed ? columns : "");
   return all.empty() ? "" : all.substr(1);
+}
+
+bool is_unit(const std::string& text) {
+  return angle_unit(text, true, false) || angle_unit(text, false, false) || time_unit(text) ||
+         !units_beside(text).empty();
+}
+
+std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit) {
+  std::string bare = unit;
+  for (const auto& [open, close] : {std::pair{'(', ')'}, {'[', ']'}})
+    if (bare.size() >= 2 && bare.front() == open && bare.back() == close)
+      bare = bare.substr(1, bare.size() - 2);
+  if (bare.empty() || bare == "-" || bare == "1") return header;
+  std::string own = parts_of(header).unit;
+  if (own.empty() && (convert_unit(unit_of_name(header), bare) || unit_of_name(header) == bare))
+    own = unit_of_name(header);
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  if (own.empty())
+    return std::all_of(bare.begin(), bare.end(), is_word) ? header + "_" + bare : header + " [" + bare + "]";
+  const auto by = convert_unit(bare, own);
+  if (bare == own || (by && by->scale == 1.0 && by->offset == 0.0)) return header;
+  return std::nullopt;
 }
 
 std::string suggested_separator(const std::string& header_line) {

@@ -15,10 +15,14 @@ struct CsvColumn {
   std::string unit;    // of its values; "": that of `name`
 
   // "rate_x_radps=GyroX:deg/s" or "supply_V=Supply". A rate in a unit of angle is an angle, whose differences
-  // become the rate. Throws std::runtime_error with one line: the text and what was expected.
+  // become the rate; in one "per sample" (arcsec/sample) the turn within each sample. Throws
+  // std::runtime_error with one line: the text and what was expected.
   static CsvColumn parse(const std::string& text);
   [[nodiscard]] bool is_rate() const;
   [[nodiscard]] bool is_angle() const;
+  [[nodiscard]] bool is_increment() const;
+  // rad in one unit of an angle or an increment; nothing for what is neither.
+  [[nodiscard]] std::optional<double> angle_rad() const;
   // The unit that the header names where none was told, and that is not the name's; "" for none.
   [[nodiscard]] std::string other_unit() const;
 };
@@ -50,6 +54,12 @@ struct CsvLayout {
 std::string option_for(const CsvColumn& column, const std::string& unit);
 std::string option_for(const CsvTime& time, const std::string& unit);
 std::string suggested_options(const std::vector<std::string>& headers, bool dated = false);
+// A text that is a unit of anything known here.
+bool is_unit(const std::string& text);
+// The name of a column of which a row below the header says the unit: as it is where it says the same, or the
+// row says none ("-", "1"), "T_degC" or "gyro_x [deg/s]" where it says none; nothing where the two contradict
+// each other.
+std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit);
 // The separator that the line may have been meant with: "--separator ';'", "" for none.
 std::string suggested_separator(const std::string& header_line);
 

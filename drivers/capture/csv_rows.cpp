@@ -117,7 +117,7 @@ void CsvRows::begin(TextPieces& pieces, std::string& text) {
   }
   if (!found) throw std::runtime_error(path_ + ": no header line, expected 'time_s,rate_radps,…'");
   notes_.comments = std::move(header_.comments);
-  notes_.header_line = header_.line;
+  notes_.header_line = header_.last_line;
   impossible_.resize(header_.names.size());
   std::vector<FileColumn> columns(header_.names.size());
   for (const CsvCell& cell : header_.cells)

@@ -83,7 +83,7 @@ Measurable measurable(const std::string& column) {
 
 Measurable measurable_in_file(const CsvColumn& column) {
   const Measurable range =
-      column.is_angle() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
+      column.angle_rad() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
   return before(range, conversion_of(column));
 }
 

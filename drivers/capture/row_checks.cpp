@@ -62,7 +62,8 @@ RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vect
       notes_(notes),
       rates_(rates_of(columns_)),
       leaps_(rates_, [&sink](RowBlock& rows) { sink.take(rows); }) {
-  if (std::any_of(layout.columns.begin(), layout.columns.end(), [](const auto& c) { return c.is_angle(); }))
+  if (std::any_of(layout.columns.begin(), layout.columns.end(),
+                  [](const auto& c) { return c.angle_rad().has_value(); }))
     all_.emplace();
 }
 

@@ -62,7 +62,7 @@ CsvLayout completed(CsvLayout layout, const Hdf5Header& header, const std::strin
     CsvColumn& column = layout.columns[i];
     if (!column.unit.empty()) continue;
     column.unit = header.units[i + 1];
-    if (!column.is_angle() && !convert_unit(column.unit, unit_of_name(column.name))) column.unit.clear();
+    if (!column.angle_rad() && !convert_unit(column.unit, unit_of_name(column.name))) column.unit.clear();
     if (const std::string unit = column.other_unit(); !unit.empty())
       refuse(path, unit_by_name(column.header, unit, option_for(column, unit)));
   }

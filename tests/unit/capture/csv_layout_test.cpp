@@ -90,6 +90,28 @@ TEST(CsvLayout, DifferencesOfAnAngleBecomeTheRate) {
   EXPECT_NEAR(counting.rate_radps[0][1], 300 * kDegree, 1e-12);
 }
 
+TEST(CsvLayout, IncrementsAreTheTurnWithinAPeriod) {
+  // 0.36 arcsec in 10 ms are 36 arcsec/s: behind a hole as well, and in a row that came late.
+  const Capture got =
+      parse_capture("t,d\n0,0.36\n0.01,0.36\n0.02,\n0.05,0.36\n0.061,0.36\n0.07,-0.72\n0.08,0.36\n", "a.csv",
+                    layout({"rate_x_radps=d:arcsec/sample"}, "t"));
+  const double rate = 36.0 / 3600.0 * kDegree;
+  const std::vector<double> expected{rate, rate, NAN, rate, rate, -2 * rate, rate};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (std::isnan(expected[i]))
+      EXPECT_TRUE(std::isnan(got.rate_radps[0][i])) << i;
+    else
+      EXPECT_NEAR(got.rate_radps[0][i], expected[i], 1e-12 * rate) << i;
+  }
+  EXPECT_EQ(refusal([] { CsvColumn::parse("rate_x_radps=d:V/sample"); }).substr(0, 52),
+            "'rate_x_radps=d:V/sample', expected a unit that beco");
+  // Of what no sensor measures the cell is said.
+  EXPECT_EQ(refusal([] {
+              parse_capture("t,d\n0,0\n0.001,100\n", "a.csv", layout({"rate_x_radps=d:rad/sample"}, "t"));
+            }),
+            "a.csv:3: d has turned at 1e+05 rad/s since the row before, which no sensor measures");
+}
+
 TEST(CsvLayout, SaysWhatIsWrongWithAnOption) {
   const auto column = [](const std::string& text) { return refusal([&] { CsvColumn::parse(text); }); };
   EXPECT_EQ(column("rate_x_radps"), "'rate_x_radps', expected NAME=HEADER:UNIT, rate_x_radps=GyroX:deg/s");
@@ -121,6 +143,46 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(read("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
             "a.csv:4: w has turned");
   EXPECT_EQ(read("\xFF\xFEt", {}), "a.csv: begins as UTF-16 does, expected UTF-8 or ASCII");
+}
+
+TEST(CsvLayout, ARowOfUnitsBelowTheNamesJoinsThem) {
+  const Capture plain = parse_capture(
+      "time_s,rate_radps,T,ramp_counts,flag\ns,[rad/s],degC,counts,-\n0,1,20,5,0\n1,2,21,6,1\n", "a.csv");
+  EXPECT_EQ(plain.time_s, (std::vector<double>{0, 1}));
+  EXPECT_EQ(plain.rate_radps[0], (std::vector<double>{1, 2}));
+  ASSERT_EQ(plain.channels.size(), 3U);
+  EXPECT_EQ(plain.channels[0].name, "T_degC");
+  EXPECT_EQ(plain.channels[1].name, "ramp_counts");
+  EXPECT_EQ(plain.channels[2].name, "flag");
+
+  const auto refused = [](const char* text, const CsvLayout& by = {}) {
+    return refusal([&] { parse_capture(text, "a.csv", by); });
+  };
+  const char* const logger = "t,GyroX,Temp\nms,deg/s,degF\n0,90,32\n10,180,212\n";
+  EXPECT_EQ(
+      refused(logger),
+      "a.csv:1: first column is 't_ms', expected 'time_s'; to read it as it is: --time t_ms:ms --column "
+      "'rate_x_radps=GyroX [deg/s]:deg/s' --column temp_degC=Temp_degF:degF");
+  // By the names as they were written, and as they are told.
+  for (const auto& [rate, time] : {std::pair{"rate_x_radps=GyroX:deg/s", "t:ms"},
+                                   std::pair{"rate_x_radps=GyroX [deg/s]:deg/s", "t_ms:ms"}}) {
+    const Capture chosen = parse_capture(logger, "a.csv", layout({rate, "temperature_degC=Temp:degF"}, time));
+    EXPECT_EQ(chosen.time_s, (std::vector<double>{0, 0.01}));
+    EXPECT_NEAR(chosen.rate_radps[0][1], 180 * kDegree, 1e-12);
+    EXPECT_NEAR(chosen.channels[0].values[1], 100, 1e-9);
+  }
+  // Its unit is asked for, not guessed.
+  EXPECT_EQ(
+      refused(logger, layout({"rate_x_radps=GyroX"}, "t:ms")),
+      "a.csv:1: 'GyroX [deg/s]' is in 'deg/s' by its name, and no unit was told; to read it so: --column "
+      "'rate_x_radps=GyroX [deg/s]:deg/s'");
+  EXPECT_EQ(refused("time_s,rate_radps,temperature_degC\ns,rad/s,K\n0,1,293\n"),
+            "a.csv:2: the row of units says 'K' of 'temperature_degC', expected the unit of its name");
+  // Lines count on, and what is no row of units is a row.
+  EXPECT_EQ(refused("time_s,rate_radps\ns,rad/s\n0,1\n0,2\n"),
+            "a.csv:4: time_s is 0, expected more than in the row before");
+  EXPECT_EQ(refused("time_s,rate_radps\nnone,NA\n0,1\n"), "a.csv:2: time_s is missing, expected a time");
+  EXPECT_EQ(refused("time_s,rate_radps\n0,rad\n").substr(0, 30), "a.csv:2: rate_radps is 'rad', ");
 }
 
 TEST(CsvLayout, AHeaderThatIsNearlyRightGetsTheOptionsToType) {
@@ -194,7 +256,10 @@ TEST(CsvLayout, AHeaderOfAnotherUnitIsNotTakenForTheTargets) {
             said("rate_dps", "dps", "--column rate_radps=rate_dps:dps"));
   EXPECT_EQ(read("temperature_degC=temperature_degF"),
             said("temperature_degF", "degF", "--column temperature_degC=temperature_degF:degF"));
-  EXPECT_EQ(read("rate_x_radps=angle_deg"), said("angle_deg", "deg", "--column rate_x_radps=angle_deg:deg"));
+  EXPECT_EQ(
+      read("rate_x_radps=angle_deg"),
+      said("angle_deg", "deg",
+           "--column rate_x_radps=angle_deg:deg (or deg/sample, of what was turned since the row before)"));
   EXPECT_EQ(read("supply_V=supply_V", "t_ms"), said("t_ms", "ms", "--time t_ms:ms"));
   EXPECT_EQ(read("supply_mV=supply_V"), said("supply_V", "V", "--column supply_mV=supply_V:V"));
   // Who says the unit is believed, and so is who names the header's own.

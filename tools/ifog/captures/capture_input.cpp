@@ -42,9 +42,9 @@ void CaptureInput::add_to(CLI::App& command) {
       .add_option(
           "--column", columns,
           "Column of a CSV file with another header, or dataset of an HDF5 file: rate_x_radps=GyroX:deg/s; a "
-          "unit of angle (deg) makes its differences the rate. May stand several times; columns not named "
-          "are "
-          "passed over")
+          "unit of angle (deg) makes its differences the rate, one of increments (deg/sample) the turn "
+          "within each "
+          "sample. May stand several times; columns not named are passed over")
       ->type_name("NAME=HEADER[:UNIT]");
   command.add_option("--time", time, "Its time column: t:ms")->type_name("HEADER[:UNIT]");
   command.add_option("--separator", separator, "What stands between the cells of a CSV file: ';' or tab")
