@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog diagnose: what the error is made of, what to correct, and what stays.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
@@ -19,6 +21,7 @@
 #include "tools/ifog/diagnose/diagnosis_json.h"
 #include "tools/ifog/diagnose/diagnosis_text.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
+#include "tools/ifog/tune/noise_left.h"
 
 namespace ifog::tools {
 namespace {
@@ -32,6 +35,13 @@ struct Arguments {
   std::optional<double> since_power_up_s, latitude_deg;
   bool quiet = false;
 };
+
+std::size_t longest_of(const std::vector<CaptureView>& captures) {
+  const auto longest =
+      std::max_element(captures.begin(), captures.end(),
+                       [](const CaptureView& a, const CaptureView& b) { return a.size() < b.size(); });
+  return static_cast<std::size_t>(longest - captures.begin());
+}
 
 void run(const Arguments& arguments) {
   for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
@@ -75,8 +85,14 @@ void run(const Arguments& arguments) {
       say("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
   }
   if (!arguments.json.empty()) write_json(arguments.json, diagnosis_json(found));
-  if (!arguments.write_model.empty())
-    write_file(arguments.write_model, model_text(model_with(model, found, arguments.captures, hashes)));
+  if (!arguments.write_model.empty()) {
+    model = model_with(std::move(model), found, arguments.captures, hashes);
+    const std::size_t longest = longest_of(captures);
+    const std::string fitted = fit_noise_left(model, model_with({}, found, arguments.captures, hashes),
+                                              captures[longest], arguments.captures[longest]);
+    if (!arguments.quiet && !fitted.empty()) say("\n%s\n", fitted.c_str());
+    write_file(arguments.write_model, model_text(model));
+  }
   if (!arguments.report.empty())
     write_text_file(arguments.report, diagnosis_report(captures, found, arguments.captures, hashes,
                                                        arguments.write_model, arguments.input.as_typed()));

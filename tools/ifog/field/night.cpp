@@ -25,6 +25,7 @@
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/recorded.h"
 #include "tools/ifog/field/watch.h"
+#include "tools/ifog/tune/noise_left.h"
 
 namespace ifog::tools {
 namespace {
@@ -242,7 +243,11 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   if (found.empty())
     return "found " + traced + ", without a gain on held-out data" +
            (tried.empty() ? "" : ": " + gain_text(tried));
-  const Model model = with();
+  Model model = with();
+  if (const std::string fitted =
+          fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name);
+      !fitted.empty())
+    say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
   require_that_it_fits(field_, sensor_, model);
   Proposal proposal;
   proposal.against = in_use.name;

@@ -9,6 +9,8 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
@@ -22,6 +24,7 @@
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
+#include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
@@ -29,6 +32,7 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/tune/rest_columns.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {
@@ -39,55 +43,11 @@ using nlohmann::json;
 struct TuneArguments {
   CaptureInput input;
   TimePart part;
-  std::string capture, model, json_file;
+  std::string capture, model, write_model, json_file;
+  std::optional<double> since_power_up_s;
   std::vector<std::string> states;
   std::size_t samples = 200000;
 };
-
-// Of all axes together; a sensor that was mostly turned is refused.
-Rest rest_of(const CaptureView& capture, double period_s, const std::string& path) {
-  const std::vector<SeriesView> axes(capture.rate_radps.begin(), capture.rate_radps.end());
-  std::vector<SeriesView> references;
-  for (const std::span<const double> reference : capture.reference_rate_radps)
-    if (!reference.empty()) references.emplace_back(reference);
-  Rest rest = find_rest(axes, references, period_s);
-  try {
-    require_rest(rest, period_s, capture.told_time_s(0));
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(
-        path + ": " + error.what() +
-        (references.empty() ? "" : "; a sensor turned beside a reference is for ifog diagnose"));
-  }
-  return rest;
-}
-
-// Evenly spaced columns: a sample that moved or is missing from the record becomes a NaN, so that the
-// filter's step stays the period. Returns one column an axis, of at most `most` rows of the capture whatever
-// is missing between them, and says how many were left out.
-std::vector<std::vector<double>> even(const CaptureView& capture, const Rest& rest, double period_s,
-                                      std::size_t most, std::size_t& left) {
-  std::vector<std::vector<double>> out(capture.axes.size());
-  const std::size_t rows = std::min(capture.size(), most);
-  left = capture.size() - rows;
-  // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing; nor do
-  // all holes together, beyond ten times the rows.
-  constexpr double kLongestHole = 10000.0;
-  std::size_t room = 10 * rows, part = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double steps =
-        row == 0 ? 1.0 : std::round((capture.time_s[row] - capture.time_s[row - 1]) / period_s);
-    const auto hole = static_cast<std::size_t>(std::clamp(steps - 1.0, 0.0, kLongestHole));
-    const std::size_t missing = std::min(hole, std::max<std::size_t>(room, 1));
-    room -= std::min(room, missing);
-    while (part < rest.at_rest.size() && rest.at_rest[part].end <= row) ++part;
-    const bool resting = part < rest.at_rest.size() && rest.at_rest[part].begin <= row;
-    for (std::size_t a = 0; a < out.size(); ++a) {
-      out[a].resize(out[a].size() + missing, std::nan(""));
-      out[a].push_back(resting ? capture.rate_radps[a][row] : std::nan(""));
-    }
-  }
-  return out;
-}
 
 std::string tau_text(double tau_s) {
   char text[16];
@@ -251,20 +211,28 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
   return noise;
 }
 
-Model model_of(const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
-  Model model;
-  model.filter = tuning.models[tuning.chosen].settings;
+// `before`: whose effects were taken from the rates; they stay, and so does what its filter was told beside
+// the noise.
+Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
+  Model model = std::move(before);
+  const FilterSettings& found = tuning.models[tuning.chosen].settings;
+  if (!model.filter) model.filter.emplace();
+  model.filter->state = found.state;
+  model.filter->process_noise = found.process_noise;
+  model.filter->measurement_noise = found.measurement_noise;
+  model.filter->state_parameters = found.state_parameters;
   for (const auto& [axis, found] : noise) {
     const auto put = [](const NoiseCoefficient& c, std::optional<double>& value) {
       if (c.present) value = c.value;
     };
-    NoiseTerms& terms = model.noise[axis];
+    NoiseTerms& terms = model.noise[axis] = {};
     put(found.terms.Q, terms.Q);
     put(found.terms.N, terms.N);
     put(found.terms.B, terms.B);
     put(found.terms.K, terms.K);
     put(found.terms.R, terms.R);
   }
+  if (!model.effects.empty()) return model;  // which came from the captures that it names
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
   model.source.date = utc_now();
   return model;
@@ -285,13 +253,30 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
               {"models", models}};
 }
 
+// The columns that are needed, less the effects of a model.
+LongCapture read_rates(const TuneArguments& options, const Model& before) {
+  LongCapture read =
+      options.input.read_long_capture(options.capture, nullptr, [&](const std::string& column) {
+        return !before.effects.empty() || column.starts_with("rate") || column.starts_with("reference_rate");
+      });
+  if (before.effects.empty()) return read;
+  if (options.since_power_up_s) read.set_since_power_up(*options.since_power_up_s);
+  tell_model_of_one_axis(before, options.model, read.view().axes);
+  try {
+    read.correct(before);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(options.model + ": " + error.what());
+  }
+  return read;
+}
+
 void run(const TuneArguments& options) {
   options.input.will_read("capture", options.capture);
+  will_read("--model", options.model);
   will_write("--json", options.json_file, kJsonEndings);
-  will_write("--write-model", options.model, kModelEndings);
-  LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
-    return column.starts_with("rate") || column.starts_with("reference_rate");
-  });
+  will_write("--write-model", options.write_model, kModelEndings);
+  const Model before = options.model.empty() ? Model{} : read_model(options.model);
+  LongCapture read = read_rates(options, before);
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
   keep_usable_axes(capture, options.capture);
@@ -302,7 +287,7 @@ void run(const TuneArguments& options) {
   const double period = clock.period_s;
   Progress progress("fitting state models",
                     options.states.empty() ? default_candidates().size() : options.states.size());
-  const Rest rest = rest_of(capture, period, options.capture);
+  const Rest rest = mostly_at_rest(capture, period, options.capture);
   std::vector<std::string> notes;
   std::vector<LongSeries> repaired;
   repaired.reserve(capture.axes.size());
@@ -312,8 +297,7 @@ void run(const TuneArguments& options) {
     notes.push_back(motion + "; only the rest is used");
   if (const std::string slow = slow_turns_in_words(rest, period, capture.told_time_s(0)); !slow.empty())
     notes.push_back(slow);
-  std::size_t left = 0;
-  const auto columns = even(capture, rest, period, options.samples, left);
+  const auto [columns, left] = rest_columns(capture, rest, period, options.samples);
   const std::vector<std::span<const double>> axes(columns.begin(), columns.end());
   TuneOptions tune_options;
   tune_options.states = options.states;
@@ -335,11 +319,11 @@ void run(const TuneArguments& options) {
         report::coefficient_lines(found.terms).c_str());
   if (!options.json_file.empty())
     write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
-  if (!options.model.empty()) {
-    write_file(options.model, model_text(model_of(tuning, noise, options.capture)));
-    say("\nwritten: %s\n  ifog denoise %s%s --model %s --output denoised.csv\n", options.model.c_str(),
+  if (!options.write_model.empty()) {
+    write_file(options.write_model, model_text(model_of(before, tuning, noise, options.capture)));
+    say("\nwritten: %s\n  ifog denoise %s%s --model %s --output denoised.csv\n", options.write_model.c_str(),
         shell_file(options.capture).c_str(), options.input.as_typed().c_str(),
-        shell_file(options.model).c_str());
+        shell_file(options.write_model).c_str());
   }
 }
 
@@ -350,7 +334,15 @@ void add_tune(CLI::App& app) {
       app.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<TuneArguments>();
   command->add_option("capture", options->capture, "a capture at rest")->required();
-  command->add_option("--write-model", options->model, "model file that ifogd and denoise read");
+  command->add_option("--model", options->model,
+                      "correct with this model first; its effects stay in what is written");
+  command
+      ->add_option(
+          "--since-power-up", options->since_power_up_s,
+          "seconds from power-up to the capture's first sample, for a warm_up of --model; default: as "
+          "a recording says it")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
   command->add_option("--json", options->json_file, "write the figures as JSON");
   // One a flag: a capture that follows is no state model.
   command->add_option("--state", options->states, "state models to try; may stand several times")

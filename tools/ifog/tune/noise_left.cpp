@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/tune/noise_left.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <exception>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "drivers/ifog/quoted.h"
+#include "filters/allan/stretches.h"
+#include "filters/tune/tune.h"
+#include "tools/ifog/captures/compensated_rates.h"
+#include "tools/ifog/tune/rest_columns.h"
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::size_t kMostRows = 200000;  // as `ifog tune` takes unless told otherwise
+
+CaptureView first_rows(CaptureView capture, std::size_t most) {
+  const std::size_t rows = std::min(capture.size(), most);
+  const auto shorten = [&](std::span<const double>& column) {
+    if (!column.empty()) column = column.first(rows);
+  };
+  shorten(capture.time_s);
+  for (auto& column : capture.rate_radps) shorten(column);
+  for (auto& column : capture.reference_rate_radps) shorten(column);
+  for (auto& channel : capture.channels) shorten(channel.values);
+  return capture;
+}
+
+TunedModel fitted(const CaptureView& rates, const std::string& state, const std::string& path) {
+  const double period_s = sample_clock(rates.time_s).period_s;
+  const Rest rest = mostly_at_rest(rates, period_s, path);
+  const RestColumns columns = rest_columns(rates, rest, period_s, rates.size());
+  const std::vector<std::span<const double>> axes(columns.rate_radps.begin(), columns.rate_radps.end());
+  TuneOptions options;
+  options.states = {state};
+  options.hold_out = false;
+  return tune(axes, period_s, options).models.front();
+}
+
+}  // namespace
+
+std::string fit_noise_left(Model& model, const Model& added, const CaptureView& capture,
+                           const std::string& path) {
+  if (!model.filter || added.effects.empty()) return "";
+  FilterSettings& filter = *model.filter;
+  if (!(filter.process_noise > 0.0) && !(filter.measurement_noise > 0.0)) return "";
+  CaptureView rates = first_rows(capture, kMostRows);
+  try {
+    std::vector<Samples> left = compensated_rates(rates, added);
+    for (std::size_t a = 0; a < left.size(); ++a) {
+      const std::span<const double> reference = rates.reference_rate_radps[a];
+      for (std::size_t i = 0; i < reference.size(); ++i) left[a][i] -= reference[i];
+      rates.rate_radps[a] = left[a];
+      rates.reference_rate_radps[a] = {};
+    }
+    const TunedModel found = fitted(rates, filter.state, path);
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(),
+                  "process_noise %.4g (rad/s)^2/s, was %.4g; measurement_noise %.4g (rad/s)^2, was %.4g",
+                  found.settings.process_noise, filter.process_noise, found.settings.measurement_noise,
+                  filter.measurement_noise);
+    filter.process_noise = found.settings.process_noise;
+    filter.measurement_noise = found.settings.measurement_noise;
+    filter.state_parameters = found.settings.state_parameters;
+    return std::string("noise of the filter, fitted to the corrected rate: ") + text.data();
+  } catch (const std::exception& error) {
+    return "noise of the filter stays as the model had it, fitted to the rate before this correction: " +
+           printable(error.what(), kLongestMessage);
+  }
+}
+
+}  // namespace ifog::tools
