@@ -4,35 +4,33 @@
 
 #include <stdexcept>
 
-namespace CLI {
-class App;
-}
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
-void add_allan(CLI::App& app);
-void add_simulate(CLI::App& app);
+void add_allan(const Command& program);
+void add_simulate(const Command& program);
 
 // What a command throws after it has told the user why: exit code 1, no further message.
 struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-void add_compare(CLI::App& app);
-void add_convert(CLI::App& app);
-void add_denoise(CLI::App& app);
-void add_drivers(CLI::App& app);
-void add_monitor(CLI::App& app);
-void add_picture(CLI::App& app);
-void add_record(CLI::App& app);
-void add_replay(CLI::App& app);
-void add_tune(CLI::App& app);
-void add_diagnose(CLI::App& app);
-void add_status(CLI::App& app);
-void add_proposals(CLI::App& app);
-void add_adopt(CLI::App& app);
-void add_revert(CLI::App& app);
-void add_night(CLI::App& app);
-void add_fleet(CLI::App& app);
+void add_compare(const Command& program);
+void add_convert(const Command& program);
+void add_denoise(const Command& program);
+void add_drivers(const Command& program);
+void add_monitor(const Command& program);
+void add_picture(const Command& program);
+void add_record(const Command& program);
+void add_replay(const Command& program);
+void add_tune(const Command& program);
+void add_diagnose(const Command& program);
+void add_status(const Command& program);
+void add_proposals(const Command& program);
+void add_adopt(const Command& program);
+void add_revert(const Command& program);
+void add_night(const Command& program);
+void add_fleet(const Command& program);
 
 }  // namespace ifog::tools

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog convert: a capture to what a device would have sent, and back.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -11,8 +10,10 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -36,14 +37,12 @@ void Convert::run() const {
   if (from_columns && !to_columns)
     return write_recording(input.read_long_columns(file), from, to, input, axis);
   if (!to_columns && file_kind(file) == FileKind::flight && !recorded_messages(file))
-    throw CLI::ValidationError(
-        to,
-        "expected a .csv, .csv.gz or .h5 file of a flight recording; its bytes or frames as "
-        "they came are written by: ifog replay " +
-            shell_file(from) + " --speed 0 --to " + shell_word("file:" + to));
+    throw WrongUsage(to,
+                     "expected a .csv, .csv.gz or .h5 file of a flight recording; its bytes or frames as "
+                     "they came are written by: ifog replay " +
+                         shell_file(from) + " --speed 0 --to " + shell_word("file:" + to));
   if (!to_columns)
-    throw CLI::ValidationError(to,
-                               "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");
+    throw WrongUsage(to, "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");
   const LongTable table = input.read_long(file);
   write_columns(table, from, to);
   say("%s: %zu samples\n", to.c_str(), table.size());
@@ -51,28 +50,28 @@ void Convert::run() const {
 
 }  // namespace
 
-void add_convert(CLI::App& app) {
+void add_convert(const Command& program) {
   auto state = std::make_shared<Convert>();
-  CLI::App* command =
-      app.add_subcommand("convert", "Turn a capture into a device's bytes or CAN frames, or back");
+  const Command command =
+      program.add_subcommand("convert", "Turn a capture into a device's bytes or CAN frames, or back");
   command
-      ->add_option(
+      .add_option(
           "FROM", state->from,
           "Capture (.csv, .csv.gz, .h5), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
           "log (.log), LCM log")
-      ->required();
+      .required();
   command
-      ->add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log")
-      ->required();
-  state->input.add_to(*command);
-  command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
-      ->type_name("NAME");
-  command->footer(
+      .add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log")
+      .required();
+  state->input.add_to(command);
+  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
+      .type_name("NAME");
+  command.footer(
       "Examples:\n"
       "  ifog convert gyro.csv gyro.kvh --driver kvh1750 --option format=b\n"
       "  ifog convert gyro.kvh back.csv --driver kvh1750 --option format=b --option rate_hz=200\n"
       "  ifog convert gyro.csv gyro.log --dbc gyro.dbc --option signal=Rate_x --option counter=Counter");
-  command->callback([state] { state->run(); });
+  command.callback([state] { state->run(); });
 }
 
 }  // namespace ifog::tools

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog drivers: which protocol plugins are found, where, with which options; which were refused and why.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "drivers/host/plugin.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
@@ -112,13 +113,13 @@ void run(const std::string& name, const std::string& json) {
 
 }  // namespace
 
-void add_drivers(CLI::App& app) {
+void add_drivers(const Command& program) {
   auto name = std::make_shared<std::string>(), json = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
-  command->add_option("NAME", *name, "Only this driver");
-  command->add_option("--json", *json, "Write the list here")->type_name("FILE");
-  command->callback([name, json] { run(*name, *json); });
+  const Command command =
+      program.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
+  command.add_option("NAME", *name, "Only this driver");
+  command.add_option("--json", *json, "Write the list here").type_name("FILE");
+  command.callback([name, json] { run(*name, *json); });
 }
 
 }  // namespace ifog::tools

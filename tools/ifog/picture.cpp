@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog picture: what the daemon published, raw against denoised, as one picture: the rate over time and both
 // Allan curves.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
@@ -16,6 +18,7 @@
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
@@ -78,19 +81,19 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_picture(CLI::App& app) {
+void add_picture(const Command& program) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("picture", "What the daemon published: raw against denoised, and both Allan curves");
-  command->add_option("log", a->log, "Log of lcm-logger")->required();
-  command->add_option("--channel", a->channel, "IFOG_<NAME>, where the log has several");
-  command->add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
-  a->part.add_to(*command);
-  command->add_option("--output", a->picture, "Picture, .svg or .png")
-      ->required()
-      ->check(report::wrong_picture_name, "")
-      ->type_name("FILE");
-  command->callback([a] { run(*a); });
+  const Command command = program.add_subcommand(
+      "picture", "What the daemon published: raw against denoised, and both Allan curves");
+  command.add_option("log", a->log, "Log of lcm-logger").required();
+  command.add_option("--channel", a->channel, "IFOG_<NAME>, where the log has several");
+  command.add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
+  a->part.add_to(command);
+  command.add_option("--output", a->picture, "Picture, .svg or .png")
+      .required()
+      .check(report::wrong_picture_name)
+      .type_name("FILE");
+  command.callback([a] { run(*a); });
 }
 
 }  // namespace ifog::tools

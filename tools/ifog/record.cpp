@@ -2,7 +2,6 @@
 // ifog record: what the daemon publishes, from LCM into flight recordings on this computer, which every
 // command reads.
 #include <poll.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -18,8 +17,10 @@
 #include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/captures/message_archive.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -135,35 +136,32 @@ void LcmRecorder::run() {
 
 }  // namespace
 
-void add_record(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("record", "Record what the daemon publishes on LCM, for every command to read");
+void add_record(const Command& program) {
+  const Command command =
+      program.add_subcommand("record", "Record what the daemon publishes on LCM, for every command to read");
   auto options = std::make_shared<RecordOptions>();
-  command->add_option("--output", options->folder, "Folder of the recordings; made if it is not there")
-      ->required()
-      ->type_name("FOLDER");
-  command->add_option("--sensor", options->sensor, "Only this sensor")->type_name("NAME");
+  command.add_option("--output", options->folder, "Folder of the recordings; made if it is not there")
+      .required()
+      .type_name("FOLDER");
+  command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
   command
-      ->add_option("--lcm-channel", options->channels,
-                   "Another LCM channel beside, with ifog.channel_t; may stand several times")
-      ->type_name("NAME");
-  command->add_option("--seconds", options->seconds, "Stop after this long")->check(CLI::PositiveNumber);
-  command->add_option("--bytes", options->bytes, "Keep no more than this; the oldest goes")
-      ->check(CLI::Range(1e6, 1e15))
-      ->capture_default_str();
-  command->add_option("--days", options->days, "Keep nothing older")
-      ->check(CLI::Range(1e-3, 1e5))
-      ->capture_default_str();
+      .add_option("--lcm-channel", options->channels,
+                  "Another LCM channel beside, with ifog.channel_t; may stand several times")
+      .type_name("NAME");
+  command.add_option("--seconds", options->seconds, "Stop after this long").positive();
+  command.add_option("--bytes", options->bytes, "Keep no more than this; the oldest goes")
+      .within(1e6, 1e15)
+      .shows_default();
+  command.add_option("--days", options->days, "Keep nothing older").within(1e-3, 1e5).shows_default();
   command
-      ->add_option("--file-bytes", options->file_bytes,
-                   "End a file at this size, at most a quarter of --bytes")
-      ->check(CLI::Range(1e5, 1e9))
-      ->capture_default_str();
-  command->add_option("--lcm-url", options->url, "As in the daemon's configuration")->type_name("URL");
-  command->callback([options] {
+      .add_option("--file-bytes", options->file_bytes,
+                  "End a file at this size, at most a quarter of --bytes")
+      .within(1e5, 1e9)
+      .shows_default();
+  command.add_option("--lcm-url", options->url, "As in the daemon's configuration").type_name("URL");
+  command.callback([options] {
     if (options->file_bytes > options->bytes / 4.0)
-      throw CLI::ValidationError("--file-bytes",
-                                 "is more than a quarter of --bytes, expected room for four files");
+      throw WrongUsage("--file-bytes", "is more than a quarter of --bytes, expected room for four files");
     LcmRecorder(*options).run();
   });
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog simulate: a capture from a scenario file, its truth apart.
-#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "drivers/capture/name_ending.h"
 #include "drivers/capture/output_file.h"
@@ -12,9 +14,11 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/whole_table.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 #include "tools/simulate/simulator.h"
 
 namespace ifog::tools {
@@ -44,8 +48,8 @@ struct Simulate {
     }
     if (file_kind(output) == FileKind::capture || (is_standard_output(output) && !encoding.has_driver())) {
       if (encoding.has_driver())
-        throw CLI::ValidationError(
-            output, "is a capture in columns, which no driver encodes; expected .kvh, .bin or .log");
+        throw WrongUsage(output,
+                         "is a capture in columns, which no driver encodes; expected .kvh, .bin or .log");
       write_columns(long_table(made.capture), scenario, output);
       say("%s: %zu samples\n", output.c_str(), made.capture.size());
     } else {
@@ -62,27 +66,27 @@ struct Simulate {
 
 }  // namespace
 
-void add_simulate(CLI::App& app) {
+void add_simulate(const Command& program) {
   auto state = std::make_shared<Simulate>();
-  CLI::App* command =
-      app.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
-  command->add_option("SCENARIO", state->scenario, "Scenario (.toml)")->required();
+  const Command command =
+      program.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
+  command.add_option("SCENARIO", state->scenario, "Scenario (.toml)").required();
   command
-      ->add_option("--output", state->output,
-                   "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log")
-      ->required();
-  command->add_option("--truth", state->truth,
-                      "Write what the capture does not tell: .json the parameters, .csv or .h5 the true rate "
-                      "and each effect");
-  CLI::Option* seed = command->add_option("--seed", state->seed, "Instead of the scenario's");
-  state->encoding.add_driver_to(*command);
-  command->add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
-      ->type_name("NAME");
-  command->footer(
+      .add_option("--output", state->output,
+                  "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log")
+      .required();
+  command.add_option("--truth", state->truth,
+                     "Write what the capture does not tell: .json the parameters, .csv or .h5 the true rate "
+                     "and each effect");
+  const Option seed = command.add_option("--seed", state->seed, "Instead of the scenario's");
+  state->encoding.add_driver_to(command);
+  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
+      .type_name("NAME");
+  command.footer(
       "Examples:\n  ifog simulate /usr/share/ifogd/scenarios/rest.toml --output rest.csv.gz --truth "
       "rest.truth.json");
-  command->callback([state, seed] {
-    state->seed_given = seed->count() > 0;
+  command.callback([state, seed] {
+    state->seed_given = seed.given();
     state->run();
   });
 }

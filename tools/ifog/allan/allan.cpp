@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog allan: overlapping Allan deviation and noise coefficients of captures.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
@@ -52,47 +55,47 @@ void run(Arguments& a) {
 
 }  // namespace
 
-void add_allan(CLI::App& app) {
+void add_allan(const Command& program) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.add_subcommand(
       "allan",
       "Overlapping Allan deviation with confidence intervals, and the noise coefficients Q, N, B, K, R");
-  command->add_option("capture", a->captures, "Captures, or files written by ifog denoise")->required();
-  a->input.add_to(*command);
-  command->add_option("--axis", a->options.axis, "Only this axis (x, y, …)");
+  command.add_option("capture", a->captures, "Captures, or files written by ifog denoise").required();
+  a->input.add_to(command);
+  command.add_option("--axis", a->options.axis, "Only this axis (x, y, …)");
   command
-      ->add_option("--tau", a->options.tau_s,
-                   "Averaging times in s, separated by commas; log-spaced otherwise")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
-  command->add_option("--per-decade", a->options.per_decade, "Points per decade of averaging time")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--confidence", a->options.confidence, "Of the intervals")
-      ->check(CLI::Range(0.01, 0.9999))
-      ->capture_default_str();
-  command->add_option("--estimator", a->estimator, "overlapping, modified or hadamard")
-      ->check(CLI::IsMember({"overlapping", "modified", "hadamard"}))
-      ->capture_default_str();
+      .add_option("--tau", a->options.tau_s,
+                  "Averaging times in s, separated by commas; log-spaced otherwise")
+      .delimiter(',')
+      .positive();
+  command.add_option("--per-decade", a->options.per_decade, "Points per decade of averaging time")
+      .within(1, 1000)
+      .shows_default();
+  command.add_option("--confidence", a->options.confidence, "Of the intervals")
+      .within(0.01, 0.9999)
+      .shows_default();
+  command.add_option("--estimator", a->estimator, "overlapping, modified or hadamard")
+      .one_of({"overlapping", "modified", "hadamard"})
+      .shows_default();
   command
-      ->add_option("--gaps", a->gaps,
-                   "part: analyse the stretches between holes; refuse: any hole is an error")
-      ->check(CLI::IsMember({"part", "refuse"}))
-      ->capture_default_str();
+      .add_option("--gaps", a->gaps,
+                  "part: analyse the stretches between holes; refuse: any hole is an error")
+      .one_of({"part", "refuse"})
+      .shows_default();
   command
-      ->add_option("--moving", a->moving,
-                   "leave-out: analyse the parts at rest; keep: all of it, as if it had not moved")
-      ->check(CLI::IsMember({"leave-out", "keep"}))
-      ->capture_default_str();
-  command->add_flag("--long", a->options.long_tau,
-                    "Thêo1 beyond a quarter of the longest stretch, up to three quarters of it");
-  command->add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
-  a->options.part.add_to(*command);
-  command->add_option("--json", a->json, "Write the analysis here, in SI");
-  command->add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
-      ->check(report::wrong_picture_name, "")
-      ->type_name("FILE");
-  command->callback([a] { run(*a); });
+      .add_option("--moving", a->moving,
+                  "leave-out: analyse the parts at rest; keep: all of it, as if it had not moved")
+      .one_of({"leave-out", "keep"})
+      .shows_default();
+  command.add_flag("--long", a->options.long_tau,
+                   "Thêo1 beyond a quarter of the longest stretch, up to three quarters of it");
+  command.add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
+  a->options.part.add_to(command);
+  command.add_option("--json", a->json, "Write the analysis here, in SI");
+  command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
+      .check(report::wrong_picture_name)
+      .type_name("FILE");
+  command.callback([a] { run(*a); });
 }
 
 }  // namespace ifog::tools

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/capture_input.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
@@ -17,8 +16,10 @@
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/reading_progress.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 
@@ -30,13 +31,13 @@ auto parsed(const char* option, const std::string& text, Parse&& parse) {
   try {
     return parse(text);
   } catch (const std::runtime_error& error) {
-    throw CLI::ValidationError(option, std::string("is ") + error.what());
+    throw WrongUsage(option, std::string("is ") + error.what());
   }
 }
 
 }  // namespace
 
-void CaptureInput::add_to(CLI::App& command) {
+void CaptureInput::add_to(const Command& command) {
   add_driver_to(command);
   command
       .add_option(
@@ -45,13 +46,13 @@ void CaptureInput::add_to(CLI::App& command) {
           "unit of angle (deg) makes its differences the rate, one of increments (deg/sample) the turn "
           "within each "
           "sample. May stand several times; columns not named are passed over")
-      ->type_name("NAME=HEADER[:UNIT]");
-  command.add_option("--time", time, "Its time column: t:ms")->type_name("HEADER[:UNIT]");
+      .type_name("NAME=HEADER[:UNIT]");
+  command.add_option("--time", time, "Its time column: t:ms").type_name("HEADER[:UNIT]");
   command.add_option("--separator", separator, "What stands between the cells of a CSV file: ';' or tab")
-      ->type_name("C");
+      .type_name("C");
   command
       .add_option("--group", group, "Group of an HDF5 file that holds the columns, or table of records: /imu")
-      ->type_name("PATH");
+      .type_name("PATH");
 }
 
 CsvLayout CaptureInput::layout() const {
@@ -60,8 +61,7 @@ CsvLayout CaptureInput::layout() const {
     out.columns.push_back(parsed("--column", column, CsvColumn::parse));
     const std::string& name = out.columns.back().name;
     for (std::size_t i = 0; i + 1 < out.columns.size(); ++i)
-      if (out.columns[i].name == name)
-        throw CLI::ValidationError("--column", "gives " + in_quotes(name) + " twice");
+      if (out.columns[i].name == name) throw WrongUsage("--column", "gives " + in_quotes(name) + " twice");
   }
   if (!time.empty()) out.time = parsed("--time", time, CsvTime::parse);
   if (!separator.empty()) out.separator = parsed("--separator", separator, CsvLayout::parse_separator);
@@ -77,15 +77,15 @@ Capture CaptureInput::read_columns(InputFile& file) const {
   return capture_of(table_of([&](RowSink& sink) { return column_rows(file, sink); }), file.path());
 }
 
-void CaptureInput::add_driver_to(CLI::App& command) {
+void CaptureInput::add_driver_to(const Command& command) {
   command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
-      ->type_name("NAME");
+      .type_name("NAME");
   command.add_option("--option", options, "Option of the driver; may stand several times")
-      ->type_name("KEY=VALUE");
+      .type_name("KEY=VALUE");
   command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc")
-      ->type_name("FILE");
+      .type_name("FILE");
   command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log")
-      ->type_name("NAME");
+      .type_name("NAME");
 }
 
 std::string CaptureInput::as_typed() const {
@@ -111,12 +111,12 @@ DriverSettings CaptureInput::settings() const {
   for (const std::string& option : options) {
     const std::size_t equals = option.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw CLI::ValidationError("--option", "is " + in_quotes(option) + ", expected KEY=VALUE");
+      throw WrongUsage("--option", "is " + in_quotes(option) + ", expected KEY=VALUE");
     if (!out.emplace(option.substr(0, equals), option.substr(equals + 1)).second)
-      throw CLI::ValidationError("--option", "gives " + in_quotes(option.substr(0, equals)) + " twice");
+      throw WrongUsage("--option", "gives " + in_quotes(option.substr(0, equals)) + " twice");
   }
   if (!dbc.empty() && !out.emplace("dbc", dbc).second)
-    throw CLI::ValidationError("--dbc", "stands beside --option dbc=…, expected one of them");
+    throw WrongUsage("--dbc", "stands beside --option dbc=…, expected one of them");
   return out;
 }
 
@@ -195,10 +195,9 @@ FileKind CaptureInput::readable(const InputFile& file) const {
 RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
   const bool hdf5 = is_hdf5(file);
   if (hdf5 && !separator.empty())
-    throw CLI::ValidationError("--separator", "stands beside an HDF5 file, expected a CSV file");
+    throw WrongUsage("--separator", "stands beside an HDF5 file, expected a CSV file");
   if (!hdf5 && !group.empty())
-    throw CLI::ValidationError("--group",
-                               "stands beside " + in_quotes(file.path()) + ", expected an HDF5 file");
+    throw WrongUsage("--group", "stands beside " + in_quotes(file.path()) + ", expected an HDF5 file");
   const ReadingProgress progress(file);
   RowNotes notes = hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(file, layout(), sink);
   tell(notes.notices, notes.faults);

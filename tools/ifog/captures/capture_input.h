@@ -14,10 +14,7 @@
 #include "drivers/host/driver_instance.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/long_table.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/ifog/console/command.h"
 
 namespace ifog {
 class CaptureBuilder;
@@ -38,15 +35,15 @@ struct CaptureInput {
   std::string group;                 // --group PATH, of HDF5
 
   // Adds the options to a command that reads.
-  void add_to(CLI::App& command);
+  void add_to(const Command& command);
   // Only those of a driver, to a command that writes its frames.
-  void add_driver_to(CLI::App& command);
+  void add_driver_to(const Command& command);
   // What of it was given, as a shell takes it again: " --driver kvh1750 --option format=b".
   [[nodiscard]] std::string as_typed() const;
 
   [[nodiscard]] bool has_driver() const { return !driver.empty() || !dbc.empty(); }
 
-  // The driver's name and settings of the options above. Throws CLI::ValidationError (usage) on an option
+  // The driver's name and settings of the options above. Throws WrongUsage (usage) on an option
   // that is no KEY=VALUE.
   [[nodiscard]] std::string driver_name() const;
   [[nodiscard]] DriverSettings settings() const;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/capture_output.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,6 +18,7 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -109,17 +110,15 @@ void write_recording(const LongTable& table, const std::string& from, const std:
                      const CaptureInput& input, const std::string& axis) {
   const CaptureShape shape = capture_shape(table.names(), from, table);
   if (!input.has_driver())
-    throw CLI::ValidationError(to,
-                               "is no .csv or .h5, expected --driver NAME (or --dbc FILE) to encode it with");
+    throw WrongUsage(to, "is no .csv or .h5, expected --driver NAME (or --dbc FILE) to encode it with");
   const auto plugin = find_plugin(input.driver_name(), plugin_folders());
   const double rate_hz = table.size() > 1 ? sample_rate_hz(median_step(table.time_s)) : 0.0;
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, input.settings()));
   const bool log = is_standard_output(to) ? driver.takes_can() : file_kind(to) == FileKind::candump;
   if (log != driver.takes_can())
-    throw CLI::ValidationError(to,
-                               "driver " + input.driver_name() + " speaks " +
-                                   (driver.takes_can() ? "CAN, expected a name ending in .log"
-                                                       : "bytes, expected a name ending in .bin or .kvh"));
+    throw WrongUsage(to, "driver " + input.driver_name() + " speaks " +
+                             (driver.takes_can() ? "CAN, expected a name ending in .log"
+                                                 : "bytes, expected a name ending in .bin or .kvh"));
   try {
     Pieces pieces(table, shape);
     CaptureEncoder encoder(pieces.piece(), driver, rate_hz, axis);

@@ -7,7 +7,7 @@
 namespace ifog::tools {
 
 // Into the table of the run's files as what is read (command_files.h): models, what the drivers' options
-// name, files that are a device or a channel. Throws CLI::ValidationError as will_read() does.
+// name, files that are a device or a channel. Throws WrongUsage as will_read() does.
 void will_read_files_of(const Config& config);
 
 }  // namespace ifog::tools

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/lcm_listener.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 
 #include "daemon/config/lcm_url.h"
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 
@@ -18,8 +18,7 @@ namespace {
 const std::string& usable(const std::string& url) {
   const std::string expected =
       printable(url, kLongestMessage) == url ? lcm_url_complaint(url) : "no control characters";
-  if (!expected.empty())
-    throw CLI::ValidationError("--lcm-url", "is " + in_quotes(url) + ", expected " + expected);
+  if (!expected.empty()) throw WrongUsage("--lcm-url", "is " + in_quotes(url) + ", expected " + expected);
   return url;
 }
 

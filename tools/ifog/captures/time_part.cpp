@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/time_part.h"
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
+#include "tools/ifog/console/command.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -34,17 +35,17 @@ std::size_t first_from(const SeriesView& time_s, const TimeOrigin& origin, std::
 
 }  // namespace
 
-void TimePart::add_to(CLI::App& command, const std::string& of_from, const std::string& of_to) {
+void TimePart::add_to(const Command& command, const std::string& of_from, const std::string& of_to) {
   const auto add = [&command](const char* name, Bound& bound, const std::string& help) {
     const auto take = [name, &bound](const std::string& text) {
       const std::optional<SaidTime> said = SaidTime::parse(text);
       if (!said)
-        throw CLI::ValidationError(
+        throw WrongUsage(
             name, "is " + in_quotes(text) + ", expected a number of seconds or a date, 2026-05-01T12:00:00Z");
       static_cast<SaidTime&>(bound) = *said;
       bound.text = text;
     };
-    command.add_option_function<std::string>(name, take, help)->type_name("TIME");
+    command.add_taken<std::string>(name, take, help).type_name("TIME");
   };
   add("--from", from, of_from);
   add("--to", to, of_to);

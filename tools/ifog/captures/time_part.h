@@ -11,10 +11,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
@@ -26,7 +23,7 @@ struct TimePart {
   Bound to{{std::numeric_limits<double>::infinity(), 0.0}, ""};  // from this time on left out
 
   // Adds the two options to a command, which this must outlive.
-  void add_to(CLI::App& command, const std::string& of_from = "Leave out what is before this time, s",
+  void add_to(const Command& command, const std::string& of_from = "Leave out what is before this time, s",
               const std::string& of_to = "Leave out what is from this time on, s");
 
   struct Rows {

@@ -2,14 +2,16 @@
 // ifog compare: every adaptation rule on one capture, with the same settings.
 #include "filters/compare/compare.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "drivers/capture/column_names.h"
 #include "filters/allan/stretches.h"
@@ -24,6 +26,7 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/compare_picture.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json_file.h"
@@ -258,20 +261,20 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
+void add_compare(const Command& program) {
+  const Command command =
+      program.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
   auto options = std::make_shared<Options>();
-  command->add_option("capture", options->capture, "a capture")->required();
-  command->add_option("--model", options->model, "model file whose [filter] gives the settings");
-  command->add_option("--json", options->json_file, "write the figures as JSON");
-  command->add_option("--plot", options->plot_file, "write a picture, .svg or .png")
-      ->check(report::wrong_picture_name, "")
-      ->type_name("FILE");
-  options->input.add_to(*command);
-  options->part.add_to(*command);
-  add_filter_options(*command, options->choice, false);
-  command->callback([options] { run(*options); });
+  command.add_option("capture", options->capture, "a capture").required();
+  command.add_option("--model", options->model, "model file whose [filter] gives the settings");
+  command.add_option("--json", options->json_file, "write the figures as JSON");
+  command.add_option("--plot", options->plot_file, "write a picture, .svg or .png")
+      .check(report::wrong_picture_name)
+      .type_name("FILE");
+  options->input.add_to(command);
+  options->part.add_to(command);
+  add_filter_options(command, options->choice, false);
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace ifog::tools

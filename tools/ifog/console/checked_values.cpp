@@ -51,6 +51,12 @@ std::optional<double> number_in(const std::string& text) {
   return value;
 }
 
+std::optional<std::int64_t> whole_in(const std::string& text) {
+  std::int64_t value = 0;
+  if (!CLI::detail::lexical_cast(text, value)) return std::nullopt;
+  return value;
+}
+
 bool is_number(const std::string& text, ValueKind kind) {
   if (kind == ValueKind::number) return number_in(text).has_value();
   std::string_view digits = text;

@@ -2,6 +2,7 @@
 // What an option's value must be, and the words for one that is not: the value and what was expected.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ ValueKind value_kind(const std::string& type);
 
 // Decimal and finite, by the rule of drivers/ifog/decimal.h; empty: it is none.
 std::optional<double> number_in(const std::string& text);
+
+// Whole, within 64 bits, as the parser takes it; empty: it is none.
+std::optional<std::int64_t> whole_in(const std::string& text);
 
 // Decimal and finite; whole where the kind says so, and within 64 bits.
 bool is_number(const std::string& text, ValueKind kind);

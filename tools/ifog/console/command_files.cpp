@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/console/command_files.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -14,6 +13,7 @@
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -33,8 +33,8 @@ void add(const std::string& option, const std::string& path, bool written) {
     return (other.written || written) && other.identity == *identity;
   });
   if (same != files.end())
-    throw CLI::ValidationError(option, "is " + in_quotes(path) + ", the file that " + same->option +
-                                           (same->written ? " writes" : " reads") + "; expected another one");
+    throw WrongUsage(option, "is " + in_quotes(path) + ", the file that " + same->option +
+                                 (same->written ? " writes" : " reads") + "; expected another one");
   files.push_back({option, *std::move(identity), written});
 }
 
@@ -76,15 +76,15 @@ void expect_no_other_kind(const std::string& option, const std::string& path,
   if (std::any_of(endings.begin(), endings.end(), says) ||
       std::none_of(std::begin(kKnown), std::end(kKnown), says))
     return;
-  throw CLI::ValidationError(
-      option, "is " + in_quotes(path) + ", expected a name ending in " + std::string(endings.front()));
+  throw WrongUsage(option,
+                   "is " + in_quotes(path) + ", expected a name ending in " + std::string(endings.front()));
 }
 
 void expect_ending(const std::string& option, const std::string& path, bool known,
                    const std::string& expected) {
   if (known || path.empty() || is_standard_output(path) || !file_identity(path)) return;
   if (!std::filesystem::path(path).has_extension()) return;
-  throw CLI::ValidationError(option, "is " + in_quotes(path) + ", expected a name ending in " + expected);
+  throw WrongUsage(option, "is " + in_quotes(path) + ", expected a name ending in " + expected);
 }
 
 }  // namespace ifog::tools

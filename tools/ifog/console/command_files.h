@@ -11,7 +11,7 @@
 namespace ifog::tools {
 
 // For each option or argument that names a file, before anything is written; "" is none. Throw
-// CLI::ValidationError (usage) that names both options where two of the run's files are one regular file, by
+// WrongUsage (usage) that names both options where two of the run's files are one regular file, by
 // device and inode, and one of them is written. Devices and pipes may stand any number of times. Of a folder
 // that is read its flight recordings count.
 void will_read(const std::string& option, const std::string& path);
@@ -32,12 +32,12 @@ inline constexpr auto kByteEndings =
     std::to_array<std::string_view>({".bin", ".kvh", ".raw", ".dat", ".txt"});
 
 // What is written is of one kind, whatever its file is called: a name that is known to say another (a page in
-// report.pdf) is refused with the first of the kind's own endings. Throws CLI::ValidationError.
+// report.pdf) is refused with the first of the kind's own endings. Throws WrongUsage.
 void expect_no_other_kind(const std::string& option, const std::string& path,
                           std::span<const std::string_view> endings);
 
 // The ending of a file's name chooses what is written into it: with one that is not `known` nothing is.
-// Throws CLI::ValidationError with the endings that were `expected`. A name without an ending, a device, a
+// Throws WrongUsage with the endings that were `expected`. A name without an ending, a device, a
 // pipe and standard output say nothing.
 void expect_ending(const std::string& option, const std::string& path, bool known,
                    const std::string& expected);

@@ -21,6 +21,7 @@
 #include "tools/ifog/console/plain_words.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/console/usage_error.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -76,7 +77,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
         throw CLI::Success();
       },
       "Print every command with its options as JSON and exit");
-  for (const AddCommand add : commands) add(app);
+  for (const AddCommand add : commands) add(Command(app));
   in_plain_words(app);
 
   const std::vector<std::string> asked = with_help_as_option(app, argc, argv);
@@ -91,7 +92,10 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
     std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
     status = app.exit(error, out, complaint) == 0 ? 0 : 2;
     say("%s", out.str().c_str());
-    if (status != 0) warn("%s", usage_error(app, count, arguments.data(), error).c_str());
+    if (status != 0) warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
+  } catch (const WrongUsage& error) {
+    status = 2;
+    warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
   } catch (const Failed&) {
     status = 1;
   }

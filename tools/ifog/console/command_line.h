@@ -6,14 +6,12 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
 // Adds a command to the command line.
-using AddCommand = void (*)(CLI::App& app);
+using AddCommand = void (*)(const Command& app);
 
 // What was typed, as a shell takes it again: words that are no plain names in quotes. The program stands
 // under its own name, wherever it lies. Empty before run_command_line().

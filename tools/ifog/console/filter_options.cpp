@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/console/filter_options.h"
 
-#include <CLI/CLI.hpp>
-
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <type_traits>
 
@@ -11,6 +10,8 @@
 #include "filters/rules/names.h"
 #include "filters/settings/filter_table.h"
 #include "tools/ifog/console/checked_values.h"
+#include "tools/ifog/console/command.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -39,8 +40,7 @@ std::string wrong_number(const FilterSetting& setting, const std::string& text) 
   FilterChoice ignored;
   bool good = is_number(text, kWhole ? ValueKind::whole : ValueKind::number);
   if constexpr (kWhole) {
-    std::int64_t value = 0;
-    good = good && CLI::detail::lexical_cast(text, value) && choose(setting, value, ignored);
+    good = good && whole_in(text) && choose(setting, *whole_in(text), ignored);
   } else if constexpr (std::is_same_v<T, double>) {
     good = good && choose(setting, *number_in(text), ignored);
   }
@@ -56,9 +56,9 @@ std::string refusal(const FilterSetting& setting, const T&) {
 }
 
 template <typename T>
-CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choice) {
+Option add(const Command& command, const FilterSetting& setting, FilterChoice& choice) {
   if constexpr (std::is_same_v<T, bool>) {
-    return app.add_flag_callback(
+    return command.add_flag_taken(
         setting.option,
         [&setting, &choice] {
           const bool usual = std::get<bool>(value_of(setting, FilterSettings{}));
@@ -66,31 +66,32 @@ CLI::Option* add(CLI::App& app, const FilterSetting& setting, FilterChoice& choi
         },
         help(setting));
   } else {
-    CLI::Option* const option = app.add_option_function<Read<T>>(
-        setting.option,
-        [&setting, &choice](const Read<T>& value) {
-          if (!choose(setting, value, choice))
-            throw CLI::ValidationError(setting.option, refusal(setting, value));
-        },
-        help(setting));
-    return option->check([&setting](const std::string& text) {
-      if constexpr (std::is_same_v<T, std::string>)
-        return wrong_name(setting, text);
-      else
-        return wrong_number<T>(setting, text);
-    });
+    return command
+        .add_taken<Read<T>>(
+            setting.option,
+            [&setting, &choice](const Read<T>& value) {
+              if (!choose(setting, value, choice)) throw WrongUsage(setting.option, refusal(setting, value));
+            },
+            help(setting))
+        .check([&setting](const std::string& text) {
+          if constexpr (std::is_same_v<T, std::string>)
+            return wrong_name(setting, text);
+          else
+            return wrong_number<T>(setting, text);
+        });
   }
 }
 
 }  // namespace
 
-void add_filter_options(CLI::App& app, FilterChoice& choice, bool with_rule) {
+void add_filter_options(const Command& command, FilterChoice& choice, bool with_rule) {
   for (const FilterSetting& setting : filter_table()) {
     if (!with_rule && setting.key == std::string_view("rule")) continue;
-    CLI::Option* const option = std::visit(
-        [&]<typename T>(const SettingMember<T>&) { return add<T>(app, setting, choice); }, setting.member);
-    option->group("Filter");
-    if (setting.key == std::string_view("state_parameters")) option->delimiter(',');
+    const Option option =
+        std::visit([&]<typename T>(const SettingMember<T>&) { return add<T>(command, setting, choice); },
+                   setting.member);
+    option.group("Filter");
+    if (setting.key == std::string_view("state_parameters")) option.delimiter(',');
   }
 }
 

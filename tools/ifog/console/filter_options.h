@@ -6,15 +6,12 @@
 #include <string>
 
 #include "filters/settings/filter_settings.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
 // An option for each row of filters/settings/filter_table.h. `choice` must outlive the parse. `with_rule`:
 // --filter too.
-void add_filter_options(CLI::App& app, FilterChoice& choice, bool with_rule = true);
+void add_filter_options(const Command& command, FilterChoice& choice, bool with_rule = true);
 
 }  // namespace ifog::tools

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -12,11 +11,13 @@
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -72,7 +73,7 @@ void warn(const char* format, ...) {
 
 void data_to_standard_output(const std::string& option) {
   if (!data_option.empty())
-    throw CLI::ValidationError(
+    throw WrongUsage(
         option, "is to go to standard output, as is " + data_option + "; expected only one of them there");
   data_option = option;
   people = stderr;

@@ -19,7 +19,7 @@ namespace ifog::tools {
 [[gnu::format(printf, 1, 2)]] void warn(const char* format, ...);
 
 // The data of this option takes standard output, and people read standard error from then on. Before the
-// first say(). Throws CLI::ValidationError (usage) when a second one wants it, too.
+// first say(). Throws WrongUsage (usage) when a second one wants it, too.
 void data_to_standard_output(const std::string& option);
 
 // Lines that take the place of the `before` lines drawn last, where people sit at a terminal; elsewhere they

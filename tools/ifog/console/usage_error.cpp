@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/console/usage_error.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <string_view>
@@ -70,9 +71,8 @@ std::string plainly(const CLI::App& command, const std::string& said) {
 
 }  // namespace
 
-std::string usage_error(const CLI::App& app, int argc, const char* const* argv,
-                        const CLI::ParseError& error) {
-  std::string who = "ifog", what = printable(error.what(), kLongestMessage);
+std::string usage_error(const CLI::App& app, int argc, const char* const* argv, const std::string& said) {
+  std::string who = "ifog", what = printable(said, kLongestMessage);
   const std::string_view first = argc > 1 ? argv[1] : "";
   const std::vector<std::string> commands = commands_of(app);
   const bool is_command = std::find(commands.begin(), commands.end(), first) != commands.end();

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog denoise: the daemon's signal chain over a capture or a recording.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/capture/capture_builder.h"
@@ -29,10 +31,12 @@
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 #include "tools/ifog/denoise/denoise_settings.h"
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
@@ -263,8 +267,8 @@ void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTa
 
 void run(DenoiseOptions options) {
   if (!options.sensor.empty() && options.config.empty())
-    throw CLI::ValidationError("--sensor", "is " + in_quotes(options.sensor) +
-                                               ", expected --config with it, whose sensors have names");
+    throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
+                                     ", expected --config with it, whose sensors have names");
   options.input.will_read("CAPTURE", options.capture);
   will_read("--model", options.model);
   will_read("--noise", options.noise);
@@ -325,62 +329,61 @@ void run(DenoiseOptions options) {
 
 }  // namespace
 
-void add_denoise(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
+void add_denoise(const Command& program) {
+  const Command command = program.add_subcommand(
       "denoise", "Denoise a capture as the daemon would, bit for bit with the same settings");
   auto options = std::make_shared<DenoiseOptions>();
   command
-      ->add_option(
+      .add_option(
           "CAPTURE", options->capture,
           "Capture (.csv, .csv.gz, .h5), flight recording (a file or its folder), raw bytes, candump or LCM "
           "log")
-      ->required();
+      .required();
   command
-      ->add_option("--output", options->output,
-                   "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis")
-      ->required()
-      ->type_name("FILE");
-  options->input.add_to(*command);
-  add_filter_options(*command, options->filter);
-  command->add_flag("--smooth", options->smooth,
-                    "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
-  command->add_option("--model", options->model, "Model file of the sensor")->type_name("FILE");
+      .add_option("--output", options->output,
+                  "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis")
+      .required()
+      .type_name("FILE");
+  options->input.add_to(command);
+  add_filter_options(command, options->filter);
+  command.add_flag("--smooth", options->smooth,
+                   "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
+  command.add_option("--model", options->model, "Model file of the sensor").type_name("FILE");
   command
-      ->add_option(
-          "--noise", options->noise,
-          "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
-      ->type_name("FILE");
+      .add_option("--noise", options->noise,
+                  "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
+      .type_name("FILE");
   command
-      ->add_option("--config", options->config,
-                   "Take all settings from the daemon's configuration; of a flight recording else those it "
-                   "was recorded with")
-      ->type_name("FILE");
-  command->add_option("--sensor", options->sensor, "Which sensor of the configuration")->type_name("NAME");
+      .add_option("--config", options->config,
+                  "Take all settings from the daemon's configuration; of a flight recording else those it "
+                  "was recorded with")
+      .type_name("FILE");
+  command.add_option("--sensor", options->sensor, "Which sensor of the configuration").type_name("NAME");
   command
-      ->add_option("--rate", options->nominal_rate_hz,
-                   "Nominal sample rate, Hz; else the driver's or the capture's")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--start-up", options->start_up_s, "Seconds that show the noise when none is given (4)")
-      ->check(CLI::PositiveNumber);
+      .add_option("--rate", options->nominal_rate_hz,
+                  "Nominal sample rate, Hz; else the driver's or the capture's")
+      .positive();
+  command.add_option("--start-up", options->start_up_s, "Seconds that show the noise when none is given (4)")
+      .positive();
   command
-      ->add_option(
+      .add_option(
           "--sequence", options->first_sequence,
           "Number of the first sample in the recording that this one is a part of: its random weights")
-      ->type_name("N");
+      .type_name("N");
   command
-      ->add_option("--since-power-up", options->since_power_up_s,
-                   "Seconds from power-up to the first sample; default: as a recording says it. Where nobody "
-                   "does, a model's "
-                   "warm_up is not corrected")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
-  options->part.add_to(*command, "Write nothing before this time, s; filter from the beginning",
+      .add_option("--since-power-up", options->since_power_up_s,
+                  "Seconds from power-up to the first sample; default: as a recording says it. Where nobody "
+                  "does, a model's "
+                  "warm_up is not corrected")
+      .not_negative()
+      .type_name("S");
+  options->part.add_to(command, "Write nothing before this time, s; filter from the beginning",
                        "Write nothing from this time on, s");
-  command->add_option("--json", options->json, "Summary as JSON")->type_name("FILE");
-  command->add_option("--plot", options->picture, "Picture, .svg or .png")
-      ->check(report::wrong_picture_name, "")
-      ->type_name("FILE");
-  command->callback([options] { run(*options); });
+  command.add_option("--json", options->json, "Summary as JSON").type_name("FILE");
+  command.add_option("--plot", options->picture, "Picture, .svg or .png")
+      .check(report::wrong_picture_name)
+      .type_name("FILE");
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace ifog::tools

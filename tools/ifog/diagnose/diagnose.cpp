@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog diagnose: what the error is made of, what to correct, and what stays.
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
@@ -15,6 +17,7 @@
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
@@ -100,46 +103,46 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_diagnose(CLI::App& app) {
+void add_diagnose(const Command& program) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
-  command->add_option("capture", arguments->captures, "captures of one sensor, fitted together")->required();
-  arguments->input.add_to(*command);
-  arguments->part.add_to(*command);
-  command->add_option("--axis", arguments->wanted.axes, "only these axes");
-  command->add_option("--model", arguments->model, "correct with this model first; find what it leaves");
+  const Command command =
+      program.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
+  command.add_option("capture", arguments->captures, "captures of one sensor, fitted together").required();
+  arguments->input.add_to(command);
+  arguments->part.add_to(command);
+  command.add_option("--axis", arguments->wanted.axes, "only these axes");
+  command.add_option("--model", arguments->model, "correct with this model first; find what it leaves");
   command
-      ->add_option("--since-power-up", arguments->since_power_up_s,
-                   "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
-                   "and one that is "
-                   "found counts from power-up; default: as a recording says it")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--write-model", arguments->write_model, "write the model with what was found");
-  command->add_option("--json", arguments->json, "write the diagnosis as JSON");
-  command->add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
+      .add_option("--since-power-up", arguments->since_power_up_s,
+                  "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
+                  "and one that is "
+                  "found counts from power-up; default: as a recording says it")
+      .not_negative();
+  command.add_option("--write-model", arguments->write_model, "write the model with what was found");
+  command.add_option("--json", arguments->json, "write the diagnosis as JSON");
+  command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
   command
-      ->add_option("--significance", arguments->wanted.significance,
-                   "chance of a false effect, after correction for all tried")
-      ->check(CLI::Range(1e-9, 0.5))
-      ->capture_default_str();
+      .add_option("--significance", arguments->wanted.significance,
+                  "chance of a false effect, after correction for all tried")
+      .within(1e-9, 0.5)
+      .shows_default();
   command
-      ->add_option("--fit-from", arguments->wanted.fit_from,
-                   "fit from this share of each capture's time; the rest judges")
-      ->check(CLI::Range(0.0, 0.9));
+      .add_option("--fit-from", arguments->wanted.fit_from,
+                  "fit from this share of each capture's time; the rest judges")
+      .within(0.0, 0.9);
   command
-      ->add_option("--fit-to", arguments->wanted.fit_to,
-                   "fit up to this share of each capture's time; the rest judges")
-      ->check(CLI::Range(0.1, 1.0));
-  command->add_flag(
+      .add_option("--fit-to", arguments->wanted.fit_to,
+                  "fit up to this share of each capture's time; the rest judges")
+      .within(0.1, 1.0);
+  command.add_flag(
       "--earth", arguments->wanted.earth,
       "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
   command
-      ->add_option("--latitude", arguments->latitude_deg,
-                   "of the captures, degrees: bounds what can be the Earth's rate")
-      ->check(CLI::Range(-90.0, 90.0));
-  command->add_flag("--quiet", arguments->quiet, "no report on the console");
-  command->callback([arguments] { run(*arguments); });
+      .add_option("--latitude", arguments->latitude_deg,
+                  "of the captures, degrees: bounds what can be the Earth's rate")
+      .within(-90.0, 90.0);
+  command.add_flag("--quiet", arguments->quiet, "no report on the console");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace ifog::tools

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog adopt and ifog revert: a proposed model into use, watched, and the one before back.
-#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
@@ -178,26 +185,26 @@ void revert(const AdoptArguments& arguments) {
 
 }  // namespace
 
-void add_adopt(CLI::App& app) {
+void add_adopt(const Command& program) {
   auto arguments = std::make_shared<AdoptArguments>();
-  CLI::App* command =
-      app.add_subcommand("adopt", "Put a proposed model into use, and say whether its promise comes true");
-  command->add_option("sensor", arguments->sensor, "name in the daemon's configuration")->required();
-  arguments->field.add_to(*command, true);
-  command->add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not")
-      ->check(CLI::Range(0.0, 86400.0))
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  command->add_option("--json", arguments->json, "write what was promised and found as JSON");
-  command->callback([arguments] { adopt(*arguments); });
+  const Command command = program.add_subcommand(
+      "adopt", "Put a proposed model into use, and say whether its promise comes true");
+  command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
+  arguments->field.add_to(command, true);
+  command.add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not")
+      .within(0.0, 86400.0)
+      .shows_default()
+      .type_name("SECONDS");
+  command.add_option("--json", arguments->json, "write what was promised and found as JSON");
+  command.callback([arguments] { adopt(*arguments); });
 }
 
-void add_revert(CLI::App& app) {
+void add_revert(const Command& program) {
   auto arguments = std::make_shared<AdoptArguments>();
-  CLI::App* command = app.add_subcommand("revert", "Take the last adoption back");
-  command->add_option("sensor", arguments->sensor, "name in the daemon's configuration")->required();
-  arguments->field.add_to(*command, true);
-  command->callback([arguments] { revert(*arguments); });
+  const Command command = program.add_subcommand("revert", "Take the last adoption back");
+  command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
+  arguments->field.add_to(command, true);
+  command.callback([arguments] { revert(*arguments); });
 }
 
 }  // namespace ifog::tools

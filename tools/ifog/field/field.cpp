@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
@@ -20,23 +19,24 @@
 #include "drivers/ifog/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/installed.h"
 
 namespace ifog::tools {
 
-void FieldOptions::add_to(CLI::App& command, bool listens) {
+void FieldOptions::add_to(const Command& command, bool listens) {
   command
       .add_option("--config", config, std::string("the daemon's configuration; default: ") + kServiceConfig)
-      ->type_name("FILE");
+      .type_name("FILE");
   command
       .add_option(
           "--state", state,
           std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
               kServiceState)
-      ->type_name("FOLDER");
+      .type_name("FOLDER");
   if (listens)
     command.add_option("--lcm-url", lcm_url, "where the daemon publishes; default: as configured")
-        ->type_name("URL");
+        .type_name("URL");
 }
 
 std::string FieldOptions::as_typed() const {

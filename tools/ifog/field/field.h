@@ -6,10 +6,7 @@
 #include <string>
 
 #include "daemon/config/config.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
@@ -17,7 +14,7 @@ struct FieldOptions {
   std::string config;   // --config; "": where the service has it, if it is there
   std::string state;    // --state; "": as configured, else STATE_DIRECTORY, else where the service has it
   std::string lcm_url;  // --lcm-url; "": as configured
-  void add_to(CLI::App& command, bool listens);
+  void add_to(const Command& command, bool listens);
   // Those that were given, as a shell takes them again: " --config F".
   [[nodiscard]] std::string as_typed() const;
 };

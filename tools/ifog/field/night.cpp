@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog night: what the flight recorder kept since the last time is diagnosed, and where that would pay, a new
 // model is proposed. Nothing is put into use, no device is touched, and the daemon is not asked for anything.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "drivers/capture/text_file.h"
 #include "drivers/ifog/quoted.h"
@@ -17,6 +22,7 @@
 #include "tools/ifog/captures/compensated_rates.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/bookmark.h"
@@ -308,22 +314,22 @@ void run(const NightArguments& arguments) {
 
 }  // namespace
 
-void add_night(CLI::App& app) {
+void add_night(const Command& program) {
   auto arguments = std::make_shared<NightArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.add_subcommand(
       "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
-  arguments->field.add_to(*command, false);
-  command->add_option("--sensor", arguments->sensors, "only these sensors")->type_name("NAME");
-  command->add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
-      ->check(CLI::Range(60.0, 1e7))
-      ->capture_default_str()
-      ->type_name("SECONDS");
+  arguments->field.add_to(command, false);
+  command.add_option("--sensor", arguments->sensors, "only these sensors").type_name("NAME");
+  command.add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
+      .within(60.0, 1e7)
+      .shows_default()
+      .type_name("SECONDS");
   command
-      ->add_option("--most-bytes", arguments->most_bytes,
-                   "of recordings, the newest; a byte takes some four of memory")
-      ->check(CLI::Range(1e5, 1e12))
-      ->capture_default_str();
-  command->callback([arguments] { run(*arguments); });
+      .add_option("--most-bytes", arguments->most_bytes,
+                  "of recordings, the newest; a byte takes some four of memory")
+      .within(1e5, 1e12)
+      .shows_default();
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace ifog::tools

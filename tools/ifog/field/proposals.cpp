@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog proposals: what the nights have found and nobody has adopted yet.
-#include <CLI/CLI.hpp>
+#include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
@@ -67,12 +70,13 @@ void run(const ProposalsArguments& arguments) {
 
 }  // namespace
 
-void add_proposals(CLI::App& app) {
+void add_proposals(const Command& program) {
   auto arguments = std::make_shared<ProposalsArguments>();
-  CLI::App* command = app.add_subcommand("proposals", "List the models that the nights have proposed");
-  arguments->field.add_to(*command, false);
-  command->add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
-  command->callback([arguments] { run(*arguments); });
+  const Command command =
+      program.add_subcommand("proposals", "List the models that the nights have proposed");
+  arguments->field.add_to(command, false);
+  command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace ifog::tools

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog status: all sensors of this computer's daemon on one screen.
-#include <CLI/CLI.hpp>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/hertz.h"
 #include "tools/ifog/console/json_file.h"
@@ -244,17 +248,17 @@ void run(const StatusArguments& arguments) {
 
 }  // namespace
 
-void add_status(CLI::App& app) {
+void add_status(const Command& program) {
   auto arguments = std::make_shared<StatusArguments>();
-  CLI::App* command =
-      app.add_subcommand("status", "All sensors of this computer's daemon: state, losses, model, proposal");
-  arguments->field.add_to(*command, true);
-  command->add_option("--wait", arguments->wait_s, "listen at most so long, s")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  command->add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
-  command->callback([arguments] { run(*arguments); });
+  const Command command = program.add_subcommand(
+      "status", "All sensors of this computer's daemon: state, losses, model, proposal");
+  arguments->field.add_to(command, true);
+  command.add_option("--wait", arguments->wait_s, "listen at most so long, s")
+      .within(0.1, 3600.0)
+      .shows_default()
+      .type_name("SECONDS");
+  command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace ifog::tools

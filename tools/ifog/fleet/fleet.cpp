@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog fleet: one diagnosis for each gyro of a type, on this machine or on a cluster; then what the type is,
 // and what it gives back to each of its gyros.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "drivers/capture/output_file.h"
 #include "drivers/capture/text_file.h"
@@ -15,11 +18,13 @@
 #include "drivers/transport/utc_now.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/console/wrong_usage.h"
 #include "tools/ifog/fleet/engine.h"
 #include "tools/ifog/fleet/fleet_json.h"
 #include "tools/ifog/fleet/gather.h"
@@ -258,9 +263,8 @@ void run(Arguments& arguments) {
   if (arguments.latitude_deg) arguments.settings.wanted.latitude_rad = *arguments.latitude_deg * kDegree;
   const Manifest manifest = read_manifest(arguments.manifest);
   if (arguments.one && *arguments.one >= manifest.gyros.size())
-    throw CLI::ValidationError("--one", std::to_string(*arguments.one) + " is no gyro of " +
-                                            arguments.manifest + ", expected 0 to " +
-                                            std::to_string(manifest.gyros.size() - 1));
+    throw WrongUsage("--one", std::to_string(*arguments.one) + " is no gyro of " + arguments.manifest +
+                                  ", expected 0 to " + std::to_string(manifest.gyros.size() - 1));
   const std::string folder =
       arguments.results.empty()
           ? std::filesystem::path(arguments.manifest).replace_extension(".results").string()
@@ -282,44 +286,44 @@ void run(Arguments& arguments) {
 
 }  // namespace
 
-void add_fleet(CLI::App& app) {
+void add_fleet(const Command& program) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.add_subcommand(
       "fleet", "Diagnose every gyro of a type, then the type: its effects, its spread, who stands out");
-  command->add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
-      ->required();
-  command->add_option("--results", arguments->results,
-                      "folder of results; otherwise beside the manifest, under its name with .results");
+  command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
+      .required();
+  command.add_option("--results", arguments->results,
+                     "folder of results; otherwise beside the manifest, under its name with .results");
   command
-      ->add_option("--engine", arguments->engine,
-                   "who runs the diagnoses: auto takes slurm where there is an sbatch")
-      ->check(CLI::IsMember({"auto", "local", "slurm"}))
-      ->capture_default_str();
+      .add_option("--engine", arguments->engine,
+                  "who runs the diagnoses: auto takes slurm where there is an sbatch")
+      .one_of({"auto", "local", "slurm"})
+      .shows_default();
   command
-      ->add_option("--jobs", arguments->jobs,
-                   "gyros at once; otherwise a processor each, or as many as Slurm gives")
-      ->check(CLI::Range(1, 100000));
-  command->add_flag("--dry-run", arguments->dry_run,
-                    "print what would be run for the gyros not yet diagnosed");
-  command->add_option("--one", arguments->one, "only what is missing of this gyro, counted from 0")
-      ->type_name("INDEX");
-  arguments->settings.input.add_to(*command);
-  arguments->settings.part.add_to(*command);
-  command->add_option("--axis", arguments->settings.wanted.axes, "only these axes");
+      .add_option("--jobs", arguments->jobs,
+                  "gyros at once; otherwise a processor each, or as many as Slurm gives")
+      .within(1, 100000);
+  command.add_flag("--dry-run", arguments->dry_run,
+                   "print what would be run for the gyros not yet diagnosed");
+  command.add_option("--one", arguments->one, "only what is missing of this gyro, counted from 0")
+      .type_name("INDEX");
+  arguments->settings.input.add_to(command);
+  arguments->settings.part.add_to(command);
+  command.add_option("--axis", arguments->settings.wanted.axes, "only these axes");
   command
-      ->add_option("--significance", arguments->settings.wanted.significance,
-                   "chance of a false effect in a gyro, after correction for all tried")
-      ->check(CLI::Range(1e-9, 0.5))
-      ->capture_default_str();
-  command->add_flag(
+      .add_option("--significance", arguments->settings.wanted.significance,
+                  "chance of a false effect in a gyro, after correction for all tried")
+      .within(1e-9, 0.5)
+      .shows_default();
+  command.add_flag(
       "--earth", arguments->settings.wanted.earth,
       "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
   command
-      ->add_option("--latitude", arguments->latitude_deg,
-                   "of the captures, degrees: bounds what can be the Earth's rate")
-      ->check(CLI::Range(-90.0, 90.0));
-  command->footer("Example:\n  ifog fleet lot7.toml --jobs 8");
-  command->callback([arguments] { run(*arguments); });
+      .add_option("--latitude", arguments->latitude_deg,
+                  "of the captures, degrees: bounds what can be the Earth's rate")
+      .within(-90.0, 90.0);
+  command.footer("Example:\n  ifog fleet lot7.toml --jobs 8");
+  command.callback([arguments] { run(*arguments); });
 }
 
 }  // namespace ifog::tools

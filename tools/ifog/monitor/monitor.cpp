@@ -5,12 +5,12 @@
 #include <signal.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <ifog/decode.h>
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -26,6 +26,7 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
@@ -305,20 +306,19 @@ bool Monitor::run() {
 
 }  // namespace
 
-void add_monitor(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("monitor", "Show live what the daemon publishes");
+void add_monitor(const Command& program) {
+  const Command command = program.add_subcommand("monitor", "Show live what the daemon publishes");
   auto options = std::make_shared<Options>();
-  command->add_option("--sensor", options->sensor, "Only this sensor")->type_name("NAME");
-  command->add_option("--seconds", options->seconds, "Stop after this long")->check(CLI::PositiveNumber);
-  command->add_flag("--once", options->once, "Stop after one second of every sensor heard");
-  command->add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
+  command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
+  command.add_option("--seconds", options->seconds, "Stop after this long").positive();
+  command.add_flag("--once", options->once, "Stop after one second of every sensor heard");
+  command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
   command
-      ->add_option(
-          "--json", options->json,
-          "Instead of the figures every message as a line of JSON to this file; - is standard output")
-      ->type_name("FILE");
-  command->add_option("--lcm-url", options->url, "As in the daemon's configuration")->type_name("URL");
-  command->callback([options] {
+      .add_option("--json", options->json,
+                  "Instead of the figures every message as a line of JSON to this file; - is standard output")
+      .type_name("FILE");
+  command.add_option("--lcm-url", options->url, "As in the daemon's configuration").type_name("URL");
+  command.callback([options] {
     // Without a time limit, --once waits for a daemon that may never come: give up as a script would want.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;

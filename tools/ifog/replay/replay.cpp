@@ -8,20 +8,24 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
 #include <system_error>
 
 #include "drivers/transport/clock.h"
 #include "drivers/transport/pace.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
@@ -207,44 +211,45 @@ std::string names_a_target(const std::string& text) {
 
 }  // namespace
 
-void add_replay(CLI::App& app) {
+void add_replay(const Command& program) {
   auto settings = std::make_shared<ReplaySettings>();
-  CLI::App* command = app.add_subcommand("replay", "Send a recording to a device, as it was recorded");
+  const Command command =
+      program.add_subcommand("replay", "Send a recording to a device, as it was recorded");
   ReplaySource& source = settings->source;
   command
-      ->add_option("capture", source.path,
-                   "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)")
-      ->required();
+      .add_option("capture", source.path,
+                  "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)")
+      .required();
   command
-      ->add_option("--to", settings->to,
-                   "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
-                   "fifo:PATH or - "
-                   "(standard output)")
-      ->required()
-      ->check(names_a_target);
-  command->add_option("--format", source.format, "of the recording")
-      ->check(CLI::IsMember({"auto", "candump", "bytes", "csv"}))
-      ->default_val("auto");
-  command->add_option("--speed", settings->speed, "times faster than recorded; 0: as fast as possible")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--loop", settings->loops, "how often; 0: for ever")->capture_default_str();
-  command->add_flag("--realtime", settings->realtime, "try SCHED_FIFO and locked memory");
-  command->add_option("--spin", settings->spin_us, "µs before each deadline spent awake")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--block", source.block_bytes, "raw bytes: bytes sent together, a frame of the device");
-  command->add_option("--rate", source.rate_hz, "raw bytes: blocks a second")->check(CLI::PositiveNumber);
-  source.input.add_to(*command);
-  command->add_option("--axis", source.axis, "CSV of one axis: the driver's axis it goes to");
-  command->add_option("--baud", settings->line.baud, "serial: speed, else the driver's");
-  command->add_option("--baud-base", settings->line.baud_base,
-                      "serial: the UART's clock / 16, where the driver has it wrong");
-  command->add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character")
-      ->check(CLI::Range(5, 8))
-      ->capture_default_str();
+      .add_option("--to", settings->to,
+                  "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
+                  "fifo:PATH or - "
+                  "(standard output)")
+      .required()
+      .check(names_a_target);
+  command.add_option("--format", source.format, "of the recording")
+      .one_of({"auto", "candump", "bytes", "csv"})
+      .shows_default();
+  command.add_option("--speed", settings->speed, "times faster than recorded; 0: as fast as possible")
+      .not_negative()
+      .shows_default();
+  command.add_option("--loop", settings->loops, "how often; 0: for ever").shows_default();
+  command.add_flag("--realtime", settings->realtime, "try SCHED_FIFO and locked memory");
+  command.add_option("--spin", settings->spin_us, "µs before each deadline spent awake")
+      .not_negative()
+      .shows_default();
+  command.add_option("--block", source.block_bytes, "raw bytes: bytes sent together, a frame of the device");
+  command.add_option("--rate", source.rate_hz, "raw bytes: blocks a second").positive();
+  source.input.add_to(command);
+  command.add_option("--axis", source.axis, "CSV of one axis: the driver's axis it goes to");
+  command.add_option("--baud", settings->line.baud, "serial: speed, else the driver's");
+  command.add_option("--baud-base", settings->line.baud_base,
+                     "serial: the UART's clock / 16, where the driver has it wrong");
+  command.add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character")
+      .within(5, 8)
+      .shows_default();
   command
-      ->add_option_function<std::string>(
+      .add_taken<std::string>(
           "--parity",
           [settings](const std::string& word) {
             settings->line.parity = word == "even"  ? SerialSettings::Parity::even
@@ -252,12 +257,10 @@ void add_replay(CLI::App& app) {
                                                     : SerialSettings::Parity::none;
           },
           "serial: none unless given")
-      ->check(CLI::IsMember({"none", "even", "odd"}));
-  command->add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2")
-      ->check(CLI::Range(1, 2))
-      ->capture_default_str();
-  command->add_option("--json", settings->json, "write the report to this file");
-  command->callback([settings] { run(*settings); });
+      .one_of({"none", "even", "odd"});
+  command.add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2").within(1, 2).shows_default();
+  command.add_option("--json", settings->json, "write the report to this file");
+  command.callback([settings] { run(*settings); });
 }
 
 }  // namespace ifog::tools

@@ -2,7 +2,6 @@
 // ifog tune: Q, R and the state model of a sensor at rest, into a model file.
 #include "filters/tune/tune.h"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -28,6 +27,7 @@
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/progress.h"
@@ -329,30 +329,30 @@ void run(const TuneArguments& options) {
 
 }  // namespace
 
-void add_tune(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
+void add_tune(const Command& program) {
+  const Command command =
+      program.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<TuneArguments>();
-  command->add_option("capture", options->capture, "a capture at rest")->required();
-  command->add_option("--model", options->model,
-                      "correct with this model first; its effects stay in what is written");
+  command.add_option("capture", options->capture, "a capture at rest").required();
+  command.add_option("--model", options->model,
+                     "correct with this model first; its effects stay in what is written");
   command
-      ->add_option(
+      .add_option(
           "--since-power-up", options->since_power_up_s,
           "seconds from power-up to the capture's first sample, for a warm_up of --model; default: as "
           "a recording says it")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
-  command->add_option("--json", options->json_file, "write the figures as JSON");
+      .not_negative();
+  command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
+  command.add_option("--json", options->json_file, "write the figures as JSON");
   // One a flag: a capture that follows is no state model.
-  command->add_option("--state", options->states, "state models to try; may stand several times")
-      ->allow_extra_args(false);
-  command->add_option("--samples", options->samples, "most rows of the capture to fit")
-      ->check(CLI::Range(std::size_t{200}, std::size_t{100000000}))
-      ->capture_default_str();
-  options->input.add_to(*command);
-  options->part.add_to(*command);
-  command->callback([options] { run(*options); });
+  command.add_option("--state", options->states, "state models to try; may stand several times")
+      .one_value_each();
+  command.add_option("--samples", options->samples, "most rows of the capture to fit")
+      .within(std::size_t{200}, std::size_t{100000000})
+      .shows_default();
+  options->input.add_to(command);
+  options->part.add_to(command);
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace ifog::tools
