@@ -2,15 +2,10 @@
 #include "filters/allan/confidence.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 
 namespace ifog {
-
-double chi_squared_quantile(double p, double degrees) {
-  return boost::math::quantile(boost::math::chi_squared(degrees), p);
-}
 
 AllanInterval interval_of(double variance, std::span<const WeightedChiSquared> law, double confidence) {
   AllanInterval interval;

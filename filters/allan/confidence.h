@@ -14,10 +14,6 @@
 
 namespace ifog {
 
-// Value below which a χ² variable of `degrees` (> 0, need not be whole) stays with probability p; relative
-// error 1e-10.
-[[nodiscard]] double chi_squared_quantile(double p, double degrees);
-
 struct AllanInterval {
   Term strongest = kN;  // the term with the largest part of the variance there
   double degrees = 0.0;

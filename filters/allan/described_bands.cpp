@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/allan/confidence.h"
+#include "filters/distributions/chi_squared.h"
 
 namespace ifog {
 namespace {

@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "filters/allan/confidence.h"
 #include "filters/allan/noise_spectrum.h"
+#include "filters/distributions/chi_squared.h"
 
 namespace ifog {
 namespace {

@@ -2,9 +2,10 @@
 #include "filters/allan/weighted_chi_squared.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "filters/distributions/chi_squared.h"
 
 namespace ifog {
 namespace {
@@ -41,8 +42,7 @@ double probability(const Generating& k, double s) {
 }  // namespace
 
 double quantile(std::span<const WeightedChiSquared> parts, double p) {
-  if (parts.size() == 1)
-    return parts[0].weight * boost::math::quantile(boost::math::chi_squared(parts[0].degrees), p);
+  if (parts.size() == 1) return parts[0].weight * chi_squared_quantile(p, parts[0].degrees);
   double largest = 0.0;
   for (const WeightedChiSquared& part : parts) largest = std::max(largest, part.weight);
   // 1 − 2·largest·s = exp(−y) maps all that s may be to all y.

@@ -2,9 +2,10 @@
 #include "filters/population/population.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <span>
+
+#include "filters/distributions/chi_squared.h"
 
 namespace ifog {
 namespace {
@@ -72,7 +73,7 @@ void judge(TypeEffect& effect, double level) {
 
 bool is_of_type(const TypePrior& prior, double level) {
   constexpr double kNumbers = 3.0;  // share, mean, spread
-  return prior.likelihood_ratio > quantile(complement(boost::math::chi_squared(kNumbers), level));
+  return prior.likelihood_ratio > chi_squared_exceeded(level, kNumbers);
 }
 
 void describe(PopulationParameter& parameter) {

@@ -2,8 +2,9 @@
 #include "filters/diagnosis/checks/between_captures.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+
+#include "filters/distributions/chi_squared.h"
 
 namespace ifog {
 namespace {
@@ -58,7 +59,7 @@ ByCapture compare(const BlockData& data, const std::vector<Candidate>& effects, 
   const double common = weight.solve(one).dot(value) / weight.solve(one).dot(one);
   const Eigen::VectorXd away = value - common * one;
   const double square = std::max(0.0, away.dot(weight.solve(away)));
-  found.p_value = cdf(complement(boost::math::chi_squared(static_cast<double>(count - 1)), square));
+  found.p_value = chi_squared_above(square, static_cast<double>(count - 1));
   found.departure = away.cwiseAbs().maxCoeff() / std::max(std::abs(common), 1e-300);
   return found;
 }

@@ -4,9 +4,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -235,8 +235,7 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
   const CrossFit crossed = cross_fit(parts);
   RampFit fit;
   fit.ratio = -all.samples * std::log(std::max(1e-12, 1.0 - explained(all, table) / all.square));
-  const boost::math::chi_squared by_chance(static_cast<double>(table.size()));
-  fit.p_value = cdf(complement(by_chance, std::max(0.0, fit.ratio)));
+  fit.p_value = chi_squared_above(std::max(0.0, fit.ratio), static_cast<double>(table.size()));
   if (fit.p_value > significance || crossed.gain <= 0.0) return std::nullopt;
   fit.effect = table_effect(channel, period, all, table);
 

@@ -2,7 +2,6 @@
 #include "filters/diagnosis/record/rebuilt_ramp.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "filters/diagnosis/record/ramp_between_captures.h"
 #include "filters/diagnosis/record/ramp_comb.h"
 #include "filters/diagnosis/record/ramp_table.h"
+#include "filters/distributions/chi_squared.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
@@ -184,8 +184,7 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at
 }
 
 double chance_of(const RampComb& comb) {
-  const boost::math::chi_squared by_chance(2.0 * static_cast<double>(comb.harmonics));
-  return std::min(1.0, comb.tries * cdf(complement(by_chance, comb.ratio)));
+  return std::min(1.0, comb.tries * chi_squared_above(comb.ratio, 2.0 * static_cast<double>(comb.harmonics)));
 }
 
 // By two captures at different rates. That the lines follow the rate is proven by that, however the phase

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/residual/two_states.h"
+#include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -61,8 +61,7 @@ std::vector<double> energies(std::span<const double> left, std::size_t piece) {
 double burst_level(std::size_t piece, std::size_t pieces) {
   const double freedom = 2.0 / 3.0 * static_cast<double>(piece - 1);
   const double chance = 0.01 / static_cast<double>(pieces);
-  const boost::math::chi_squared energy(freedom);
-  return std::max(6.0, quantile(complement(energy, chance)) / median(energy));
+  return std::max(6.0, chi_squared_exceeded(chance, freedom) / chi_squared_quantile(0.5, freedom));
 }
 
 std::size_t measured_of(std::span<const double> energy) {

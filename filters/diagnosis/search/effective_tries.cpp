@@ -2,11 +2,11 @@
 #include "filters/diagnosis/search/effective_tries.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "filters/distributions/chi_squared.h"
 #include "filters/random/philox.h"
 
 namespace ifog {
@@ -28,7 +28,7 @@ std::pair<double, double> normal_pair(std::uint32_t draw, std::uint32_t place) {
 
 double tail(double ratio, int columns) {
   if (ratio <= 0.0) return 1.0;
-  return cdf(complement(boost::math::chi_squared(columns), ratio));
+  return chi_squared_above(ratio, columns);
 }
 
 double independent_columns(const Columns& projected) {

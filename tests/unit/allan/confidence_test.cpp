@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "filters/allan/noise_coefficients.h"
+#include "filters/distributions/chi_squared.h"
 #include "tools/simulate/noise.h"
 
 namespace {
@@ -24,6 +25,16 @@ TEST(Confidence, ChiSquaredQuantilesAreTheTables) {
   // Wilson–Hilferty, good to 1e-6 at a million degrees.
   EXPECT_NEAR(ifog::chi_squared_quantile(0.841344746, 1e6) / 1e6,
               std::pow(1.0 - 2.0 / 9e6 + std::sqrt(2.0 / 9e6), 3), 1e-8);
+}
+
+// Of two degrees of freedom the tail is exp(-x/2), far beyond what 1 - p can tell from 1.
+TEST(Confidence, ChiSquaredTailsAreTheTables) {
+  EXPECT_NEAR(ifog::chi_squared_above(3.84146, 1.0), 0.05, 1e-6);
+  EXPECT_NEAR(ifog::chi_squared_exceeded(0.05, 10.0), 18.3070, 5e-5);
+  for (const double chance : {1e-200, 1e-20, 0.5}) {
+    EXPECT_NEAR(ifog::chi_squared_exceeded(chance, 2.0) / (-2.0 * std::log(chance)), 1.0, 1e-10) << chance;
+    EXPECT_NEAR(ifog::chi_squared_above(-2.0 * std::log(chance), 2.0) / chance, 1.0, 1e-10) << chance;
+  }
 }
 
 // The interval must hold the true deviation as often as it says, whatever the estimator, also where the noise
