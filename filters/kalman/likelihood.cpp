@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "filters/kalman/core.h"
 #include "filters/kalman/doubling.h"
@@ -22,25 +23,80 @@ constexpr std::size_t kRecovery = 16;
 // A gain that changes by less than this share from one hold to the next has settled.
 constexpr double kSettled = 1e-9;
 
-template <int n, int lanes>
-class Pass {
+// Covariance and gain, which no measurement changes, so of any number of axes: compiled once for each number
+// of states, and apart from the samples' loop.
+template <int n>
+class GainOf {
  public:
   using Vector = Eigen::Matrix<double, n, 1>;
   using Matrix = Eigen::Matrix<double, n, n>;
 
+  GainOf(const StateModel& model, double process_noise, double measurement_noise, double dt_s);
+
+  [[nodiscard]] const Vector& gain() const { return core_.gain; }
+  [[nodiscard]] const Vector& measurement() const { return core_.h; }
+  [[nodiscard]] const Matrix& transition() const { return transition_; }
+  // Of the innovation.
+  [[nodiscard]] double variance() const { return variance_; }
+
+  // To the next sample's prediction.
+  void predict();
+  // Of this sample's prediction.
+  void correct();
+  // Over 2^half samples and as many again, with the gain in their middle; whether it is still what it was.
+  bool hold(std::size_t half);
+
+ private:
+  KalmanCore<n> core_;
+  Matrix transition_, driving_;
+  double noise_, variance_ = 0.0;
+  std::optional<CovarianceDoubling> doubling_;
+};
+
+template <int n>
+GainOf<n>::GainOf(const StateModel& model, double process_noise, double measurement_noise, double dt_s)
+    : noise_(measurement_noise) {
+  core_.h = model.measurement();
+  model.discretise(dt_s, transition_, driving_);
+  driving_ *= process_noise;
+  core_.p = process_noise * model.stationary();
+  const double loudness = noise_ + core_.variance() + core_.h.dot(driving_ * core_.h);
+  core_.p.diagonal() += kDiffuse * loudness * model.diffuse();
+  doubling_.emplace(transition_, driving_, core_.h, noise_);
+}
+
+template <int n>
+void GainOf<n>::predict() {
+  core_.predict_covariance(transition_, driving_);
+}
+
+template <int n>
+void GainOf<n>::correct() {
+  variance_ = core_.variance() + noise_;
+  core_.correct(variance_);
+}
+
+template <int n>
+bool GainOf<n>::hold(std::size_t half) {
+  const Vector before = core_.gain;
+  core_.p = doubling_->ahead(core_.p, half);
+  const Vector ph = core_.p * core_.h;
+  variance_ = core_.h.dot(ph) + noise_;
+  core_.gain = ph / variance_;
+  const bool settled = (core_.gain - before).norm() <= kSettled * core_.gain.norm();
+  core_.p = doubling_->ahead(core_.p, half);
+  return settled;
+}
+
+template <int n, int lanes>
+class Pass {
+ public:
   Pass(const StateModel& model, double process_noise, double measurement_noise, double dt_s)
-      : noise_(measurement_noise), diffuse_(static_cast<std::size_t>((model.diffuse().array() > 0).count())) {
-    core_.h = model.measurement();
-    model.discretise(dt_s, transition_, driving_);
-    driving_ *= process_noise;
-    level_ = model.level();
-    core_.p = process_noise * model.stationary();
-    const double loudness = noise_ + core_.variance() + core_.h.dot(driving_ * core_.h);
-    core_.p.diagonal() += kDiffuse * loudness * model.diffuse();
-  }
+      : gain_(model, process_noise, measurement_noise, dt_s),
+        level_(model.level()),
+        diffuse_(static_cast<std::size_t>((model.diffuse().array() > 0).count())) {}
 
   LikelihoodTerms over(const LikelihoodRecord::Group& group) {
-    CovarianceDoubling doubling(transition_, driving_, core_.h, noise_);
     const double* row = group.rows.data();
     LikelihoodTerms terms;
     std::size_t measured = 0;
@@ -55,22 +111,16 @@ class Pass {
       for (std::size_t done = 0; done < run.length;) {
         const std::size_t left = run.length - done;
         const std::size_t hold = settled ? left : held(measured, done, left);
-        if (hold == 1) {
-          correct();
-        } else if (!settled) {
-          const std::size_t half = static_cast<std::size_t>(std::bit_width(hold) - 2);
-          const Vector before = core_.gain;
-          core_.p = doubling.ahead(core_.p, half);
-          gain();
-          settled = (core_.gain - before).norm() <= kSettled * core_.gain.norm();
-          core_.p = doubling.ahead(core_.p, half);
-        }
+        if (hold == 1)
+          gain_.correct();
+        else if (!settled)
+          settled = gain_.hold(static_cast<std::size_t>(std::bit_width(hold) - 2));
         const double squares = take(row, hold, group.axes);
-        if (hold == 1) core_.predict_covariance(transition_, driving_);
+        if (hold == 1) gain_.predict();
         if (measured >= diffuse_) {
           terms.count += static_cast<long>(hold * group.axes);
-          terms.sum_log_variance += static_cast<double>(hold * group.axes) * std::log(variance_);
-          terms.sum_normalised += squares / variance_;
+          terms.sum_log_variance += static_cast<double>(hold * group.axes) * std::log(gain_.variance());
+          terms.sum_normalised += squares / gain_.variance();
         }
         done += hold;
         measured += hold;
@@ -94,34 +144,25 @@ class Pass {
   }
 
   void predict() {
-    x_ = (x_.matrix() * transition_.transpose()).array().eval();
-    core_.predict_covariance(transition_, driving_);
-  }
-
-  // Gain and innovation variance of this prediction covariance.
-  void gain() {
-    const Vector ph = core_.p * core_.h;
-    variance_ = core_.h.dot(ph) + noise_;
-    core_.gain = ph / variance_;
-  }
-  void correct() {
-    variance_ = core_.variance() + noise_;
-    core_.correct(variance_);
+    x_ = (x_.matrix() * gain_.transition().transpose()).array().eval();
+    gain_.predict();
   }
 
   // `count` samples at this gain, from prediction to prediction. Returns the sum of the squared innovations.
   double take(const double* row, std::size_t count, std::size_t axes) {
-    const Vector predictor = transition_ * core_.gain;
+    const typename GainOf<n>::Matrix& transition = gain_.transition();
+    const typename GainOf<n>::Vector& h = gain_.measurement();
+    const typename GainOf<n>::Vector predictor = transition * gain_.gain();
     std::array<Row, n> x, next;
     for (int i = 0; i < n; ++i) x[at(i)] = x_.col(i);
     Row squares = Row::Zero();
     for (std::size_t k = 0; k < count; ++k, row += lanes) {
       Row innovation = Eigen::Map<const Row>(row);
-      for (int i = 0; i < n; ++i) innovation -= core_.h(i) * x[at(i)];
+      for (int i = 0; i < n; ++i) innovation -= h(i) * x[at(i)];
       squares += innovation.square();
       for (int i = 0; i < n; ++i) {
         next[at(i)] = predictor(i) * innovation;
-        for (int j = 0; j < n; ++j) next[at(i)] += transition_(i, j) * x[at(j)];
+        for (int j = 0; j < n; ++j) next[at(i)] += transition(i, j) * x[at(j)];
       }
       x = next;
     }
@@ -132,10 +173,8 @@ class Pass {
   }
   static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  KalmanCore<n> core_;
-  Matrix transition_, driving_;
-  Vector level_;
-  double noise_, variance_ = 0.0;
+  GainOf<n> gain_;
+  typename GainOf<n>::Vector level_;
   std::size_t diffuse_;
   Eigen::Array<double, lanes, n> x_ = Eigen::Array<double, lanes, n>::Zero();
 };
