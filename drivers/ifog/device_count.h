@@ -115,6 +115,9 @@ class DeviceCount {
   };
 
   [[nodiscard]] std::uint64_t difference(std::uint32_t sequence) const noexcept {
+    // Where both are counts below the modulus, as they are to be, without the two divisions.
+    if (sequence < modulus_ && last_.sequence < modulus_) [[likely]]
+      return sequence >= last_.sequence ? sequence - last_.sequence : sequence + modulus_ - last_.sequence;
     return (sequence + modulus_ - last_.sequence % modulus_) % modulus_;
   }
 

@@ -78,20 +78,34 @@ class Compensator {
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  // Channels as bits, so that a term is asked about with one comparison. Those that share a bit, beyond 63,
+  // only make each other's terms be worked out once more.
+  using ChannelSet = std::uint64_t;
+  static constexpr ChannelSet kAlways = ChannelSet{1} << 63U;
+  [[nodiscard]] static ChannelSet set_of(std::size_t channel) noexcept {
+    return ChannelSet{1} << channel % 63;
+  }
+
   struct Factor {
+    std::size_t channel = kNone;  // kNone: a rate, or time
+    std::size_t less = kNone;     // of a difference of two channels the second; kNone
+    std::size_t rate = kNone;     // the axis whose rate it is a function of; kNone
+    double turn = 0.0;            // of an angle: what its wraps are
     Shape shape;
-    std::size_t channel;                 // kNone: a rate, or time
-    std::size_t less;                    // of a difference of two channels the second; kNone
-    std::size_t rate;                    // the axis whose rate it is a function of; kNone
     ChannelRange range;                  // of a rate or a difference
     PlausibleReading readings{};         // of a difference
     std::optional<double> difference{};  // the last that was believed; none: there was none
-    double turn = 0.0;                   // of an angle: what its wraps are
   };
   // A product of shapes, and by how much it may be wrong outside the range, as Shape has it.
   struct Value {
     double value = 1.0, left_behind = 0.0, unseen_curvature = 0.0;
-    void times(double factor, const Shape& shape, const Reach& reach) noexcept;
+    [[nodiscard]] bool surely() const noexcept { return left_behind == 0.0 && unseen_curvature == 0.0; }
+    void times(double factor, const Shape& shape, const Reach& reach) noexcept {
+      if (reach.outside() || !surely()) [[unlikely]]
+        doubt(factor, shape, reach);
+      value *= factor;
+    }
+    void doubt(double factor, const Shape& shape, const Reach& reach) noexcept;
   };
   struct Term {
     std::size_t axis;
@@ -100,8 +114,22 @@ class Compensator {
     bool of_rate;           // of any axis
     std::size_t parameter;  // row of the coefficient in the covariance, kNone without
     std::vector<Factor> factors;
-    Value channels{};  // of the factors that do not depend on the rate
-    bool usable = false;
+    // Of the factors that do not depend on the rate, and the flags that go with them: as they are until one
+    // of these channels moves.
+    Value channels{};
+    std::uint32_t flags = 0;
+    bool usable = false, doubtful = false;  // doubtful: outside the range of a channel
+    ChannelSet needs = 0;
+  };
+  // The terms of one axis stand together, in the order of the model.
+  struct AxisTerms {
+    std::size_t begin = 0, end = 0;
+    ChannelSet needs = 0;     // of any of them
+    bool of_rate = false;     // its correction depends on a rate
+    bool of_zone = false;     // its variance does
+    int doubtful = 0;         // of the terms
+    double correction = 0.0;  // at the step before
+    double variance = 0.0;
   };
   struct Ramp {
     std::size_t axis;
@@ -126,19 +154,26 @@ class Compensator {
   void add_factor(Term& term, ShapeSettings settings, const std::string& channel,
                   const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges);
   void place(const Term& term, const Effect& effect, const std::vector<std::string>& axes);
-  void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
-  void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
+  void arrange_terms();
+  // Gives the channels whose value is not the one of the step before.
+  ChannelSet hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
+  void evaluate(Term& term, double dt_s) noexcept;
+  void look_at(Term& term, double dt_s) noexcept;
+  void solve(const CompensatorInput& in, ChannelSet moved, CompensatorOutput& out) noexcept;
   void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   // Where a factor's channel is, which has had a value.
   [[nodiscard]] std::optional<Reach> reach_of_factor(Factor& factor, double dt_s,
                                                      std::uint32_t& flags) const noexcept;
+  [[nodiscard]] std::span<const Term> terms_of(std::size_t axis) const noexcept {
+    return std::span(terms_).subspan(of_axis_[axis].begin, of_axis_[axis].end - of_axis_[axis].begin);
+  }
   // The whole term at these rates of the axes; the channels' part alone for a term that does not depend on
   // them. Zero while another axis it depends on has no value.
   [[nodiscard]] Value at_rates(const Term& term, const Axes& rates) const noexcept;
   [[nodiscard]] double correction(std::size_t axis, const Axes& rates) const noexcept;
   // Sets the axis' variance and flags.
-  void judge(std::size_t axis, const Axes& rates, CompensatorOutput& out) const noexcept;
-  [[nodiscard]] double parameter_variance(std::size_t axis, const Axes& rates) const noexcept;
+  void judge(std::size_t axis, const Axes& rates, CompensatorOutput& out) noexcept;
+  [[nodiscard]] double parameter_variance(std::size_t axis) const noexcept;
   std::size_t channel_index(const std::string& name);
 
   std::vector<std::string> channels_, left_out_;
@@ -150,7 +185,9 @@ class Compensator {
   std::vector<double> covariance_;
   std::size_t parameters_ = 0;
   std::size_t axes_;
-  std::vector<std::uint8_t> of_rate_;  // by axis: its correction depends on a rate
+  std::array<AxisTerms, kMaxAxes> of_axis_{};
+  std::vector<double> values_;  // of terms_, where judge() is
+  bool begun_ = false;          // since what is held was last another's: terms hold their values
   double stale_after_s_;
   std::optional<double> since_power_up_s_;
 };

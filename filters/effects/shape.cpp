@@ -98,7 +98,11 @@ double mean_in_dead_zone(double mean, double variance, double half_width) noexce
   return high > low ? (high - low) * (high + low) / (4.0 * reach) : 0.0;
 }
 
-Shape::Shape(ShapeSettings settings) : settings_(std::move(settings)) {
+Shape::Shape(ShapeSettings settings)
+    : has_state_(has_memory(settings.form) || is_of_time(settings.form) || settings.angle),
+      bounded_(is_bounded(settings.form)),
+      power_(power_of(settings.form)),
+      settings_(std::move(settings)) {
   const bool lookup = settings_.form == Form::kLookup;
   if (lookup && (settings_.table_x.size() < 2 || settings_.table_x.size() != settings_.table_y.size())) {
     throw std::invalid_argument("a lookup needs a table of at least two knots");
@@ -143,8 +147,7 @@ double Shape::at(double value) const noexcept {
 double Shape::step(double value, double dt_s) noexcept { return step_over(value, 0.0, dt_s); }
 
 double Shape::step_over(double value, double scatter, double dt_s) noexcept {
-  if (!has_memory(settings_.form) && !is_of_time(settings_.form) && !settings_.angle)
-    return settings_.form == Form::kQuadratic ? at(value) + scatter : at(value);
+  if (!has_state_) return settings_.form == Form::kQuadratic ? at(value) + scatter : at(value);
   if (dt_s != dt_) {
     dt_ = dt_s;
     alpha_ = share(dt_s, settings_.time_constant_s);
@@ -202,9 +205,7 @@ double Shape::step_over(double value, double scatter, double dt_s) noexcept {
 }
 
 double Shape::slope(double value) const noexcept {
-  const int power_here = power_of(settings_.form);
-  if (power_here > 0)
-    return power_here * std::pow(value - settings_.reference, static_cast<double>(power_here - 1));
+  if (power_ > 0) return power_ * std::pow(value - settings_.reference, static_cast<double>(power_ - 1));
   if (settings_.form == Form::kAbsolute) return std::copysign(1.0, value - settings_.reference);
   if (settings_.form == Form::kTransition) {
     const double level = at(value);
@@ -220,25 +221,25 @@ double Shape::slope(double value) const noexcept {
 
 double Shape::at(const Reach& channel) const noexcept {
   if (is_periodic(settings_.form)) return at(channel.edge);
-  if (is_bounded(settings_.form)) return at(channel.value + channel.beyond);
+  if (bounded_) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
   const double curved = followed(settings_, channel);
   return at(curved) + slope(curved) * (channel.value - curved);
 }
 
 double Shape::step(const Reach& channel, double dt_s) noexcept {
-  if (is_bounded(settings_.form)) return at(channel);
-  if (power_of(settings_.form) > 1 && channel.outside()) return at(channel);
+  if (bounded_) return at(channel);
+  if (power_ > 1 && channel.outside()) return at(channel);
   return step(goes_on() ? channel.value : channel.edge, dt_s);
 }
 
 double Shape::left_behind(const Reach& channel) const noexcept {
   if (settings_.angle || !channel.outside()) return 0.0;
   if (settings_.form == Form::kDeadZone) return 0.0;
-  if (is_bounded(settings_.form)) return std::abs(at(channel.value + channel.beyond) - at(channel.edge));
+  if (bounded_) return std::abs(at(channel.value + channel.beyond) - at(channel.edge));
   const double past = channel.past_the_edge();
   if (!goes_on()) return std::abs(slope(channel.edge) * (past + channel.beyond));
-  if (power_of(settings_.form) > 0 || settings_.form == Form::kAbsolute) {
+  if (power_ > 0 || settings_.form == Form::kAbsolute) {
     return std::abs(at(channel.value) - at(channel)) +
            std::abs(slope(followed(settings_, channel)) * channel.beyond);
   }

@@ -74,6 +74,8 @@ class Shape {
   [[nodiscard]] double unseen_curvature(const Reach& channel) const noexcept;
 
   [[nodiscard]] const ShapeSettings& settings() const noexcept { return settings_; }
+  // A step leaves something for the next: of the channel's past, or of time.
+  [[nodiscard]] bool has_state() const noexcept { return has_state_; }
   // The same shape of another compensator goes on where that one is. False when it is not the same shape.
   bool take_over(const Shape& previous) noexcept;
 
@@ -82,9 +84,12 @@ class Shape {
   [[nodiscard]] double slope(double value) const noexcept;
   [[nodiscard]] bool goes_on() const noexcept { return settings_.form != Form::kLookup; }
 
-  ShapeSettings settings_;
+  // What a step reads stands together.
   double first_ = 0.0, second_ = 0.0, elapsed_ = 0.0, dt_ = 0.0, alpha_ = 1.0, beta_ = 1.0;
   bool started_ = false;
+  bool has_state_ = false, bounded_ = false;
+  int power_ = 0;  // power_of() the form
+  ShapeSettings settings_;
 };
 
 }  // namespace ifog

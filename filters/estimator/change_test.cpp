@@ -54,7 +54,8 @@ constexpr double kUsualHorizons = 5.0;
 
 }  // namespace
 
-ChangeTest::ChangeTest(bool rate_alone) : rate_alone_(rate_alone) {
+ChangeTest::ChangeTest(bool rate_alone, std::size_t axes)
+    : rate_alone_(rate_alone), axes_(axes_of_sensor(axes)) {
   for (Contest& contest : contests_) contest.usual = rate_alone ? 0.0 : kModelDoubt;
 }
 
@@ -62,6 +63,7 @@ ChangeTest::Horizon::Horizon(double length)
     : samples(length),
       share(1.0 / length),
       keep(1.0 - share),
+      keep_square(keep * keep),
       evidence(kEvidence - logarithm(length / kLeastHorizon)) {}
 
 double ChangeTest::horizon(double memory) noexcept { return std::max(kLeastHorizon, kMemories * memory); }
@@ -80,7 +82,7 @@ void ChangeTest::forget() noexcept {
   }
 }
 
-ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {
+inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {
   const double log_rest = logarithm(now.rest_factor);
   Measured out;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
@@ -100,10 +102,10 @@ ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noex
 }
 
 // Learns how wide the sums are at rest.
-void ChangeTest::Sums::add(const Measured& now, const Horizon& over) noexcept {
+inline void ChangeTest::Sums::add(const Measured& now, const Horizon& over) noexcept {
   angle = over.keep * angle + now.angle;
   normalised = over.keep * normalised + now.normalised;
-  weight = over.keep * over.keep * weight + 1.0;
+  weight = over.keep_square * weight + 1.0;
   const Lanes found = normalised * normalised / weight;
   horizons = (horizons + over.share).min(kHorizonsKept);
   widening += (found.min(kWideningClip * widening.max(1.0)) - widening) / (over.samples * (horizons + 1.0));
@@ -117,18 +119,25 @@ void ChangeTest::Sums::keep(const Sums& before, Eigen::Index axis) noexcept {
   horizons[axis] = before.horizons[axis];
 }
 
+inline void ChangeTest::add(const Measured& now, const Horizon& over, std::uint32_t valid,
+                            Sums& sums) const noexcept {
+  if ((axes_ & ~valid) == 0)
+    sums.add(now, over);
+  else
+    add_some(now, over, valid, sums);
+}
+
 // Of an axis that is not measured they stay as they are.
-void ChangeTest::add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) noexcept {
-  constexpr std::uint32_t kAll = (1U << kMaxAxes) - 1U;
-  if (valid == kAll) return sums.add(now, over);
+[[gnu::cold, gnu::noinline]] void ChangeTest::add_some(const Measured& now, const Horizon& over,
+                                                       std::uint32_t valid, Sums& sums) const noexcept {
   const Sums before = sums;
   sums.add(now, over);
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((valid >> a & 1U) == 0) sums.keep(before, static_cast<Eigen::Index>(a));
 }
 
-ChangeTest::Lanes ChangeTest::wide(const Sums& sums, const Horizon& over, std::uint32_t coloured,
-                                   const std::array<NoiseScale, kMaxAxes>& noise) noexcept {
+[[gnu::noinline]] Lanes ChangeTest::wide(const Sums& sums, const Horizon& over, std::uint32_t coloured,
+                                         const std::array<NoiseScale, kMaxAxes>& noise) noexcept {
   Lanes out = Lanes::Ones();
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     if ((coloured >> a & 1U) == 0) continue;
@@ -140,19 +149,17 @@ ChangeTest::Lanes ChangeTest::wide(const Sums& sums, const Horizon& over, std::u
   return out;
 }
 
-// Over the scale: the mean square of what the filter may be off by.
-void ChangeTest::see(const Sums& sums, const Surprise& now, const Lanes& wide) noexcept {
-  // On a model with more states a mean of the innovations is the model's as often as a motion's.
-  if (!rate_alone_) return;
-  const double asked = std::max(0.0, kUnseen - relaxed_);
-  const Lanes square = sums.normalised * sums.normalised;
-  const Lanes limit = asked * wide * sums.weight;
-  if (!((square - limit).maxCoeff() > 0.0)) return;
+inline double ChangeTest::unusual() const noexcept { return std::max(0.0, kUnseen - relaxed_); }
+
+// Over the scale: the mean square of what the filter may be off by. square: of the sums, beyond the limit in
+// one of them at least.
+[[gnu::noinline]] void ChangeTest::see(const Sums& sums, const Surprise& now, const Lanes& square,
+                                       const Lanes& limit) noexcept {
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     const auto lane = static_cast<Eigen::Index>(a);
     const double weight = sums.weight[lane];
     if ((now.valid >> a & 1U) == 0 || !(square[lane] > limit[lane]) ||
-        square[lane] <= asked * believed(sums, lane) * weight)
+        square[lane] <= unusual() * believed(sums, lane) * weight)
       continue;
     unseen_[a] = std::max(unseen_[a], now.scale[a] * (kOffByMean * square[lane] / (2.0 * weight * weight)));
   }
@@ -160,15 +167,16 @@ void ChangeTest::see(const Sums& sums, const Surprise& now, const Lanes& wide) n
 
 // Log-likelihood ratio of two predictors of unknown variance: n/2 times the logarithm of the ratio of their
 // mean squares, n the number of measurements that the squares of the worse one come from.
-double ChangeTest::unknown_variance(const Contest& contest) noexcept {
+[[gnu::noinline]] double ChangeTest::unknown_variance(const Contest& contest) noexcept {
   if (!(contest.rest_squares > 0.0)) return 0.0;
   const double samples = contest.rest * contest.rest / contest.rest_squares;
   return 0.5 * samples * logarithm((kPrior + contest.rest) / (kPrior + contest.tracker));
 }
 
-std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const Surprise& now,
-                                            const std::array<NoiseScale, kMaxAxes>& noise, double most,
-                                            double lag) noexcept {
+// What it calls for each tracker in it: sums that go through memory would be waited for.
+[[gnu::flatten]] std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const Surprise& now,
+                                                             const std::array<NoiseScale, kMaxAxes>& noise,
+                                                             double most, double lag) noexcept {
   relaxed_ *= 1.0 - 1.0 / kRelaxedFor;
   double greatest = 0.0;
   suspected_ = false;
@@ -179,27 +187,26 @@ std::optional<std::size_t> ChangeTest::take(const TrackerBank& trackers, const S
   std::uint32_t coloured = 0;
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((now.valid >> a & 1U) != 0 && !noise[a].white()) coloured |= 1U << a;
-  const double rest_square = all.rest_square;
+  const double rest_square = all.rest_square, seen = unusual();
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     Contest& contest = contests_[j];
     const Horizon& over = horizons_[j];
     const double h = over.samples, keep = over.keep;
-    Lanes predicted = Lanes::Zero();
-    for (std::size_t a = 0; a < kMaxAxes; ++a) predicted[static_cast<Eigen::Index>(a)] = trackers.rate(j, a);
-    const Lanes apart = all.used * (all.rate - predicted);
+    const Lanes apart = all.used * (all.rate - trackers.rates(j));
     const Lanes tracker = apart * apart / (trackers.factor(j) * all.scale);
     add(all, over, now.valid, contest.sums);
     const Lanes wider = coloured == 0 ? Lanes(Lanes::Ones()) : wide(contest.sums, over, coloured, noise);
-    if (j >= kShortestSum && h <= kWideLags * lag) see(contest.sums, now, wider);
+    // On a model with more states a mean of the innovations is the model's as often as a motion's.
+    if (rate_alone_ && j >= kShortestSum && h <= kWideLags * lag) {
+      const Lanes square = contest.sums.normalised * contest.sums.normalised;
+      const Lanes limit = seen * wider * contest.sums.weight;
+      if ((square - limit).maxCoeff() > 0.0) see(contest.sums, now, square, limit);
+    }
     Lanes spoken = 0.5 * (all.spoke_for_rest - tracker.min(2.0 * most) - trackers.log_factor(j) * all.used);
     if (coloured != 0) spoken /= wider;
     const Lanes clipped = tracker.min(kSquareClip);
-    double gained = 0.0, tracker_square = 0.0, widest = 1.0;
-    for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(kMaxAxes); ++a) {
-      gained += spoken[a];
-      tracker_square += clipped[a];
-    }
-    if (coloured != 0) widest = wider.maxCoeff();
+    double gained = sum_of_axes(spoken);
+    const double tracker_square = sum_of_axes(clipped), widest = coloured != 0 ? wider.maxCoeff() : 1.0;
     if (!rate_alone_) {
       contest.usual += (std::clamp(gained, -1.0, 1.0) - contest.usual) / (kUsualHorizons * h);
       gained -= std::max(contest.usual, 0.0);
@@ -249,24 +256,23 @@ double ChangeTest::coloured(const TrackerBank& trackers, std::size_t axis, doubl
   return at_zero > 0.0 ? 2.0 / at_zero : 1.0;
 }
 
-// Of the horizons that say what the filter lags behind with; 1: none does.
-std::size_t ChangeTest::longest(const TrackerBank& trackers, double lag) const noexcept {
-  std::size_t found = 1;
-  while (found + 1 < trackers.size() && horizon(trackers.memory(found + 1)) <= kWideLags * lag) ++found;
-  return found;
+void ChangeTest::look_behind(const TrackerBank& trackers, double lag) noexcept {
+  if (lag == behind_.lag && trackers.size() == behind_.trackers) return;
+  std::size_t longest = 1;
+  while (longest + 1 < trackers.size() && horizon(trackers.memory(longest + 1)) <= kWideLags * lag) ++longest;
+  behind_ = {lag, trackers.size(), longest, 1.0 / (1.0 + lag), 1.0 / horizon(trackers.memory(longest))};
 }
 
 // In white noise of variance 1 behind a gain K the innovations' sums, that forget with b, have of the noise
 // b / (K + b) and of a walk of psi K^2 a sample psi K / (K + b). By what they are wider than that of the walk
 // that is expected, it is more than that: nearly so where it is most of them, and less where the noise is,
 // which outliers and slow motions widen, too.
-double ChangeTest::walk(const TrackerBank& trackers, std::size_t axis, double lag,
-                        double expected) const noexcept {
-  const std::size_t j = longest(trackers, lag);
-  if (j <= 1) return expected;
-  const double gain = 1.0 / (1.0 + lag), b = 1.0 / horizon(trackers.memory(j));
+double ChangeTest::walk(std::size_t axis, double expected) const noexcept {
+  if (behind_.longest <= 1) return expected;
+  const double gain = behind_.gain, b = behind_.forgets;
   const double before = (b + gain * expected) / (gain + b);
-  return expected * believed(contests_[j].sums, static_cast<Eigen::Index>(axis), before) / before;
+  const Sums& sums = contests_[behind_.longest].sums;
+  return expected * believed(sums, static_cast<Eigen::Index>(axis), before) / before;
 }
 
 double ChangeTest::believed(const Sums& sums, Eigen::Index axis, double before) noexcept {
@@ -275,14 +281,15 @@ double ChangeTest::believed(const Sums& sums, Eigen::Index axis, double before) 
 }
 
 Wider ChangeTest::wider(const TrackerBank& trackers, std::size_t axis, double lag, const NoiseScale& noise,
-                        const Wider& expected) const noexcept {
+                        const Wider& expected) noexcept {
+  look_behind(trackers, lag);
   // What a model knows of colour is in its variance, and of its gain the rest does not hold.
   if (!rate_alone_) {
-    const std::size_t j = longest(trackers, lag);
-    return {j > 1 ? std::max(1.0, believed(contests_[j].sums, static_cast<Eigen::Index>(axis))) : 1.0,
-            expected.walk};
+    const Sums& sums = contests_[behind_.longest].sums;
+    const double found = std::max(1.0, believed(sums, static_cast<Eigen::Index>(axis)));
+    return {behind_.longest > 1 ? found : 1.0, expected.walk};
   }
-  if (noise.white()) return {1.0, walk(trackers, axis, lag, expected.walk)};
+  if (noise.white()) return {1.0, walk(axis, expected.walk)};
   return {coloured(trackers, axis, lag, expected.noise * expected.walk), expected.walk};
 }
 

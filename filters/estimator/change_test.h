@@ -14,11 +14,11 @@
 //   tracker, though nothing moves: what a tracker gains on it all the time is no change.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
 
+#include "filters/estimator/lanes.h"
 #include "filters/estimator/noise_scale.h"
 #include "filters/estimator/tracker_bank.h"
 
@@ -46,8 +46,8 @@ class ChangeTest {
   // e^-18 is 1.5e-8: on white noise not one false change in 3e6 samples.
   static constexpr double kEvidence = 18.0;
 
-  // rate_alone: that of the filter at rest.
-  explicit ChangeTest(bool rate_alone);
+  // rate_alone: that of the filter at rest. axes: of the sensor, the first ones.
+  explicit ChangeTest(bool rate_alone, std::size_t axes = kMaxAxes);
 
   // After trackers.predict(), before correct(). most: what one measurement may count for at most; lag: of the
   // filter at rest, samples. Gives the tracker that shows a change.
@@ -67,7 +67,7 @@ class ChangeTest {
   // expected: of the innovations' variance the part that the filter takes for noise and walk; of the walk
   // what is believed of it before the innovations say more.
   [[nodiscard]] Wider wider(const TrackerBank& trackers, std::size_t axis, double lag,
-                            const NoiseScale& noise, const Wider& expected) const noexcept;
+                            const NoiseScale& noise, const Wider& expected) noexcept;
   // Sum of the innovations an axis has had over the tracker's horizon, by the time each stands for, rad: what
   // was owed before is not this change's.
   [[nodiscard]] double fallen_short(std::size_t tracker, std::size_t axis) const noexcept {
@@ -76,10 +76,6 @@ class ChangeTest {
   [[nodiscard]] static double horizon(double memory) noexcept;
 
  private:
-  // By axis, all of them in the same step; the last has none.
-  using Lanes = Eigen::Array<double, 4, 1>;
-  static_assert(kMaxAxes <= Lanes::SizeAtCompileTime);
-
   // What all trackers are held against; 0 of an axis that is not measured.
   struct Measured {
     Lanes used = Lanes::Zero();  // 1: measured
@@ -94,6 +90,7 @@ class ChangeTest {
     explicit Horizon(double length);
     double samples = 0.0;
     double share = 0.0, keep = 0.0;  // of one measurement, and what is kept of those before
+    double keep_square = 0.0;
     double evidence = 0.0;  // asked for: a ratio over a long horizon is not looked at afresh each time
   };
 
@@ -118,24 +115,35 @@ class ChangeTest {
     Sums sums;
   };
 
+  // The horizons that say what the filter at rest lags behind with, by its lag and the trackers there are.
+  struct Behind {
+    double lag = -1.0;
+    std::size_t trackers = 0;
+    std::size_t longest = 1;  // of these horizons; 1: none is
+    double gain = 0.0, forgets = 0.0;
+  };
+
   [[nodiscard]] static Measured measured(const Surprise& now, double most) noexcept;
-  static void add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) noexcept;
+  void add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
+  void add_some(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   // By how much the test is to believe the sums wider than white noise's.
   [[nodiscard]] static Lanes wide(const Sums& sums, const Horizon& over, std::uint32_t coloured,
                                   const std::array<NoiseScale, kMaxAxes>& noise) noexcept;
-  void see(const Sums& sums, const Surprise& now, const Lanes& wide) noexcept;
+  [[nodiscard]] double unusual() const noexcept;
+  void see(const Sums& sums, const Surprise& now, const Lanes& square, const Lanes& limit) noexcept;
   [[nodiscard]] static double unknown_variance(const Contest& contest) noexcept;
   [[nodiscard]] static double believed(const Sums& sums, Eigen::Index axis, double before = 1.0) noexcept;
-  [[nodiscard]] std::size_t longest(const TrackerBank& trackers, double lag) const noexcept;
-  [[nodiscard]] double walk(const TrackerBank& trackers, std::size_t axis, double lag,
-                            double expected) const noexcept;
+  void look_behind(const TrackerBank& trackers, double lag) noexcept;
+  [[nodiscard]] double walk(std::size_t axis, double expected) const noexcept;
   [[nodiscard]] double coloured(const TrackerBank& trackers, std::size_t axis, double lag,
                                 double share) const noexcept;
 
   bool rate_alone_;
+  std::uint32_t axes_;  // of the sensor, bit i
   std::array<Contest, TrackerBank::kMost> contests_{};
   std::array<Horizon, TrackerBank::kMost> horizons_{};
   std::size_t known_ = 0;  // of horizons_
+  Behind behind_;
   double relaxed_ = 0.0;
   bool suspected_ = false;
   Axes unseen_{};

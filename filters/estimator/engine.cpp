@@ -36,7 +36,8 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       period_s_(period_s),
       rest_(std::move(rest)),
       steady_(steady),
-      change_(rest_->rate_alone()),
+      trackers_(axes_),
+      change_(rest_->rate_alone(), axes_),
       ledger_(period_s, settings.follow_manoeuvres),
       noise_of_one_(settings.measurement_noise) {
   noise_.fill(NoiseScale(settings.measurement_noise));
@@ -45,12 +46,9 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   out.flags = 0;
-  Measurement m{in,
-                screen(in, out),
-                in.dt_s > 0.0 ? in.dt_s : period_s_,
-                in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0,
-                {},
-                0};
+  Measurement m{in, screen(in, out), in.dt_s > 0.0 ? in.dt_s : period_s_,
+                in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0};
+  if (m.noise_scale != 1.0) m.to_nominal = std::sqrt(1.0 / m.noise_scale);
   const double before = rest_->variance();
   rest_->predict(m.dt_s);
   const double grown = std::max(0.0, rest_->variance() - before);
@@ -88,12 +86,6 @@ void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
     else if (has(started_, a))
       unmeasured_.miss(a, walked, published_.rate, variance);
   }
-}
-
-// All is begun with these measurements.
-void Engine::forget_unmeasured(std::uint32_t valid) noexcept {
-  for (std::size_t a = 0; a < axes_; ++a)
-    if (has(valid, a)) unmeasured_.forget(a);
 }
 
 void Engine::restart() noexcept {
@@ -214,7 +206,6 @@ void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
 
 // The noise under way, whether the sensor moves or not.
 void Engine::hear(const Measurement& m) noexcept {
-  const double scale = std::sqrt(1.0 / m.noise_scale);
   // Scaled alike, the rate itself is none of a third difference; scaled differently it is all of it.
   const bool alike = m.noise_scale == heard_scale_;
   heard_scale_ = m.noise_scale;
@@ -222,9 +213,10 @@ void Engine::hear(const Measurement& m) noexcept {
     unheard_s_[a] += m.dt_s;
     if (!alike) noise_[a].break_off();
     if (!has(m.valid, a)) continue;
-    const double steps = std::max(1.0, std::round(unheard_s_[a] / period_s_));
+    const bool next = unheard_s_[a] == period_s_;
+    const double steps = next ? 1.0 : std::max(1.0, std::round(unheard_s_[a] / period_s_));
     if (steps > kMostSteps) noise_[a].break_off();
-    noise_[a].take(m.in.rate_radps[a] * scale, steps);
+    noise_[a].take(m.in.rate_radps[a] * m.to_nominal, steps);
     unheard_s_[a] = 0.0;
   }
 }
@@ -232,11 +224,11 @@ void Engine::hear(const Measurement& m) noexcept {
 void Engine::learn_noise(const Measurement& m, std::uint32_t of) noexcept {
   bool all = m.valid != 0;
   double rest = 0.0, greatest = 0.0;
+  const double lag = lag_samples();
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
     if (has(of, a))
-      noise_[a].learn(m.innovation[a] * std::sqrt(1.0 / m.noise_scale), lag_samples(),
-                      noise_[a].known() ? 0.0 : foresight_[a].least());
+      noise_[a].learn(m.innovation[a] * m.to_nominal, lag, noise_[a].known() ? 0.0 : foresight_[a].least());
     all = all && noise_[a].known();
     rest += noise_[a].rest();
     greatest += noise_[a].greatest_noise();
@@ -251,7 +243,8 @@ void Engine::learn_noise(const Measurement& m, std::uint32_t of) noexcept {
 }
 
 void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
-  if (now.valid != 0) outliers_.take(now, lag_samples());
+  const double lag = lag_samples();
+  if (now.valid != 0) outliers_.take(now, lag);
   const bool keep_out = now.valid != 0 && outliers_.keep_out();
   if (now.valid != 0 && outliers_.jump()) {
     hear(m);
@@ -272,7 +265,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
   if (keep_out && outliers_.run().size() == 1) {
     trackers_.pass_over();
   } else if (m.valid != 0) {
-    if (now.valid != 0) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());
+    if (now.valid != 0) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag);
     for (std::size_t a = 0; a < axes_; ++a)
       if (has(m.valid, a) && !noise_[a].known())
         foresight_[a].take(trackers_, a, m.in.rate_radps[a], m.noise_scale);
@@ -319,13 +312,14 @@ void Engine::publish_rest() noexcept {
   published_.gain = rest_->gain();
   // Of an innovation, as the filter believes it to be.
   const double believed = rest_variance_ + rest_->rule().measurement_noise();
+  const double lag = lag_samples();
   for (std::size_t a = 0; a < axes_; ++a) {
     published_.rate[a] = rest_->rate(a);
     published_.variance[a] = rest_variance(a);
     if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
     const double louder = std::max(1.0, noise_[a].rest() / (loudness_[a] * believed));
     const Wider wider =
-        change_.wider(trackers_, a, lag_samples(), noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
+        change_.wider(trackers_, a, lag, noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
     published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
     published_.variance[a] += noise_[a].rounding();
     published_.variance[a] += change_.unseen(a);
@@ -333,6 +327,7 @@ void Engine::publish_rest() noexcept {
 }
 
 void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
+  const double believed = rest_->rule().measurement_noise();
   for (std::size_t a = 0; a < axes_; ++a) {
     double rate = published_.rate[a];
     double variance = unmeasured_.variance(a, published_.variance[a]);
@@ -367,7 +362,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     out.variance_rad2ps2[a] = variance >= 0.0 ? variance : noise_of_one_;
     out.gain[a] = published_.gain;
     out.innovation_variance[a] = innovation_variance(a);
-    health_.measurement_noise[a] = loudness_[a] * rest_->rule().measurement_noise();
+    health_.measurement_noise[a] = loudness_[a] * believed;
     health_.colour[a] = noise_[a].colour();
   }
   health_.floor_hits = rest_->rule().floor_hits();

@@ -62,6 +62,7 @@ class Engine {
     const EstimatorInput& in;
     std::uint32_t valid = 0;
     double dt_s = 0.0, noise_scale = 1.0;
+    double to_nominal = 1.0;   // by which it is scaled to the nominal period's noise
     Axes innovation{};         // of the filter at rest; zero where not valid
     std::uint32_t tested = 0;  // axes whose noise was known before
     [[nodiscard]] double covered_s(std::size_t axis) const noexcept {

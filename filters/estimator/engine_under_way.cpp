@@ -25,6 +25,12 @@ void Engine::move_rest(const Axes& rate, double variance) noexcept {
   since_moved_ = at_rest_for_ = 0.0;
 }
 
+// All is begun with these measurements.
+void Engine::forget_unmeasured(std::uint32_t valid) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(valid, a)) unmeasured_.forget(a);
+}
+
 // What a change of rate that was just found has left behind beside what the test has seen of it.
 void Engine::owe_to_manoeuvre(std::size_t axis) noexcept {
   ledger_.admit(axis, kept_out_[axis]);

@@ -9,28 +9,27 @@
 
 namespace ifog {
 
-double NoiseScale::now() const noexcept {
-  // Rounding to a digit d has variance d^2 / 12: a single one of them is never far out.
-  const double rounding = digit_ < 1e150 ? digit_ * digit_ / 12.0 : 0.0;
-  return std::max({rest_, local_, rounding});
-}
+// Rounding to a digit d has variance d^2 / 12: a single one of them is never far out.
+double NoiseScale::now() const noexcept { return std::max({rest_, local_, digit_variance_}); }
 
 double NoiseScale::greatest_noise() const noexcept {
   return kMargin * (known_ ? rest_ / colour_ : rest_) * std::max(1.0, colour_ - kMotion);
 }
 
-double NoiseScale::rounding() const noexcept {
-  if (digit_ > 1e150) return 0.0;
+void NoiseScale::round_to(double digit) noexcept {
+  digit_ = digit;
+  if (digit_ < 1e150) digit_variance_ = digit_ * digit_ / 12.0;
+  if (digit_ > 1e150) return;
   constexpr double kPi = std::numbers::pi;
   const double hidden = 4.0 * kPi * kPi * told_ / (digit_ * digit_);
-  return hidden < 50.0 ? digit_ * digit_ / (2.0 * kPi * kPi) * exponential(-hidden) : 0.0;
+  rounding_ = hidden < 50.0 ? digit_ * digit_ / (2.0 * kPi * kPi) * exponential(-hidden) : 0.0;
 }
 
 void NoiseScale::take(double rate, double steps) noexcept {
   const double step = std::abs(rate - last_[2]);
   if (step > 0.0) {
     different_ = std::min(different_ + 1, kDifferent);
-    if (in_a_row_ > 0) digit_ = std::min(digit_, step);
+    if (in_a_row_ > 0 && step < digit_) round_to(step);
   }
   const double span = steps_[0] + steps_[1] + steps;
   const bool asked = in_a_row_ >= 3 && spans_.take(span);

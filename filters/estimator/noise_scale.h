@@ -52,7 +52,7 @@ class NoiseScale {
   // Variance of the mean of a level that a coarse converter rounds, over where it lies between two steps: the
   // first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and Kollar, "Quantization
   // Noise", 2008, chapter 4). No filter sees it.
-  [[nodiscard]] double rounding() const noexcept;
+  [[nodiscard]] double rounding() const noexcept { return rounding_; }
   // R for the gain. Where the innovations are louder than their roughness says, that may be colour or motion
   // the filter lags behind. To take that much colour for motion costs 1 % of RMSE, to take motion for colour
   // makes the lag longer; so the first part counts for motion.
@@ -95,6 +95,7 @@ class NoiseScale {
   static constexpr double kMargin = 1.05;
 
   void settle(double foreseen) noexcept;
+  void round_to(double digit) noexcept;
 
   double told_, rest_, local_;
   double rough_ = 0.0, rough_count_ = 0.0;  // variance by third differences, measurements in it
@@ -103,7 +104,9 @@ class NoiseScale {
   double colour_ = 1.0, colour_count_ = 0.0;
   double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise
   double squares_ = 0.0;
-  double digit_ = 1e300;  // least difference of two neighbours
+  double digit_ = 1e300;         // least difference of two neighbours
+  double digit_variance_ = 0.0;  // of what rounding to it adds to a measurement
+  double rounding_ = 0.0;
   int learned_ = 0, different_ = 0, in_a_row_ = 0;
   bool known_ = false;
   std::array<double, 3> last_{};

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <span>
 
+#include "filters/estimator/lanes.h"
 #include "filters/settings/axes.h"
 
 namespace ifog {
@@ -25,7 +26,8 @@ class TrackerBank {
   // Measurements that a parabola goes through: from then on a tracker foresees something.
   static constexpr double kParabola = 3.0;
 
-  TrackerBank();
+  // axes: of the sensor, the first ones.
+  explicit TrackerBank(std::size_t axes = kMaxAxes);
 
   // Trackers as long as this, in samples, take part; once in they stay.
   void reach(double samples) noexcept;
@@ -45,8 +47,9 @@ class TrackerBank {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   // After predict() the rate one sample ahead, after correct() the filtered one.
   [[nodiscard]] double rate(std::size_t tracker, std::size_t axis) const noexcept {
-    return state_[tracker].rate[axis];
+    return state_[tracker].rate[static_cast<Eigen::Index>(axis)];
   }
+  [[nodiscard]] const Lanes& rates(std::size_t tracker) const noexcept { return state_[tracker].rate; }
   // Innovation variance over that of the noise, and its logarithm; output variance likewise.
   [[nodiscard]] double factor(std::size_t tracker) const noexcept { return now_[tracker].innovation; }
   [[nodiscard]] double log_factor(std::size_t tracker) const noexcept { return now_[tracker].log_innovation; }
@@ -58,19 +61,21 @@ class TrackerBank {
   // Whether the axis has been missing for no longer than the tracker prolongs what it has; and where it has,
   // the variance of the rate that is held instead, by how steep it has lately been.
   [[nodiscard]] bool foresees(std::size_t tracker, std::size_t axis) const noexcept {
-    return state_[tracker].age >= kParabola && steps_[axis] <= farthest(tracker, axis);
+    return state_[tracker].age >= kParabola && since(axis) <= farthest(tracker, axis);
   }
   [[nodiscard]] double drift_square(std::size_t tracker, std::size_t axis) const noexcept {
-    return steps_[axis] * steps_[axis] * state_[tracker].slope_square[axis];
+    return since(axis) * since(axis) * state_[tracker].slope_square[static_cast<Eigen::Index>(axis)];
   }
-  [[nodiscard]] double since(std::size_t axis) const noexcept { return steps_[axis]; }
+  [[nodiscard]] double since(std::size_t axis) const noexcept {
+    return steps_[static_cast<Eigen::Index>(axis)];
+  }
   [[nodiscard]] double factor(std::size_t tracker, std::size_t axis) const noexcept {
     const double one = now_[tracker].innovation;
-    return steps_[axis] == 1.0 ? one : 1.0 + (one - 1.0) * growth(tracker, axis);
+    return since(axis) == 1.0 ? one : 1.0 + (one - 1.0) * growth(tracker, axis);
   }
   // Samples it forgets in, and what it has of them by now.
   [[nodiscard]] double memory(std::size_t tracker) const noexcept { return memory_[tracker]; }
-  [[nodiscard]] double length(std::size_t tracker) const noexcept;
+  [[nodiscard]] double length(std::size_t tracker) const noexcept { return state_[tracker].length; }
   [[nodiscard]] double age(std::size_t tracker) const noexcept { return state_[tracker].age; }
 
  private:
@@ -79,18 +84,27 @@ class TrackerBank {
     double innovation = 1.0, log_innovation = 0.0, output = 1.0;
   };
   struct State {
-    Axes rate{}, slope{}, curvature{};  // per sample, half of it per sample squared
-    Axes filtered{};                    // the rate when it was last corrected
-    Axes slope_square{};                // mean over its last lengths
-    Axes usual_step{1.0, 1.0, 1.0};     // mean distance of its measurements, nominal samples
-    double age = 0.0;                   // measurements of all axes
+    Lanes rate = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero();  // per sample, half of it
+                                                                                   // per sample squared
+    Lanes filtered = Lanes::Zero();      // the rate when it was last corrected
+    Lanes slope_square = Lanes::Zero();  // mean over its last lengths
+    Lanes usual_step = Lanes::Ones();    // mean distance of its measurements, nominal samples
+    double age = 0.0;                    // measurements of all axes
+    double length = 1.0;                 // what it has of its memory by now, samples
     bool settled = false;
+    bool even = true;  // all of its measurements have come a nominal sample apart
   };
 
   void gains(std::size_t tracker) noexcept;
+  void grow_to(std::size_t tracker, double age) noexcept;
   // Nominal samples that it is prolonged by.
   [[nodiscard]] double farthest(std::size_t tracker, std::size_t axis) const noexcept;
+  [[nodiscard]] bool too_far(const State& state) const noexcept;
+  void prolong_some(std::size_t tracker, double steps) noexcept;
+  void correct_all(std::size_t tracker, const Lanes& rate, bool even) noexcept;
+  void correct_some(std::size_t tracker, const Axes& rate, std::uint32_t valid_axes) noexcept;
 
+  std::size_t axes_;
   std::array<double, kMost> memory_{};
   std::array<Gains, kMost> fading_{}, now_{};
   std::array<State, kMost> state_{};
@@ -99,7 +113,7 @@ class TrackerBank {
   // units of nominal samples those of slope and curvature fall with it. Left as they are, steps of two and
   // more would put the poles outside the unit circle; and so would those of a short step among long ones,
   // for which the mean step counts.
-  Axes steps_{};
+  Lanes steps_ = Lanes::Zero();
   // Axes that were corrected since the trackers began. These grow older with a sample that has all of them,
   // but those gone for long: with gains for more measurements than an axis has had its parabola would be off
   // for long. Of axes that never come together they stay young.

@@ -2,21 +2,47 @@
 // CRC-32/MPEG-2: polynomial 0x04C11DB7, starts at 0xFFFFFFFF, most significant bit first, not inverted at the
 // end. Check value for "123456789": 0x0376E6E7 (catalogue of parametrised CRC algorithms).
 //
-// Boost's, by a table of bytes: the decoder takes 21.0 million frames of 36 bytes a second with it and 21.3
-// with a table of our own (medians of five interleaved runs on one processor of a shared machine, processor
-// time): no reason to keep one.
+// Eight bytes at a time by eight tables (M. E. Kounavis and F. L. Berry, "Novel Table Lookup-Based Algorithms
+// for High-Performance CRC Generation", IEEE Transactions on Computers 57(11), 2008): byte by byte each
+// look-up waits for the one before, which for a frame of 36 bytes is most of what decoding it takes.
 #pragma once
 
-#include <boost/crc.hpp>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace ifog::framing {
 
+// By table and byte: what the byte leaves with so many bytes of zeros behind it.
+struct Crc32Mpeg2Tables {
+  static constexpr std::size_t kTables = 8;
+  std::array<std::array<std::uint32_t, 256>, kTables> after{};
+
+  constexpr Crc32Mpeg2Tables() {
+    for (std::uint32_t byte = 0; byte < 256; ++byte) {
+      std::uint32_t rest = byte << 24U;
+      for (int bit = 0; bit < 8; ++bit) rest = rest << 1U ^ ((rest >> 31U) != 0 ? 0x04C11DB7U : 0U);
+      after[0][byte] = rest;
+    }
+    for (std::size_t k = 1; k < kTables; ++k)
+      for (std::size_t byte = 0; byte < 256; ++byte)
+        after[k][byte] = after[k - 1][byte] << 8U ^ after[0][after[k - 1][byte] >> 24U];
+  }
+};
+
+inline constexpr Crc32Mpeg2Tables kCrc32Mpeg2;
+
 [[nodiscard]] inline std::uint32_t crc32_mpeg2(std::span<const std::uint8_t> bytes) noexcept {
-  boost::crc_optimal<32, 0x04C11DB7U, 0xFFFFFFFFU, 0U, false, false> crc;
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
+  const auto& after = kCrc32Mpeg2.after;
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (; bytes.size() >= Crc32Mpeg2Tables::kTables; bytes = bytes.subspan(Crc32Mpeg2Tables::kTables)) {
+    crc = after[7][crc >> 24U ^ bytes[0]] ^ after[6][(crc >> 16U & 0xFFU) ^ bytes[1]] ^
+          after[5][(crc >> 8U & 0xFFU) ^ bytes[2]] ^ after[4][(crc & 0xFFU) ^ bytes[3]] ^ after[3][bytes[4]] ^
+          after[2][bytes[5]] ^ after[1][bytes[6]] ^ after[0][bytes[7]];
+  }
+  for (const std::uint8_t byte : bytes) crc = crc << 8U ^ after[0][crc >> 24U ^ byte];
+  return crc;
 }
 
 }  // namespace ifog::framing

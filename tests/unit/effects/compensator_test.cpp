@@ -350,5 +350,53 @@ TEST(Compensator, AWarmUpIsCorrectedOnlyWhereTheTimeSincePowerUpIsKnown) {
   }
 }
 
+// A channel that stands still leaves a correction as it was; each that moves, at a rate of its own, changes
+// its effects alone, on every axis that has them. The oracle is the model's own sum.
+TEST(Compensator, EachEffectFollowsItsChannelAndNoOther) {
+  Model model;
+  Effect temperature = linear(2e-6), bent = linear(3e-8), acceleration = linear(5e-7), scale = linear(1e-3);
+  bent.form = "quadratic";
+  bent.axis = "y";
+  acceleration.channel = "accel_x_mps2";
+  acceleration.reference = 0.0;
+  acceleration.axis = "x";
+  scale.form = "product";
+  scale.with_form = "linear";
+  scale.with_channel = "reference_rate_radps";
+  scale.axis = "z";
+  model.effects = {temperature, bent, acceleration, scale};
+  Compensator compensator(model, {"x", "y", "z"});
+  ASSERT_EQ(compensator.channels(), (std::vector<std::string>{"temperature_degC", "accel_x_mps2"}));
+  for (int i = 0; i < 400; ++i) {
+    if (i == 250) compensator.restart();
+    const double degC = 20.0 + 0.5 * (i / 37), mps2 = std::sin(i / 9), rate = 1e-3 * (i / 5);
+    const CompensatorOutput out = step(compensator, rate, {degC, mps2});
+    const double c = degC - 25.0;
+    EXPECT_NEAR(out.correction_radps[0], 2e-6 * c + 5e-7 * mps2, 1e-18) << i;
+    EXPECT_NEAR(out.correction_radps[1], 2e-6 * c + 3e-8 * c * c, 1e-18) << i;
+    // z = w + b + k c w solved for the rate w.
+    EXPECT_NEAR(out.compensated_radps[2], (rate - 2e-6 * c) / (1.0 + 1e-3 * c), 1e-15) << i;
+    EXPECT_EQ(out.variance_rad2ps2, Axes{}) << i;
+  }
+}
+
+// Outside the range of the fit a correction is doubted for as long as the channel is there, and no longer.
+TEST(Compensator, TheDoubtOutsideARangeStaysAndGoesWithTheChannel) {
+  Model model;
+  Effect bent = linear(3e-6);
+  bent.form = "quadratic";
+  model.effects = {bent};
+  model.ranges = {{"temperature_degC", 20.0, 30.0}};
+  Compensator compensator(model, {"x", "y", "z"});
+  for (int i = 0; i < 60; ++i) {
+    const double degC = i / 10 % 2 == 0 ? 26.0 : 33.0;
+    const CompensatorOutput out = step(compensator, 1e-3, {degC});
+    // Of a square its tangent at the edge is followed: behind it is left (33 - 30)^2.
+    const double left = degC > 30.0 ? 3e-6 * 9.0 : 0.0;
+    for (const double variance : out.variance_rad2ps2) EXPECT_NEAR(variance, left * left, 1e-22) << i;
+    EXPECT_EQ((out.flags & kOutOfRange) != 0, degC > 30.0) << i;
+  }
+}
+
 }  // namespace
 }  // namespace ifog
