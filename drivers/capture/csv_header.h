@@ -39,6 +39,7 @@ struct CsvCell {
   Measurable range;                  // in the file's unit
   bool rate = false;                 // of the capture: a rate or its reference
   std::size_t column = kPassedOver;  // of the capture, beside the time
+  bool kept = true;                  // else it is checked only
 };
 
 struct CsvHeader {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/capture/column_names.h"
 #include "drivers/capture/date_time.h"
@@ -77,44 +79,83 @@ class Rows {
       : piece_(piece), header_(header), separator_(separator), stamps_(stamps), unit_s_(unit_s), path_(path) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.cells.size());
-    for (std::size_t i = 0; i < header.cells.size(); ++i)
-      to_.push_back(header.cells[i].column == CsvCell::kTime ? &piece_.rows.time_s
-                    : header.cells[i].column == CsvCell::kPassedOver
-                        ? nullptr
-                        : &piece_.rows.columns[header.cells[i].column]);
+    for (const CsvCell& cell : header.cells) {
+      const bool time = cell.column == CsvCell::kTime, none = cell.column == CsvCell::kPassedOver;
+      to_.push_back({none   ? Meaning::kNothing
+                     : time ? Meaning::kTime
+                            : Meaning::kNumber,
+                     cell.range,
+                     none || !cell.kept ? nullptr
+                     : time             ? &piece_.rows.time_s
+                                        : &piece_.rows.columns[cell.column]});
+    }
   }
 
-  void reserve(std::size_t rows) {
-    for (std::vector<double>* const column : to_)
-      if (column != nullptr) column->reserve(rows);
+  // Columns that were used before have their memory still.
+  void begin(std::size_t rows) {
+    piece_.rows.time_s.clear();
+    for (std::vector<double>& column : piece_.rows.columns) column.clear();
+    for (const Place& place : to_)
+      if (place.values != nullptr) place.values->reserve(rows);
   }
 
   void add(std::string_view line, std::size_t number) {
+    const char *at = line.data(), *const end = at + line.size();
     std::size_t place = 0;
-    for (std::string_view rest = line;;) {
-      const std::size_t end = rest.find(separator_);
+    for (;; ++at) {
       // Some writers end each row with a separator.
-      if (place == to_.size() && end == std::string_view::npos && trimmed(rest).empty()) break;
+      const std::string_view rest(at, end);
+      if (place == to_.size() && rest.find(separator_) == std::string_view::npos && trimmed(rest).empty())
+        break;
       if (place == to_.size())
         fail_at(path_, number,
                 "more cells than the " + std::to_string(to_.size()) + " columns of the header");
-      if (to_[place] != nullptr) take(place, rest.substr(0, end), number);
+      at = take(place, at, end, number);
       ++place;
-      if (end == std::string_view::npos) break;
-      rest.remove_prefix(end + 1);
+      if (at == end) break;
     }
     if (place != to_.size())
       fail_at(
           path_, number,
           std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
+    ++rows_;
   }
 
  private:
-  void take(std::size_t place, std::string_view text, std::size_t line) {
-    const CsvCell& cell = header_.cells[place];
-    text = unquoted(text);
-    if (cell.column == CsvCell::kTime) return take_time(place, text, line);
-    keep(place, number(path_, line, cell.name, text, CsvDigits(text, separator_ != ',')), 0.0, text);
+  enum class Meaning : unsigned char { kNothing, kNumber, kTime };
+  struct Place {
+    Meaning means;
+    Measurable range;
+    std::vector<double>* values;  // null: nobody wants them
+  };
+
+  // The cell that begins there, of the row that ends at `end`; where it ends itself.
+  const char* take(std::size_t place, const char* at, const char* end, std::size_t line) {
+    const Place& to = to_[place];
+    if (to.means == Meaning::kNumber) {
+      // Nearly every cell is a number in digits and nothing else: where they end the cell does.
+      double value = 0.0;
+      const char* const behind = decimal::short_number(at, end, value);
+      if (behind != nullptr && (behind == end || *behind == separator_)) {
+        if (to.range.holds(value)) [[likely]] {
+          if (to.values != nullptr) to.values->push_back(value);
+        } else {
+          keep(place, value, 0.0, {at, behind});
+        }
+        return behind;
+      }
+    }
+    const auto* const found =
+        static_cast<const char*>(std::memchr(at, separator_, static_cast<std::size_t>(end - at)));
+    const char* const behind = found == nullptr ? end : found;
+    if (to.means == Meaning::kNothing) return behind;
+    const std::string_view text = unquoted({at, behind});
+    if (to.means == Meaning::kTime)
+      take_time(place, text, line);
+    else
+      keep(place, number(path_, line, header_.cells[place].name, text, CsvDigits(text, separator_ != ',')),
+           0.0, text);
+    return behind;
   }
 
   void take_time(std::size_t place, std::string_view text, std::size_t line) {
@@ -132,12 +173,13 @@ class Rows {
   }
 
   void keep(std::size_t place, double value, double origin, std::string_view text) {
-    const bool possible = std::isnan(value) || header_.cells[place].range.holds(value + origin);
-    to_[place]->push_back(possible ? value : kMissing);
+    const Place& to = to_[place];
+    const bool possible = std::isnan(value) || to.range.holds(value + origin);
+    if (to.values != nullptr) to.values->push_back(possible ? value : kMissing);
     if (possible) return;
     ImpossibleValues& impossible = piece_.impossible[place];
     if (impossible.count++ > 0) return;
-    impossible.first_row = to_[place]->size() - 1;
+    impossible.first_row = rows_;
     impossible.first = text;
   }
 
@@ -147,7 +189,8 @@ class Rows {
   const TimeStamps& stamps_;
   double unit_s_;
   const std::string& path_;
-  std::vector<std::vector<double>*> to_;
+  std::vector<Place> to_;  // by cell of a row
+  std::size_t rows_ = 0;   // that were added
 };
 
 }  // namespace
@@ -169,13 +212,14 @@ std::optional<std::string_view> first_time(std::string_view text, const CsvHeade
 
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
                          const TimeStamps& stamps, double unit_s, const std::string& path,
-                         std::size_t lines_before, double time_before) {
+                         std::size_t lines_before, double time_before, RowBlock used) {
   CsvPiece piece;
+  piece.rows = std::move(used);
   piece.rows.origin = stamps.origin();
   Rows rows(piece, header, separator, stamps, unit_s, path);
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
-  rows.reserve(text.size() / length + text.size() / length / 16 + 1);
+  rows.begin(text.size() / length + text.size() / length / 16 + 1);
   Lines lines(text, lines_before);
   std::string_view line;
   std::size_t skipped = 0;

@@ -34,11 +34,12 @@ struct CsvPiece {
 std::optional<std::string_view> first_time(std::string_view text, const CsvHeader& header, char separator);
 
 // text: whole lines. stamps: of the whole file's times, which are in unit_s. lines_before: of the file;
-// time_before: of the row before, since the same origin, NaN where it is not known. Throws std::runtime_error
-// with one line: file, line, column, value, what was expected.
+// time_before: of the row before, since the same origin, NaN where it is not known. used: rows that are done
+// with, whose memory is used again. Throws std::runtime_error with one line: file, line, column, value, what
+// was expected.
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
                          const TimeStamps& stamps, double unit_s, const std::string& path,
                          std::size_t lines_before,
-                         double time_before = std::numeric_limits<double>::quiet_NaN());
+                         double time_before = std::numeric_limits<double>::quiet_NaN(), RowBlock used = {});
 
 }  // namespace ifog

@@ -2,10 +2,12 @@
 #include "drivers/capture/csv_rows.h"
 
 #include <algorithm>
+#include <cstring>
 #include <deque>
 #include <functional>
 #include <future>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -23,6 +25,33 @@ namespace {
 
 constexpr std::size_t kWorthAThread = std::size_t{1} << 17U;  // bytes
 
+// Bytes of a text in memory that is used again for the next: nothing is written there but what is read.
+class TextRoom {
+ public:
+  [[nodiscard]] std::string_view text() const { return {room_.get(), size_}; }
+  // Room for so many behind the text, of which took() says how many there are now.
+  [[nodiscard]] char* behind(std::size_t most) {
+    if (size_ + most > capacity_) {
+      capacity_ = std::max(size_ + most, capacity_ + capacity_ / 2);
+      auto larger = std::make_unique_for_overwrite<char[]>(capacity_);
+      if (size_ > 0) std::memcpy(larger.get(), room_.get(), size_);
+      room_ = std::move(larger);
+    }
+    return room_.get() + size_;
+  }
+  void took(std::size_t bytes) { size_ += bytes; }
+  void assign(std::string_view text) {
+    size_ = 0;
+    if (!text.empty()) std::memcpy(behind(text.size()), text.data(), text.size());
+    size_ = text.size();
+  }
+  void end_at(std::size_t size) { size_ = size; }
+
+ private:
+  std::unique_ptr<char[]> room_;
+  std::size_t capacity_ = 0, size_ = 0;
+};
+
 // A text cut behind lines.
 class TextPieces {
  public:
@@ -30,24 +59,27 @@ class TextPieces {
       : read_(read), piece_(std::max<std::size_t>(1, piece)) {}
 
   // False at the end. A line longer than any may be comes out without its end, to be refused.
-  bool next(std::string& text) {
-    text = std::exchange(tail_, {});
+  bool next(TextRoom& to) {
+    // With room for what follows, or the beginning of a line is moved for it.
+    to.end_at(0);
+    (void)to.behind(tail_.size() + piece_);
+    to.assign(tail_);
+    tail_.clear();
     while (!ended_) {
-      const std::size_t before = text.size();
-      text.resize(before + piece_);
-      const std::size_t n = read_(text.data() + before, piece_);
-      text.resize(before + n);
+      const std::size_t before = to.text().size();
+      const std::size_t n = read_(to.behind(piece_), piece_);
+      to.took(n);
       ended_ = n < piece_;
-      const std::size_t last = text.rfind('\n');
-      if (last == std::string::npos || last < before) {
-        if (text.size() > kLongestLine) return true;
+      const std::size_t last = to.text().rfind('\n');
+      if (last == std::string_view::npos || last < before) {
+        if (to.text().size() > kLongestLine) return true;
         continue;
       }
-      tail_ = text.substr(last + 1);
-      text.resize(last + 1);
+      tail_ = to.text().substr(last + 1);
+      to.end_at(last + 1);
       return true;
     }
-    return !text.empty();
+    return !to.text().empty();
   }
 
  private:
@@ -65,21 +97,21 @@ class CsvRows {
       : path_(path), layout_(layout), sink_(sink), were_rows_(std::move(were_rows)) {}
 
   RowNotes read(TextPieces pieces) {
-    std::string text;
-    begin(pieces, text);
-    in_order(pieces, std::move(text));
+    in_order(pieces, begin(pieces));
     finish();
     return std::move(notes_);
   }
 
  private:
   struct Piece {
-    std::string text;
+    TextRoom text;
+    RowBlock used;                                // whose memory the numbers take
     std::future<std::optional<CsvPiece>> parsed;  // nothing: refused, with lines counted from its own first
   };
 
-  void begin(TextPieces& pieces, std::string& text);
-  void in_order(TextPieces& pieces, std::string text);
+  TextRoom begin(TextPieces& pieces);
+  void in_order(TextPieces& pieces, TextRoom text);
+  [[nodiscard]] std::future<std::optional<CsvPiece>> parse(Piece& piece);
   void count_from_first(std::string_view text);
   void deliver(Piece& piece);
   void merge(const CsvPiece& piece);
@@ -99,21 +131,28 @@ class CsvRows {
   bool decimals_ = false;                                   // in the first time
   int most_decimals_ = 0;                                   // of a time
   std::optional<TimeStamps> stamps_;                        // once there is a row
+  // Memory of pieces that are done with: where pages are made for each piece anew that costs as much as the
+  // reading.
+  std::vector<TextRoom> used_texts_;
+  std::vector<RowBlock> used_rows_;
 };
 
-// `text`: what follows the header in its piece.
-void CsvRows::begin(TextPieces& pieces, std::string& text) {
-  std::string first;
+// What follows the header in its piece.
+TextRoom CsvRows::begin(TextPieces& pieces) {
+  TextRoom first;
   bool found = false;
   for (bool start = true; !found && pieces.next(first); start = false) {
-    std::string_view left = first;
+    std::string_view left = first.text();
     if (start && (left.starts_with("\xFF\xFE") || left.starts_with("\xFE\xFF")))
       throw std::runtime_error(path_ + ": begins as UTF-16 does, expected UTF-8 or ASCII");
     if (start && left.starts_with("\xEF\xBB\xBF")) left.remove_prefix(3);  // the byte-order mark
     Lines lines(left, lines_);
     found = read_csv_header(lines, path_, layout_, header_);
     lines_ = lines.number();
-    if (found) text = lines.rest();
+    if (!found) continue;
+    TextRoom rest;
+    rest.assign(lines.rest());
+    std::swap(first, rest);
   }
   if (!found) throw std::runtime_error(path_ + ": no header line, expected 'time_s,rate_radps,…'");
   notes_.comments = std::move(header_.comments);
@@ -124,6 +163,10 @@ void CsvRows::begin(TextPieces& pieces, std::string& text) {
     if (cell.column < columns.size()) columns[cell.column] = {cell.name, cell.range, cell.rate};
   checks_.emplace(path_, layout_, std::move(columns), sink_, notes_);
   sink_.begin(header_.names);
+  // Of rates the leaps are looked for, whoever wants them.
+  for (CsvCell& cell : header_.cells)
+    if (cell.column < header_.names.size()) cell.kept = cell.rate || sink_.wants(cell.column);
+  return first;
 }
 
 // Before the pieces are parsed, each by itself: all count from one origin.
@@ -133,27 +176,25 @@ void CsvRows::count_from_first(std::string_view text) {
     stamps_.emplace(TimeDigits(*first, layout_.separator != ','), unit_s());
 }
 
-void CsvRows::in_order(TextPieces& pieces, std::string text) {
-  // Each holds its text and its numbers; more than these unpack no quicker than the file is read.
-  const std::size_t at_once = std::clamp(std::thread::hardware_concurrency(), 2U, 8U);
+void CsvRows::in_order(TextPieces& pieces, TextRoom text) {
+  // Each holds its text and its numbers. One more than there are processors, so that none waits while this
+  // thread hands over.
+  const std::size_t at_once = std::clamp(std::thread::hardware_concurrency() + 1, 2U, 8U);
   std::deque<Piece> under_way;
-  for (bool more = !text.empty() || pieces.next(text); more; more = pieces.next(text)) {
-    Piece& piece = under_way.emplace_back();
-    piece.text = std::move(text);
-    const auto how = piece.text.size() < kWorthAThread ? std::launch::deferred : std::launch::async;
-    count_from_first(piece.text);
-    const auto parse = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
-      try {
-        return parse_csv_piece(piece.text, header_, layout_.separator, stamps, unit_s(), path_, 0);
-      } catch (const std::runtime_error&) {
-        return std::nullopt;
-      }
-    };
-    try {
-      piece.parsed = std::async(how, parse);
-    } catch (const std::system_error&) {  // no room for another thread: then when its turn comes
-      piece.parsed = std::async(std::launch::deferred, parse);
+  const auto next = [&] {
+    if (used_texts_.empty()) {
+      text = {};
+    } else {
+      text = std::move(used_texts_.back());
+      used_texts_.pop_back();
     }
+    return pieces.next(text);
+  };
+  for (bool more = !text.text().empty() || next(); more; more = next()) {
+    Piece& piece = under_way.emplace_back();
+    std::swap(piece.text, text);
+    count_from_first(piece.text.text());
+    piece.parsed = parse(piece);
     if (under_way.size() < at_once) continue;
     deliver(under_way.front());
     under_way.pop_front();
@@ -161,23 +202,47 @@ void CsvRows::in_order(TextPieces& pieces, std::string text) {
   for (; !under_way.empty(); under_way.pop_front()) deliver(under_way.front());
 }
 
+// The piece stays where it is until that is had.
+std::future<std::optional<CsvPiece>> CsvRows::parse(Piece& piece) {
+  if (!used_rows_.empty()) {
+    piece.used = std::move(used_rows_.back());
+    used_rows_.pop_back();
+  }
+  const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
+    try {
+      return parse_csv_piece(piece.text.text(), header_, layout_.separator, stamps, unit_s(), path_, 0,
+                             std::numeric_limits<double>::quiet_NaN(), std::move(piece.used));
+    } catch (const std::runtime_error&) {
+      return std::nullopt;
+    }
+  };
+  const bool worth = piece.text.text().size() >= kWorthAThread;
+  try {
+    return std::async(worth ? std::launch::async : std::launch::deferred, parsed);
+  } catch (const std::system_error&) {  // no room for another thread: then when its turn comes
+    return std::async(std::launch::deferred, parsed);
+  }
+}
+
 void CsvRows::deliver(Piece& piece) {
   std::optional<CsvPiece> parsed = piece.parsed.get();
   if (!parsed || (parsed->rows.size() > 0 && parsed->rows.time_s.front() <= last_)) {
     // Here it is known where the piece stands, and so what to say.
-    parsed = parse_csv_piece(piece.text, header_, layout_.separator, stamps_.value_or(TimeStamps()), unit_s(),
-                             path_, lines_, last_);
+    parsed = parse_csv_piece(piece.text.text(), header_, layout_.separator, stamps_.value_or(TimeStamps()),
+                             unit_s(), path_, lines_, last_);
   }
-  piece.text = {};
+  used_texts_.push_back(std::move(piece.text));
   merge(*parsed);
   lines_ += parsed->lines;
   were_rows_(parsed->row_bytes);
   RowBlock& rows = parsed->rows;
-  if (rows.size() == 0) return;
-  if (checks_->rows() == 0) decimals_ = parsed->decimals;
-  last_ = rows.time_s.back();
-  most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
-  checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
+  if (rows.size() > 0) {
+    if (checks_->rows() == 0) decimals_ = parsed->decimals;
+    last_ = rows.time_s.back();
+    most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
+    checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
+  }
+  used_rows_.push_back(std::move(rows));
 }
 
 void CsvRows::merge(const CsvPiece& piece) {

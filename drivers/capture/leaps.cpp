@@ -38,57 +38,52 @@ Leaps::Leaps(std::vector<std::size_t> rates, Next next)
       before_(rates_.size(), kMissing) {}
 
 void Leaps::take(RowBlock& rows) {
-  append(held_, rows);
-  if (held_.size() < kEnough) return;
-  judge();
-  hand_on(held_.size() - 1);
+  // Few rows do not show the sample time.
+  if (!judged_ && held_.size() < kEnough) return append(held_, rows);
+  judge(&rows);
+  hand_on();
+  std::swap(held_, rows);
 }
 
 void Leaps::finish() {
   if (held_.size() == 0) return;
-  if (rows_before_ + held_.size() >= 3) judge();
-  hand_on(held_.size());
+  if (rows_before_ + held_.size() >= 3) judge(nullptr);
+  hand_on();
+  held_ = {};
 }
 
-void Leaps::judge() {
+// behind: the rows that follow, null at the end.
+void Leaps::judge(const RowBlock* behind) {
   if (!std::exchange(judged_, true)) {
     const double step_s = median_step(held_.time_s);
     half_a_turn_ = step_s > kSlowest_s ? 0.0 : std::numbers::pi / step_s;
   }
   if (half_a_turn_ > 0.0)
-    for (std::size_t r = 0; r < rates_.size(); ++r) look_at(r);
+    for (std::size_t r = 0; r < rates_.size(); ++r) look_at(r, behind);
 }
 
-// All rows but the last and the record's first.
-void Leaps::look_at(std::size_t r) {
+// All rows but the record's first and last.
+void Leaps::look_at(std::size_t r, const RowBlock* behind) {
   std::vector<double>& rate = held_.columns[rates_[r]];
   double before = before_[r];
-  for (std::size_t i = 0; i + 1 < rate.size(); ++i) {
-    const double here = rate[i], after = rate[i + 1];
-    const bool first = rows_before_ + i == 0;
-    if (!first && std::abs(here) > half_a_turn_ &&
-        std::max(std::abs(before), std::abs(after)) < kStandstill * std::abs(here)) {
-      if (found_[r].count++ == 0) found_[r].first_row = rows_before_ + i;
-      rate[i] = kMissing;
+  const std::size_t judged = rate.size() - (behind != nullptr ? 0 : 1);
+  for (std::size_t i = 0; i < judged; ++i) {
+    const double here = rate[i];
+    if (std::abs(here) > half_a_turn_ && rows_before_ + i > 0) {
+      const double after = i + 1 < rate.size() ? rate[i + 1] : behind->columns[rates_[r]].front();
+      if (std::max(std::abs(before), std::abs(after)) < kStandstill * std::abs(here)) {
+        if (found_[r].count++ == 0) found_[r].first_row = rows_before_ + i;
+        rate[i] = kMissing;
+      }
     }
     before = here;
   }
   before_[r] = before;
 }
 
-void Leaps::hand_on(std::size_t rows) {
-  RowBlock kept;
-  kept.origin = held_.origin;
-  kept.columns.resize(held_.columns.size());
-  const auto cut = [rows](std::vector<double>& from, std::vector<double>& to) {
-    to.assign(from.begin() + static_cast<std::ptrdiff_t>(rows), from.end());
-    from.resize(rows);
-  };
-  cut(held_.time_s, kept.time_s);
-  for (std::size_t c = 0; c < kept.columns.size(); ++c) cut(held_.columns[c], kept.columns[c]);
-  rows_before_ += rows;
-  if (rows > 0) next_(held_);
-  held_ = std::move(kept);
+void Leaps::hand_on() {
+  rows_before_ += held_.size();
+  next_(held_);
 }
 
 }  // namespace ifog

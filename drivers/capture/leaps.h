@@ -12,7 +12,8 @@
 
 namespace ifog {
 
-// Blocks go through it and come out a row late, because a leap is known by the row behind it.
+// Blocks go through it and come out one late, because a leap is known by the row behind it: what is held goes
+// on, and the next is held in its place, without a copy.
 class Leaps {
  public:
   struct Found {
@@ -23,15 +24,16 @@ class Leaps {
   // rates: which columns are looked at.
   Leaps(std::vector<std::size_t> rates, Next next);
 
+  // rows: another block behind it, whatever is in that.
   void take(RowBlock& rows);
   void finish();
   // By entry of `rates`; of the whole record after finish().
   [[nodiscard]] const std::vector<Found>& found() const { return found_; }
 
  private:
-  void judge();
-  void look_at(std::size_t rate);
-  void hand_on(std::size_t rows);
+  void judge(const RowBlock* behind);
+  void look_at(std::size_t rate, const RowBlock* behind);
+  void hand_on();
 
   std::vector<std::size_t> rates_;
   Next next_;

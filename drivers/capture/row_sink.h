@@ -18,9 +18,10 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Rows that follow one another, by column.
 struct RowBlock {
-  std::vector<double> time_s;                // strictly increasing, within and from block to block; never NaN
-  std::vector<std::vector<double>> columns;  // in the order of the names, each as long as time_s
-  TimeOrigin origin{};                       // what time_s is counted from, the same in all blocks
+  std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN
+  // In the order of the names, each as long as time_s; or empty, where the sink does not want it.
+  std::vector<std::vector<double>> columns;
+  TimeOrigin origin{};  // what time_s is counted from, the same in all blocks
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
@@ -30,6 +31,12 @@ class RowSink {
   virtual ~RowSink() = default;
   // Once, before the first rows: the columns beside the time, as in a capture's header (rate_x_radps, …).
   virtual void begin(const std::vector<std::string>& names) = 0;
+  // After that: whether it looks at the column. What it does not is checked all the same, and may come or
+  // not.
+  [[nodiscard]] virtual bool wants(std::size_t column) const {
+    (void)column;
+    return true;
+  }
   // The next rows, at least one; the sink may keep or spoil them.
   virtual void take(RowBlock& rows) = 0;
 };

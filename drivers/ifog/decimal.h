@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <system_error>
 
 namespace ifog {
@@ -35,6 +37,23 @@ inline bool too_small(const char* at, const char* end) noexcept {
   return std::clamp(exponent, -kFar, kFar) + place < 0;
 }
 
+// Whether eight characters are digits, and then what they say: all at once, each by a byte of one word
+// (Lemire, "Number parsing at a gigabyte per second", 2021, section 4).
+inline bool eight_digits(const char* at, std::uint64_t& whole) noexcept {
+  std::uint64_t word = 0;
+  std::memcpy(&word, at, sizeof word);
+  if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
+  constexpr std::uint64_t kHigh = 0xF0F0F0F0F0F0F0F0U, kZeros = 0x3030303030303030U;
+  // A digit is 0x30 to 0x39: its high half is 3, and with 6 more still.
+  if ((word & kHigh) != kZeros || ((word + 0x0606060606060606U) & kHigh) != kZeros) return false;
+  word -= kZeros;
+  word = word * 10 + (word >> 8U);  // pairs, in every second byte
+  whole = ((word & 0x000000FF000000FFU) * 0x000F424000000064U +
+           ((word >> 16U) & 0x000000FF000000FFU) * 0x0000271000000001U) >>
+          32U;
+  return true;
+}
+
 // Digits that make a whole number below 2^53, times or over a power of ten that a double holds exactly: the
 // one rounding is that of the product, so this is the nearest double (Clinger, "How to read floating point
 // numbers accurately", 1990). Nearly every number of a capture is such, and is read in a third of the time.
@@ -53,6 +72,10 @@ inline const char* short_number(const char* at, const char* end, double& value) 
   std::ptrdiff_t digits = at - first, power = 0;
   if (at != end && *at == '.') {
     const char* const point = at++;
+    if (std::uint64_t eight = 0; end - at >= 8 && eight_digits(at, eight)) {
+      whole = 100'000'000 * whole + eight;
+      at += 8;
+    }
     for (; digit(at); ++at) whole = 10 * whole + static_cast<std::uint64_t>(*at - '0');
     power = point + 1 - at;
     digits -= power;

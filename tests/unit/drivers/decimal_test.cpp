@@ -58,6 +58,22 @@ TEST(Decimal, IsTheNearestDoubleWhateverTheDigits) {
   }
 }
 
+TEST(Decimal, EightDigitsAreEightDigits) {
+  std::mt19937 random(8);
+  std::array<char, 16> room{};
+  for (int i = 0; i < 20000; ++i) {
+    const auto number = static_cast<unsigned>(random() % 100'000'000U);
+    std::snprintf(room.data(), room.size(), "%08u", number);
+    std::uint64_t whole = 0;
+    ASSERT_TRUE(ifog::decimal::eight_digits(room.data(), whole)) << room.data();
+    ASSERT_EQ(whole, number);
+    const auto other = static_cast<char>(random() % 256);
+    if (other >= '0' && other <= '9') continue;
+    room[random() % 8] = other;
+    ASSERT_FALSE(ifog::decimal::eight_digits(room.data(), whole)) << room.data();
+  }
+}
+
 TEST(Decimal, StopsWhereTheNumberDoes) {
   for (const char* text : {"1.5e", "1.5e+", "1.5e-x", "1.5,2", "1.5.2", "1.5 ", "-1.5E"}) {
     double value = 0.0;

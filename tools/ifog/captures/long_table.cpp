@@ -54,6 +54,10 @@ void LongTableSink::begin(const std::vector<std::string>& names) {
   }
 }
 
+bool LongTableSink::wants(std::size_t column) const {
+  return std::find(from_.begin(), from_.end(), column) != from_.end();
+}
+
 void LongTableSink::take(RowBlock& rows) {
   table_.origin = rows.origin;
   table_.time_s.add(rows.time_s);
