@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "filters/diagnosis/record/polled_readings.h"
 
 namespace ifog {
 namespace {
@@ -18,15 +21,11 @@ constexpr double kScatter = 6.0;
 // The channel must vary by this many times its reading noise.
 constexpr double kAboveNoise = 3.0;
 
-struct Reading {
-  double step;  // of the fine grid, fractional between two steps
-  double value;
-};
-
-double change_of(std::span<const double> readings) {
+double change_of(std::span<const Reading> readings) {
   std::vector<double> changes;
   for (std::size_t i = 1; i < readings.size(); ++i) {
-    if (readings[i] != readings[i - 1]) changes.push_back(std::abs(readings[i] - readings[i - 1]));
+    const double change = std::abs(readings[i].value - readings[i - 1].value);
+    if (change != 0.0) changes.push_back(change);
   }
   if (changes.empty()) return 0.0;
   const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
@@ -34,24 +33,25 @@ double change_of(std::span<const double> readings) {
   return *middle;
 }
 
-bool is_coarse(std::span<const double> readings) {
+bool is_coarse(std::span<const Reading> readings) {
   std::size_t repeats = 0;
-  for (std::size_t i = 1; i < readings.size(); ++i) repeats += readings[i] == readings[i - 1] ? 1 : 0;
+  for (std::size_t i = 1; i < readings.size(); ++i)
+    repeats += readings[i].value == readings[i - 1].value ? 1 : 0;
   return static_cast<double>(repeats) > kRepeats * static_cast<double>(readings.size());
 }
 
 // Where a coarse reading changes by one step the channel passes the middle; a jump over several steps is one.
-std::vector<Reading> crossings(std::span<const double> readings, double step) {
+std::vector<Reading> crossings(std::span<const Reading> readings, double step) {
   std::vector<Reading> found;
   for (std::size_t i = 1; i < readings.size(); ++i) {
-    const double change = readings[i] - readings[i - 1];
+    const Reading &before = readings[i - 1], &after = readings[i];
+    const double change = after.value - before.value;
     if (change == 0.0) continue;
-    const auto at = static_cast<double>(i);
     if (std::abs(change) < 1.5 * step) {
-      found.push_back({at - 0.5, 0.5 * (readings[i] + readings[i - 1])});
+      found.push_back({0.5 * (before.step + after.step), 0.5 * (after.value + before.value)});
     } else {
-      if (found.empty() || found.back().step < at - 1.0) found.push_back({at - 1.0, readings[i - 1]});
-      found.push_back({at, readings[i]});
+      if (found.empty() || found.back().step < before.step) found.push_back(before);
+      found.push_back(after);
     }
   }
   return found;
@@ -202,62 +202,97 @@ std::vector<State> smoothed(std::span<const Reading> readings, double drive) {
   return states;
 }
 
-// Between two readings the spline is the cubic through levels and slopes.
-double between(const Reading& from, const State& a, const Reading& to, const State& b, double step) {
-  const double d = to.step - from.step;
-  const double u = (step - from.step) / d;
-  const double rest = 1.0 - u;
-  return a.level * (1.0 + 2.0 * u) * rest * rest + b.level * u * u * (3.0 - 2.0 * u) +
-         d * u * rest * (a.slope * rest - b.slope * u);
+// Through levels and slopes at the readings, cubic between two of them; asked at steps in their order.
+class Spline {
+ public:
+  Spline(std::span<const Reading> readings, double drive)
+      : readings_(readings), states_(smoothed(readings, drive)) {}
+
+  double at(double step) {
+    const Reading &first = readings_.front(), &last = readings_.back();
+    while (i_ + 2 < readings_.size() && readings_[i_ + 1].step <= step) ++i_;
+    if (step < first.step) return states_.front().level - (first.step - step) * states_.front().slope;
+    if (step > last.step) return states_.back().level + (step - last.step) * states_.back().slope;
+    return between(readings_[i_], states_[i_], readings_[i_ + 1], states_[i_ + 1], step);
+  }
+  void rewind() { i_ = 0; }
+
+ private:
+  static double between(const Reading& from, const State& a, const Reading& to, const State& b, double step) {
+    const double d = to.step - from.step;
+    const double u = (step - from.step) / d;
+    const double rest = 1.0 - u;
+    return a.level * (1.0 + 2.0 * u) * rest * rest + b.level * u * u * (3.0 - 2.0 * u) +
+           d * u * rest * (a.slope * rest - b.slope * u);
+  }
+
+  std::span<const Reading> readings_;
+  std::vector<State> states_;
+  std::size_t i_ = 0;
+};
+
+// One a step, as they are not polled.
+std::vector<Reading> one_a_step(std::span<const double> values) {
+  std::vector<Reading> readings;
+  readings.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) readings.push_back({static_cast<double>(i), values[i]});
+  return readings;
+}
+
+Reconstruction as_read(std::span<const double> values, const std::optional<PolledReadings>& polled) {
+  Reconstruction result{{values.begin(), values.end()}, false};
+  if (polled)
+    for (std::size_t k = 0; k < values.size(); ++k)
+      result.values[k] = on_line(polled->readings, static_cast<double>(k));
+  return result;
+}
+
+double sum_of_squares(std::span<const double> values, double about) {
+  double sum = 0.0;
+  for (const double value : values) sum += (value - about) * (value - about);
+  return sum;
 }
 
 }  // namespace
 
-Reconstruction reconstruct(std::span<const double> readings) {
-  Reconstruction as_read{{readings.begin(), readings.end()}, false};
-  const bool coarse = is_coarse(readings);
-  const double step = coarse ? change_of(readings) : 0.0;
-  std::vector<Reading> used;
-  if (coarse) {
-    used = crossings(readings, step);
-  } else {
-    for (std::size_t i = 0; i < readings.size(); ++i) used.push_back({static_cast<double>(i), readings[i]});
-  }
-  if (used.size() < 8) return as_read;
+Reconstruction reconstruct(std::span<const double> values) {
+  const std::optional<PolledReadings> polled = polled_readings(values);
+  const std::vector<Reading> read = polled ? polled->readings : one_a_step(values);
+  const bool coarse = is_coarse(read);
+  const double step = coarse ? change_of(read) : 0.0;
+  const std::vector<Reading> used = coarse ? crossings(read, step) : read;
+  if (used.size() < 8) return as_read(values, polled);
   const std::vector<Reading> few = thinned(used);
   const Drive smooth = best_drive(few, Motion::kSmooth);
-  if (smooth.likelihood < best_drive(few, Motion::kWalk).likelihood + kSmoother) return as_read;
+  if (smooth.likelihood < best_drive(few, Motion::kWalk).likelihood + kSmoother)
+    return as_read(values, polled);
   // The variance of a mean of readings is that share of a reading's.
   const double share = static_cast<double>(few.size()) / static_cast<double>(used.size());
-  const std::vector<State> states = smoothed(used, smooth.drive * share);
-  Reconstruction spline{std::vector<double>(readings.size()), true};
-  std::vector<double>& result = spline.values;
-  std::size_t i = 0;
+  Spline spline(used, smooth.drive * share);
+  // Within half a step of the reading, or of those before and after.
+  const auto possible = [&](double value, double before, double after) {
+    if (!coarse) return value;
+    return std::clamp(value, std::min(before, after) - 0.5 * step, std::max(before, after) + 0.5 * step);
+  };
+  Reconstruction result{std::vector<double>(values.size()), true};
   double mean = 0.0;
-  double noise = 0.0;
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    const auto at = static_cast<double>(k);
-    while (i + 2 < used.size() && used[i + 1].step <= at) ++i;
-    double value = 0.0;
-    if (at < used.front().step) {
-      value = states.front().level - (used.front().step - at) * states.front().slope;
-    } else if (at > used.back().step) {
-      value = states.back().level + (at - used.back().step) * states.back().slope;
-    } else {
-      value = between(used[i], states[i], used[i + 1], states[i + 1], at);
-    }
-    if (coarse) value = std::clamp(value, readings[k] - 0.5 * step, readings[k] + 0.5 * step);
-    result[k] = value;
-    mean += value / static_cast<double>(readings.size());
-    noise += (readings[k] - value) * (readings[k] - value);
+  std::size_t at = 0;  // of the reading before
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    while (at + 1 < read.size() && read[at + 1].step <= static_cast<double>(k)) ++at;
+    const double after = polled && at + 1 < read.size() ? read[at + 1].value : read[at].value;
+    result.values[k] = possible(spline.at(static_cast<double>(k)), read[at].value, after);
+    mean += result.values[k] / static_cast<double>(values.size());
   }
   // What was taken away has to be reading noise and nothing else.
-  std::vector<double> taken(readings.begin(), readings.end());
-  for (std::size_t k = 0; k < taken.size(); ++k) taken[k] -= result[k];
-  if (!coarse && !stands_still(taken)) return as_read;
-  double signal = 0.0;
-  for (const double value : result) signal += (value - mean) * (value - mean);
-  return signal > kAboveNoise * kAboveNoise * noise ? spline : as_read;
+  std::vector<double> taken;
+  taken.reserve(read.size());
+  spline.rewind();
+  for (const Reading& each : read)
+    taken.push_back(each.value - possible(spline.at(each.step), each.value, each.value));
+  if (!coarse && !stands_still(taken)) return as_read(values, polled);
+  const double signal = sum_of_squares(result.values, mean) * static_cast<double>(read.size()) /
+                        static_cast<double>(values.size());
+  return signal > kAboveNoise * kAboveNoise * sum_of_squares(taken, 0.0) ? result : as_read(values, polled);
 }
 
 bool stands_still(std::span<const double> readings) {

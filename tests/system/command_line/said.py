@@ -300,6 +300,20 @@ class Checks:
             assert "not run" in text and "--start-up" in text and "from the first seconds" not in text, text
         assert "from the first seconds" in said("denoise", self.one, "--output", self.folder / "filtered.csv")
 
+    def check_a_correction_that_is_not_there_is_said(self):
+        """At rest; of what the model corrects `share` is there. On a table that swings the rate is no error."""
+        times = [float(i) for i in range(1200)]
+        swing = [0.25 * math.sin(t / 30) for t in times]
+        model, out = self.model("share.toml"), self.folder / "share.json"
+        for share, table, denied in ((1, 0, False), (0, 0, True), (0, 0.01, False)):
+            rate = [1e-7 * self.random.gauss(0, 1) + share * 1e-6 * s + table * math.sin(t / 20) for s, t in zip(swing, times)]
+            path = self.write("share.csv", {"rate_radps": rate, "temperature_degC": [20.25 + s for s in swing]}, times)
+            text = said("denoise", path, "--model", model, "--output", self.folder / "out.csv", "--json", out)
+            assert ("of what the model corrects" in text) == denied, text
+            axis = json.loads(out.read_text())["axes"][0]
+            assert ("model_share" in axis) == (table == 0), axis
+            assert table or abs(axis["model_share"] - share) < 4 * axis["model_share_error"] < 0.2, axis
+
     def check_a_models_channel_that_is_missing_is_said(self):
         rates = {"rate_radps": self.noise, "temperature_degC": [math.nan if i > 1000 else 20 + i / 1000 for i in range(ROWS)]}
         path, out = self.write("cold.csv", rates), ["--output", self.folder / "cold.out.csv"]

@@ -5,10 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
+
+#include "filters/promise/running_trial.h"
 
 namespace ifog {
 namespace {
@@ -113,6 +118,64 @@ TEST(Promise, TooLittleIsRefused) {
   EXPECT_THROW(weigh_promise(moving.trial()), std::invalid_argument);
   moving.after.pop_back();
   EXPECT_THROW(weigh_promise(moving.trial()), std::invalid_argument);
+}
+
+// Rates of a gyro: `made` in units of 1e-5 rad/s.
+RunningTrial running(const Made& data, double every_s) {
+  RunningTrial trial(1);
+  for (std::size_t i = 0; i < data.before.size(); ++i) {
+    const std::array<double, 1> before{1e-5 * data.before[i]}, after{1e-5 * data.after[i]};
+    trial.add(static_cast<double>(i) * every_s, before, after);
+  }
+  return trial;
+}
+
+// Of means over `each` samples, least squares with a constant.
+double share_by_means(const Made& data, std::size_t each) {
+  std::vector<double> d, e;
+  for (std::size_t i = 0; i < data.before.size(); i += each) {
+    double sum_d = 0.0, sum_e = 0.0, count = 0.0;
+    for (std::size_t k = i; k < std::min(i + each, data.before.size()); ++k) {
+      sum_d += data.before[k] - data.after[k];
+      sum_e += data.before[k];
+      count += 1.0;
+    }
+    d.push_back(sum_d / count);
+    e.push_back(sum_e / count);
+  }
+  const auto n = static_cast<double>(d.size());
+  double d_mean = 0.0, e_mean = 0.0, dd = 0.0, de = 0.0;
+  for (std::size_t i = 0; i < d.size(); ++i) d_mean += d[i] / n, e_mean += e[i] / n;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    dd += (d[i] - d_mean) * (d[i] - d_mean);
+    de += (d[i] - d_mean) * (e[i] - e_mean);
+  }
+  return de / dd;
+}
+
+TEST(RunningTrial, WeighsMeansOfASecondAndOfAsManyAsALongRecordNeeds) {
+  const Made data = made(50000, 0.9, 0.8, 0.0, 8);
+  const auto seconds = running(data, 0.1).weigh(0);  // 5000 s
+  ASSERT_TRUE(seconds);
+  EXPECT_FALSE(seconds->denied);
+  EXPECT_NEAR(seconds->share, share_by_means(data, 10), 1e-6);
+  const auto widened = running(data, 1.0).weigh(0);  // 50000 s: 16384 means at most, of 4 s
+  ASSERT_TRUE(widened);
+  EXPECT_NEAR(widened->share, share_by_means(data, 4), 1e-6);
+}
+
+TEST(RunningTrial, ACauseThatOnlyRanAlongIsBroken) {
+  const auto absent = running(made(50000, 0.0, 0.5, 0.001, 9), 0.1).weigh(0);
+  ASSERT_TRUE(absent);
+  EXPECT_TRUE(absent->denied);
+  EXPECT_NEAR(absent->share, 0.0, 4.0 * absent->share_error);
+}
+
+TEST(RunningTrial, SaysNothingOfASensorThatTurnsOrOfSeconds) {
+  EXPECT_FALSE(running(made(900, 1.0, 0.5, 0.0, 10), 0.1).weigh(0));  // 90 s
+  // On a table that swings by 0.01 rad/s, with a scale factor that is corrected: half of the rate's swing,
+  // backwards.
+  EXPECT_FALSE(running(made(50000, -2.0, 500.0, 0.0, 11), 0.1).weigh(0));
 }
 
 }  // namespace

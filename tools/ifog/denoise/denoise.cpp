@@ -39,6 +39,7 @@
 #include "tools/ifog/console/wrong_usage.h"
 #include "tools/ifog/denoise/denoise_settings.h"
 #include "tools/ifog/denoise/denoised_rows.h"
+#include "tools/ifog/denoise/model_trial.h"
 #include "tools/ifog/denoise/offline_chain.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
@@ -47,7 +48,8 @@
 namespace ifog::tools {
 namespace {
 
-nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
+nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, const ModelTrial& trial,
+                       const OfflineResult& result) {
   nlohmann::json axes = nlohmann::json::array();
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
     const DenoisedRows::AxisMoments& of_axis = rows.moments(a);
@@ -62,6 +64,7 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
     one["stuck"] = of_axis.stuck;
     axes.push_back(std::move(one));
   }
+  trial.add_to(axes);
   const FilterSettings& filter = result.filter;
   return {{"schema", "ifog.denoise/1"},
           {"capture", options.capture},
@@ -285,14 +288,18 @@ void run(DenoiseOptions options) {
   const auto settings = [&] { return settings_of(options, configured, flight ? &*flight : nullptr); };
   // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
+  ModelTrial trial;
   const OfflineSink sink{[&](const std::vector<std::string>& axes) {
                            const OfflineSettings of = settings();
                            if (of.model) tell_model_of_one_axis(*of.model, of.sensor.model, axes);
+                           if (of.model) trial.begin(*of.model, axes);
                            rows.begin(axes);
                          },
                          [&](const TimeOrigin& origin) { rows.count_from(origin); },
                          [&](double time_s, const Increment& increment, const ChainOutput& out) {
-                           return rows.add(time_s, increment, out);
+                           const bool inside = rows.add(time_s, increment, out);
+                           if (inside) trial.add(time_s, increment.rate_radps, out.compensated_radps);
+                           return inside;
                          }};
   OfflineResult result;
   const ReadingProgress progress(capture, "denoising");
@@ -322,8 +329,10 @@ void run(DenoiseOptions options) {
   }
   if (options.smooth) smooth(rows.columns(), result);
   rows.finish(options.capture);
+  if (result.exchanges == 0) trial.weigh();  // else of several models
   tell(options, rows, result);
-  if (!options.json.empty()) write_json(options.json, summary(options, rows, result));
+  trial.tell(options.capture);
+  if (!options.json.empty()) write_json(options.json, summary(options, rows, trial, result));
   if (!options.picture.empty()) draw(options.picture, rows.columns(), rows.origin(), result);
 }
 
