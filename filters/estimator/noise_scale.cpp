@@ -90,8 +90,10 @@ bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept 
   const double apart = innovation - mean_;
   mean_ += apart / std::max(lag, 2.0 * kLocalMemory);
   const double square = std::min(apart * apart, kColourClip * rest_);
+  const double rough = std::max(rough_, 1e-9 * told_);
   colour_count_ = std::min(colour_count_ + 1.0, kColourMemory);
-  colour_ += (square / std::max(rough_, 1e-9 * told_) - colour_) / colour_count_;
+  colour_ += (square / rough - colour_) / colour_count_;
+  tails_ += ((apart * apart - square) / rough - tails_) / colour_count_;
   colour_ = std::max(colour_, 0.5);
   return false;
 }

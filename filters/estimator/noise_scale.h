@@ -46,6 +46,8 @@ class NoiseScale {
   void take_roughness() noexcept;
   // At rest, over the last thousand samples.
   [[nodiscard]] double rest() const noexcept { return rest_; }
+  // The same with outliers that were taken in, whole: what a mean of the measurements has of them.
+  [[nodiscard]] double with_tails() const noexcept { return rest_ + tails_ * rough_; }
   // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   [[nodiscard]] bool white() const noexcept { return colour_ < kWhite; }
@@ -101,6 +103,7 @@ class NoiseScale {
   double bent_ = 0.0, bent_count_ = 0.0;    // the same by second ones, until the scale is known
   double recalled_ = 1.0;                   // colour
   double colour_ = 1.0, colour_count_ = 0.0;
+  double tails_ = 0.0;  // of the same squares what is beyond kColourClip
   double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise
   double squares_ = 0.0;
   double digit_ = 1e300;  // least difference of two neighbours
