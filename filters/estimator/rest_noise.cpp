@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/estimator/rest_noise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -60,10 +61,19 @@ void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) 
   if (is == RestSample::kMotion || valid_axes == 0) return;
   chapter_.samples += 1.0;
   if (++in_chapter_ < kChapter) return;
-  in_chapter_ = 0;
-  judged_ = std::exchange(chapter_, {});
-  search_.begin(judged_);
+  judged_ = chapter_;
+  judged_own_ = chapter_own_;
+  judged_own_.samples = judged_.samples;
+  begin_chapter();
+  search_.begin(judged_own_);
   judging_ = Judging::kChapter;
+}
+
+void RestNoise::begin_chapter() noexcept {
+  in_chapter_ = 0;
+  chapter_ = chapter_own_ = {};
+  for (auto& axis : octaves_)
+    for (Octave& octave : axis) octave.own = -1;
 }
 
 void RestNoise::add(std::size_t axis, double rate) noexcept {
@@ -74,9 +84,14 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
       const double second = mean - 2.0 * octave.means[1] + octave.means[0];
       chapter_.squares[k] += kIndependent * second * second;
       chapter_.counts[k] += kIndependent;
+      if (octave.own == 2) {
+        chapter_own_.squares[k] += kIndependent * second * second;
+        chapter_own_.counts[k] += kIndependent;
+      }
     } else {
       ++octave.blocks;
     }
+    octave.own = std::min(octave.own + 1, 2);
     octave.means = {octave.means[1], mean};
     octave.has_half = !octave.has_half;
     if (octave.has_half) {
@@ -88,7 +103,7 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
 }
 
 void RestNoise::judge() noexcept {
-  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_)) return;
+  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_own_)) return;
   if (judging_ == Judging::kChapter) {
     compare();
     return;
@@ -103,12 +118,19 @@ void RestNoise::compare() noexcept {
   judging_ = Judging::kNothing;
   if (known_.samples > 0.0) {
     const double behind =
-        fit_octaves(judged_.squares, judged_.counts, known_ratio_).misfit - search_.misfit();
+        fit_octaves(judged_own_.squares, judged_own_.counts, known_ratio_).misfit - search_.misfit();
     const bool differ = 0.5 * behind > kSurely;
     const bool quicker = differ && search_.ratio() > known_ratio_;
+    if (differ) {
+      octaves_ = {};
+      begin_chapter();
+    }
     if (quicker && (contradictions_ < 0 || ++contradictions_ < kContradicted)) return;
     contradictions_ = -1;
-    if (differ) known_ = {};
+    if (differ) {
+      known_ = {};
+      judged_ = judged_own_;
+    }
   }
   for (std::size_t k = 0; k < kOctaves; ++k) {
     known_.squares[k] += judged_.squares[k];
