@@ -104,7 +104,7 @@ class NoiseScale {
   double recalled_ = 1.0;                   // colour
   double colour_ = 1.0, colour_count_ = 0.0;
   double tails_ = 0.0;  // of the same squares what is beyond kColourClip
-  double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise
+  double mean_ = 0.0;   // of the innovations over a lag: a slow motion's, and no noise
   double squares_ = 0.0;
   double digit_ = 1e300;  // least difference of two neighbours
   int learned_ = 0, different_ = 0, in_a_row_ = 0;

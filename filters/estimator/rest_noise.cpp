@@ -145,7 +145,7 @@ std::optional<NoiseEstimate> RestNoise::take_news(double period_s) noexcept {
   if (!std::exchange(news_, false)) return std::nullopt;
   const OctaveFit fit = fit_octaves(known_.squares, known_.counts, known_ratio_);
   if (!(fit.noise > 0.0)) return std::nullopt;
-  return NoiseEstimate{known_ratio_ * fit.low_noise / period_s, fit.noise};
+  return NoiseEstimate{known_ratio_ * fit.low_noise / period_s, fit.noise, fit.low_noise};
 }
 
 }  // namespace ifog
