@@ -327,8 +327,7 @@ void Engine::publish_rest() noexcept {
     const Wider wider =
         change_.wider(trackers_, a, lag_samples(), noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
     published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
-    published_.variance[a] += noise_[a].rounding();
-    published_.variance[a] += change_.unseen(a);
+    published_.variance[a] += noise_[a].rounding() + noise_[a].vibration() + change_.unseen(a);
   }
 }
 

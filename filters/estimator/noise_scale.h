@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "filters/estimator/third_difference.h"
+#include "filters/estimator/vibration.h"
 
 namespace ifog {
 
@@ -55,6 +56,9 @@ class NoiseScale {
   // first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and Kollar, "Quantization
   // Noise", 2008, chapter 4). No filter sees it.
   [[nodiscard]] double rounding() const noexcept;
+  // Variance of what may be a motion that is taken for noise.
+  [[nodiscard]] double vibration() const noexcept { return vibration_.variance(); }
+  void follow_motion() noexcept { vibration_.forget(); }
   // R for the gain. Where the innovations are louder than their roughness says, that may be colour or motion
   // the filter lags behind. To take that much colour for motion costs 1 % of RMSE, to take motion for colour
   // makes the lag longer; so the first part counts for motion.
@@ -104,7 +108,9 @@ class NoiseScale {
   double recalled_ = 1.0;                   // colour
   double colour_ = 1.0, colour_count_ = 0.0;
   double tails_ = 0.0;  // of the same squares what is beyond kColourClip
-  double mean_ = 0.0;   // of the innovations over a lag: a slow motion's, and no noise
+  Vibration vibration_;
+  double third_ = -1.0, bound_ = 0.0;  // of the last measurement, as in rough_; below 0: none
+  double mean_ = 0.0;                  // of the innovations over a lag: a slow motion's, and no noise
   double squares_ = 0.0;
   double digit_ = 1e300;  // least difference of two neighbours
   int learned_ = 0, different_ = 0, in_a_row_ = 0;
