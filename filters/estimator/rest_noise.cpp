@@ -55,7 +55,10 @@ void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) 
   if (is == RestSample::kPassedOver) return;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     // Blocks under way have motion in them.
-    if (is == RestSample::kMotion) octaves_[a] = {};
+    if (is == RestSample::kMotion) {
+      octaves_[a] = {};
+      likelihood_.break_off(a);
+    }
     if (is == RestSample::kRest && (valid_axes >> a & 1U) != 0 && std::isfinite(rate[a])) add(a, rate[a]);
   }
   if (is == RestSample::kMotion || valid_axes == 0) return;
@@ -64,6 +67,7 @@ void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) 
   judged_ = chapter_;
   judged_own_ = chapter_own_;
   judged_own_.samples = judged_.samples;
+  likelihood_.set_aside();
   begin_chapter();
   search_.begin(judged_own_);
   judging_ = Judging::kChapter;
@@ -77,6 +81,7 @@ void RestNoise::begin_chapter() noexcept {
 }
 
 void RestNoise::add(std::size_t axis, double rate) noexcept {
+  likelihood_.take(axis, rate);
   double mean = rate;
   for (std::size_t k = 0; k < kOctaves; ++k) {
     Octave& octave = octaves_[axis][k];
@@ -108,7 +113,7 @@ void RestNoise::judge() noexcept {
     compare();
     return;
   }
-  known_ratio_ = search_.quickest();
+  known_ratio_ = std::min(search_.quickest(), likelihood_.quickest(kNearlyAsWell));
   judging_ = Judging::kNothing;
   news_ = true;
 }
@@ -123,15 +128,18 @@ void RestNoise::compare() noexcept {
     const bool quicker = differ && search_.ratio() > known_ratio_;
     if (differ) {
       octaves_ = {};
+      likelihood_.drop();
       begin_chapter();
     }
     if (quicker && (contradictions_ < 0 || ++contradictions_ < kContradicted)) return;
     contradictions_ = -1;
     if (differ) {
       known_ = {};
+      likelihood_.forget();
       judged_ = judged_own_;
     }
   }
+  likelihood_.believe();
   for (std::size_t k = 0; k < kOctaves; ++k) {
     known_.squares[k] += judged_.squares[k];
     known_.counts[k] += judged_.counts[k];

@@ -21,6 +21,7 @@
 
 #include "filters/estimator/learned_noise.h"
 #include "filters/estimator/start_up.h"
+#include "filters/estimator/walk_likelihood.h"
 #include "filters/settings/axes.h"
 
 namespace ifog {
@@ -74,6 +75,7 @@ class RestNoise {
   std::array<std::array<Octave, kOctaves>, kMaxAxes> octaves_{};
   OctaveSums known_, chapter_, judged_;
   OctaveSums chapter_own_, judged_own_;
+  WalkLikelihood likelihood_;
   RatioSearch search_;
   Judging judging_ = Judging::kNothing;
   double known_ratio_ = 0.0;
