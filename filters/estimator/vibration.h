@@ -25,7 +25,7 @@ class Vibration {
   }
   // A motion was found that explains it, and is followed.
   void forget() noexcept {
-    lately_square_ = usual_ * lately_rough_;
+    lately_ratio_ = usual_;
     square_ = rough_ = variance_ = 0.0;
     in_sum_ = 0;
   }
@@ -41,36 +41,42 @@ class Vibration {
   static constexpr double kSurely = 4.0;
 
   void judge() noexcept {
-    const double square = square_ / kSum, rough = rough_ / kSum;
+    const double rough = rough_ / kSum, ratio = square_ / rough_;
+    const bool heard = rough_ > 0.0;
     square_ = rough_ = variance_ = 0.0;
     in_sum_ = 0;
-    if (!(rough > 0.0)) return;
+    if (!heard) return;
     lately_ = std::min(lately_ + 1.0, kLately);
-    lately_square_ += (square - lately_square_) / lately_;
+    lately_ratio_ += (ratio - lately_ratio_) / lately_;
     lately_rough_ += (rough - lately_rough_) / lately_;
-    const double ratio = lately_square_ / lately_rough_, apart = ratio - usual_;
+    const double apart = lately_ratio_ - usual_;
     // An exponential mean knows as much as one of nearly twice the number.
-    const double chance = scatter_ * (1.0 / (2.0 * kLately) + 1.0 / std::max(sums_, 1.0));
+    const double chance = scatter_ * usual_ * usual_ * (1.0 / (2.0 * kLately) + 1.0 / std::max(sums_, 1.0));
     const bool surely = sums_ >= kFewest && apart * apart > kSurely * kSurely * chance;
     if (surely && apart > 0.0) {
-      variance_ = lately_square_ - usual_ * lately_rough_;
+      variance_ = apart * lately_rough_;
       return;
     }
-    if (surely) {
-      usual_ = ratio;
-      sums_ = kFewest;
-    }
-    const double off = square / rough - usual_;
+    if (surely) sums_ = lately_ = 0.0;
+    learn(ratio);
+  }
+
+  void learn(double ratio) noexcept {
     sums_ = std::min(sums_ + 1.0, kUsual);
-    usual_ += off / sums_;
-    // The first ones have the mean they are held against in them.
-    if (sums_ > 1.0) scatter_ += (off * off * (sums_ - 1.0) / sums_ - scatter_) / (sums_ - 1.0);
+    const double off = sums_ > 1.0 ? ratio - usual_ : 0.0;
+    usual_ = sums_ > 1.0 ? usual_ + off / sums_ : ratio;
+    if (!(usual_ > 0.0) || sums_ <= 1.0) return;
+    scattered_ = std::min(scattered_ + 1.0, kUsual);
+    // The first ones are in the mean that they are held against.
+    const double square = off * off * (sums_ - 1.0) / (sums_ * usual_ * usual_);
+    scatter_ += (square - scatter_) / scattered_;
   }
 
   double square_ = 0.0, rough_ = 0.0;
   int in_sum_ = 0;
-  double lately_square_ = 0.0, lately_rough_ = 0.0, lately_ = 0.0;
-  double usual_ = 0.0, scatter_ = 0.0, sums_ = 0.0;  // ratio of a sum's two, its variance, of how many
+  double lately_ratio_ = 0.0, lately_rough_ = 0.0, lately_ = 0.0;
+  double usual_ = 0.0, sums_ = 0.0;         // ratio of a sum's two, and of how many
+  double scatter_ = 0.0, scattered_ = 0.0;  // its relative variance, likewise
   double variance_ = 0.0;
 };
 
