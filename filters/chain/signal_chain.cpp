@@ -27,10 +27,6 @@ constexpr double kOutOfReach = 2.0;
 // Samples lost in a row, at most, after which a sensor at rest still is.
 constexpr double kShortGap = 16.0;
 
-double within_reach(double process_noise, double measurement_noise, double period_s) noexcept {
-  return std::min(process_noise, kMostLearnedRatio * measurement_noise / period_s);
-}
-
 // Of the first effect on that channel.
 std::uint32_t line_of(const Model& model, const std::string& channel) {
   for (const Effect& effect : model.effects)
@@ -200,11 +196,14 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   if (learns_measurement_noise_) filter_.measurement_noise = noise.measurement_noise;
   if (filter_.process_noise <= 0.0) {
     filter_.process_noise = noise.process_noise;
-    if (learns_process_noise_ && filter_.follow_manoeuvres)
-      filter_.process_noise = within_reach(noise.process_noise, filter_.measurement_noise, period_s_);
+    if (learns_process_noise_ && filter_.follow_manoeuvres) {
+      colour_ = noise.measurement_noise / noise.slow_noise;
+      filter_.process_noise = within_reach(noise.process_noise, filter_.measurement_noise);
+    }
   }
   moved_ = noise.moved;
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+  retune();
   shares_.walk = noise.walk_share;
   estimator_->expect_walk(shares_.walk);
   estimator_->owe(owed_);
@@ -214,15 +213,21 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   collected_ = 0;
 }
 
+double ChainParts::within_reach(double process_noise, double measurement_noise) const noexcept {
+  return std::min(process_noise, kMostLearnedRatio * measurement_noise / (colour_ * period_s_));
+}
+
+void ChainParts::retune() noexcept { estimator_->retune(filter_.process_noise * colour_, 1.0 / colour_); }
+
 // Noise that turns out quieter than the start-up data said makes a walk that was within reach one that is
 // not.
 void ChainParts::keep_within_reach() noexcept {
   if (!filter_.follow_manoeuvres) return;
   double noise = 0.0;
   for (const double axis : estimator_->health().measurement_noise) noise = std::max(noise, axis);
-  if (!(noise > 0.0) || filter_.process_noise * period_s_ <= kOutOfReach * kMostLearnedRatio * noise) return;
-  filter_.process_noise = within_reach(filter_.process_noise, noise, period_s_);
-  estimator_->retune(filter_.process_noise);
+  if (!(noise > 0.0) || filter_.process_noise <= kOutOfReach * within_reach(1e300, noise)) return;
+  filter_.process_noise = within_reach(filter_.process_noise, noise);
+  retune();
 }
 
 // The random walk shows itself slowly: what start-up data said of it, perhaps under way, is corrected
@@ -237,11 +242,13 @@ void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept 
   keep_within_reach();
   const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
   if (!found) return;
-  filter_.process_noise = filter_.follow_manoeuvres
-                              ? within_reach(found->process_noise, found->measurement_noise, period_s_)
-                              : found->process_noise;
+  filter_.process_noise = found->process_noise;
+  if (filter_.follow_manoeuvres) {
+    colour_ = found->measurement_noise / found->slow_noise;
+    filter_.process_noise = within_reach(found->process_noise, found->measurement_noise);
+  }
   rest_measurement_noise_ = found->measurement_noise;
-  estimator_->retune(filter_.process_noise);
+  retune();
   // What the first seconds said of each axis' part of the walk was no better than what they said of the walk.
   shares_.walk.reset();
   estimator_->expect_walk(shares_.walk);

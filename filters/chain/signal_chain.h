@@ -110,6 +110,8 @@ class ChainParts {
   void compensate(const Increment& in, ChainOutput& out) noexcept;
   void refuse_impossible(const Increment& in, ChainOutput& out) noexcept;
   void learn(const Increment& in, const ChainOutput& out) noexcept;
+  [[nodiscard]] double within_reach(double process_noise, double measurement_noise) const noexcept;
+  void retune() noexcept;
   void keep_within_reach() noexcept;
   void learn_on(const Increment& in, const ChainOutput& out) noexcept;
   void publish_raw(const Increment& in, ChainOutput& out) noexcept;
@@ -134,7 +136,10 @@ class ChainParts {
   bool learns_process_noise_ = false, learns_measurement_noise_ = false;
   RestNoise rest_noise_;
   double rest_measurement_noise_ = 0.0;  // as that has found it
-  Axes owed_{};                          // by the estimator before, until this one is there
+  // Noise of a sample over that of long means: the filter's gain, which takes the one for white, is right for
+  // the other with a driving noise as much larger.
+  double colour_ = 1.0;
+  Axes owed_{};  // by the estimator before, until this one is there
   bool moved_ = false;
   bool first_ = true;
 };

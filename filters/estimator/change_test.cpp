@@ -83,7 +83,7 @@ void ChangeTest::forget() noexcept {
 }
 
 inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {
-  const double log_rest = logarithm(now.rest_factor);
+  const double log_rest = logarithm(now.rest_factor), farthest = std::sqrt(2.0 * most);
   Measured out;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     if ((now.valid >> a & 1U) == 0) continue;
@@ -94,7 +94,7 @@ inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double mos
     out.scale[lane] = now.scale[a];
     out.rest[lane] = rest;
     out.spoke_for_rest[lane] = std::min(rest, 2.0 * most) + log_rest;
-    out.normalised[lane] = now.innovation[a] / std::sqrt(now.scale[a]);
+    out.normalised[lane] = std::clamp(now.innovation[a] / std::sqrt(now.scale[a]), -farthest, farthest);
     out.angle[lane] = now.innovation[a] * now.covered_s[a];
     out.rest_square += std::min(rest, kSquareClip);
   }

@@ -317,12 +317,11 @@ void Engine::publish_rest() noexcept {
     published_.rate[a] = rest_->rate(a);
     published_.variance[a] = rest_variance(a);
     if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
-    const double louder = std::max(1.0, noise_[a].rest() / (loudness_[a] * believed));
+    const double louder = std::max(1.0, noise_[a].with_tails() / (loudness_[a] * believed));
     const Wider wider =
         change_.wider(trackers_, a, lag, noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
     published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
-    published_.variance[a] += noise_[a].rounding();
-    published_.variance[a] += change_.unseen(a);
+    published_.variance[a] += noise_[a].rounding() + noise_[a].vibration() + change_.unseen(a);
   }
 }
 

@@ -35,7 +35,10 @@ class Engine {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
-  void retune(double process_noise) noexcept { rest_->retune(process_noise); }
+  void retune(double process_noise, double walk) noexcept {
+    rest_->retune(process_noise);
+    walk_ = walk;
+  }
   void recall_colour(const Axes& colour) noexcept;
   void expect_noise(const Axes& share) noexcept;
   void expect_walk(const std::optional<Axes>& share) noexcept { walk_share_ = share; }
@@ -130,7 +133,7 @@ class Engine {
     return loudness_[axis] * rest_->covariance();
   }
   [[nodiscard]] double walk_share(std::size_t axis) const noexcept {
-    return walk_share_ ? (*walk_share_)[axis] : loudness_[axis];
+    return walk_ * (walk_share_ ? (*walk_share_)[axis] : loudness_[axis]);
   }
 
   bool follow_manoeuvres_, conserve_angle_, guard_;
@@ -178,6 +181,7 @@ class Engine {
   double since_moved_ = 0.0;        // measurements since the filter at rest was last moved
   Axes loudness_{1.0, 1.0, 1.0};    // variance of an axis' noise over the mean of all
   std::optional<Axes> walk_share_;  // its driving noise over the settings'; not known: as its noise
+  double walk_ = 1.0;               // the rate's driving noise over the one that the gain is for
   double heard_scale_ = 1.0;        // Measurement::noise_scale of the last one
   Axes unheard_s_{};                // since each axis' last measurement
   double lag_s_ = 0.0;

@@ -36,6 +36,7 @@ void Engine::owe_to_manoeuvre(std::size_t axis) noexcept {
   ledger_.admit(axis, kept_out_[axis]);
   ledger_.move_to_manoeuvre(axis, untested_[axis]);
   untested_[axis] = 0.0;
+  noise_[axis].follow_motion();
 }
 
 // Measurements that looked like outliers are a jump: all begin with them.

@@ -68,7 +68,9 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
 void Estimator::restart() noexcept { impl_->engine.restart(); }
-void Estimator::retune(double process_noise) noexcept { impl_->engine.retune(process_noise); }
+void Estimator::retune(double process_noise, double walk) noexcept {
+  impl_->engine.retune(process_noise, walk);
+}
 void Estimator::recall_colour(const Axes& colour) noexcept { impl_->engine.recall_colour(colour); }
 void Estimator::expect_noise(const Axes& share) noexcept { impl_->engine.expect_noise(share); }
 void Estimator::expect_walk(const std::optional<Axes>& share) noexcept { impl_->engine.expect_walk(share); }

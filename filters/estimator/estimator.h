@@ -74,7 +74,8 @@ class Estimator {
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;  // forget the state, keep the counters
   // Another driving noise, FilterSettings::process_noise, from the next step on; the state stays. > 0.
-  void retune(double process_noise) noexcept;
+  // walk: that of the rate itself over it, where the gain is for noise that is not white.
+  void retune(double process_noise, double walk = 1.0) noexcept;
   // Before the first step: the noise's colour as an earlier filter of the sensor has found it,
   // EstimatorHealth::colour; not told, it is found anew.
   void recall_colour(const Axes& colour) noexcept;

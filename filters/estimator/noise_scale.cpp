@@ -38,6 +38,7 @@ void NoiseScale::take(double rate, double steps) noexcept {
     bent_count_ += 1.0;
     bent_ += (second * second / 6.0 - bent_) / bent_count_;
   }
+  third_ = -1.0;
   if (asked) {
     const double square =
         third_difference_square({last_[0], last_[1], last_[2], rate}, {steps_[0], steps_[1], steps});
@@ -45,7 +46,9 @@ void NoiseScale::take(double rate, double steps) noexcept {
     rough_count_ = std::min(rough_count_ + 1.0, kMemory);
     // Beside the scale, so that a coarse sensor's runs of equal values do not end in a variance of zero that
     // nothing could raise again.
-    rough_ += (std::min(square, kClip * std::max(rough_, 0.5 * rest_)) - rough_) / rough_count_;
+    bound_ = kClip * std::max(rough_, 0.5 * rest_);
+    third_ = std::min(square, bound_);
+    rough_ += (third_ - rough_) / rough_count_;
     if (known_) rest_ = colour_ * std::max(rough_, 1e-9 * told_);
   }
   in_a_row_ = std::min(in_a_row_ + 1, 3);
@@ -89,9 +92,15 @@ bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept 
   const double apart = innovation - mean_;
   mean_ += apart / std::max(lag, 2.0 * kLocalMemory);
   const double square = std::min(apart * apart, kColourClip * rest_);
+  const double rough = std::max(rough_, 1e-9 * told_);
   colour_count_ = std::min(colour_count_ + 1.0, kColourMemory);
-  colour_ += (square / std::max(rough_, 1e-9 * told_) - colour_) / colour_count_;
+  colour_ += (square / rough - colour_) / colour_count_;
+  // Noise that has just become louder has no tails.
+  const double beyond = std::max(0.0, apart * apart - kColourClip * std::max(rest_, local_));
+  tails_ += (beyond / rough - tails_) / colour_count_;
   colour_ = std::max(colour_, 0.5);
+  // Bounded alike, so that of noise that has just become louder both are.
+  if (third_ >= 0.0) vibration_.take(std::min(apart * apart, bound_), third_);
   return false;
 }
 

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "filters/estimator/third_difference.h"
+#include "filters/estimator/vibration.h"
 
 namespace ifog {
 
@@ -46,6 +47,8 @@ class NoiseScale {
   void take_roughness() noexcept;
   // At rest, over the last thousand samples.
   [[nodiscard]] double rest() const noexcept { return rest_; }
+  // The same with outliers that were taken in, whole: what a mean of the measurements has of them.
+  [[nodiscard]] double with_tails() const noexcept { return rest_ + tails_ * rough_; }
   // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   [[nodiscard]] bool white() const noexcept { return colour_ < kWhite; }
@@ -53,6 +56,9 @@ class NoiseScale {
   // first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and Kollar, "Quantization
   // Noise", 2008, chapter 4). No filter sees it.
   [[nodiscard]] double rounding() const noexcept { return rounding_; }
+  // Variance of what may be a motion that is taken for noise.
+  [[nodiscard]] double vibration() const noexcept { return vibration_.variance(); }
+  void follow_motion() noexcept { vibration_.forget(); }
   // R for the gain. Where the innovations are louder than their roughness says, that may be colour or motion
   // the filter lags behind. To take that much colour for motion costs 1 % of RMSE, to take motion for colour
   // makes the lag longer; so the first part counts for motion.
@@ -102,7 +108,10 @@ class NoiseScale {
   double bent_ = 0.0, bent_count_ = 0.0;    // the same by second ones, until the scale is known
   double recalled_ = 1.0;                   // colour
   double colour_ = 1.0, colour_count_ = 0.0;
-  double mean_ = 0.0;  // of the innovations over a lag: a slow motion's, and no noise
+  double tails_ = 0.0;  // of the same squares what is beyond kColourClip
+  Vibration vibration_;
+  double third_ = -1.0, bound_ = 0.0;  // of the last measurement, as in rough_; below 0: none
+  double mean_ = 0.0;                  // of the innovations over a lag: a slow motion's, and no noise
   double squares_ = 0.0;
   double digit_ = 1e300;         // least difference of two neighbours
   double digit_variance_ = 0.0;  // of what rounding to it adds to a measurement

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/estimator/rest_noise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -54,19 +55,33 @@ void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) 
   if (is == RestSample::kPassedOver) return;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     // Blocks under way have motion in them.
-    if (is == RestSample::kMotion) octaves_[a] = {};
+    if (is == RestSample::kMotion) {
+      octaves_[a] = {};
+      likelihood_.break_off(a);
+    }
     if (is == RestSample::kRest && (valid_axes >> a & 1U) != 0 && std::isfinite(rate[a])) add(a, rate[a]);
   }
   if (is == RestSample::kMotion || valid_axes == 0) return;
   chapter_.samples += 1.0;
   if (++in_chapter_ < kChapter) return;
-  in_chapter_ = 0;
-  judged_ = std::exchange(chapter_, {});
-  search_.begin(judged_);
+  judged_ = chapter_;
+  judged_own_ = chapter_own_;
+  judged_own_.samples = judged_.samples;
+  likelihood_.set_aside();
+  begin_chapter();
+  search_.begin(judged_own_);
   judging_ = Judging::kChapter;
 }
 
+void RestNoise::begin_chapter() noexcept {
+  in_chapter_ = 0;
+  chapter_ = chapter_own_ = {};
+  for (auto& axis : octaves_)
+    for (Octave& octave : axis) octave.own = -1;
+}
+
 void RestNoise::add(std::size_t axis, double rate) noexcept {
+  likelihood_.take(axis, rate);
   double mean = rate;
   for (std::size_t k = 0; k < kOctaves; ++k) {
     Octave& octave = octaves_[axis][k];
@@ -74,9 +89,14 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
       const double second = mean - 2.0 * octave.means[1] + octave.means[0];
       chapter_.squares[k] += kIndependent * second * second;
       chapter_.counts[k] += kIndependent;
+      if (octave.own == 2) {
+        chapter_own_.squares[k] += kIndependent * second * second;
+        chapter_own_.counts[k] += kIndependent;
+      }
     } else {
       ++octave.blocks;
     }
+    octave.own = std::min(octave.own + 1, 2);
     octave.means = {octave.means[1], mean};
     octave.has_half = !octave.has_half;
     if (octave.has_half) {
@@ -88,12 +108,12 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
 }
 
 void RestNoise::judge() noexcept {
-  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_)) return;
+  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_own_)) return;
   if (judging_ == Judging::kChapter) {
     compare();
     return;
   }
-  known_ratio_ = search_.quickest();
+  known_ratio_ = std::min(search_.quickest(), likelihood_.quickest(kNearlyAsWell));
   judging_ = Judging::kNothing;
   news_ = true;
 }
@@ -103,13 +123,23 @@ void RestNoise::compare() noexcept {
   judging_ = Judging::kNothing;
   if (known_.samples > 0.0) {
     const double behind =
-        fit_octaves(judged_.squares, judged_.counts, known_ratio_).misfit - search_.misfit();
+        fit_octaves(judged_own_.squares, judged_own_.counts, known_ratio_).misfit - search_.misfit();
     const bool differ = 0.5 * behind > kSurely;
     const bool quicker = differ && search_.ratio() > known_ratio_;
+    if (differ) {
+      octaves_ = {};
+      likelihood_.drop();
+      begin_chapter();
+    }
     if (quicker && (contradictions_ < 0 || ++contradictions_ < kContradicted)) return;
     contradictions_ = -1;
-    if (differ) known_ = {};
+    if (differ) {
+      known_ = {};
+      likelihood_.forget();
+      judged_ = judged_own_;
+    }
   }
+  likelihood_.believe();
   for (std::size_t k = 0; k < kOctaves; ++k) {
     known_.squares[k] += judged_.squares[k];
     known_.counts[k] += judged_.counts[k];
@@ -123,7 +153,7 @@ std::optional<NoiseEstimate> RestNoise::take_news(double period_s) noexcept {
   if (!std::exchange(news_, false)) return std::nullopt;
   const OctaveFit fit = fit_octaves(known_.squares, known_.counts, known_ratio_);
   if (!(fit.noise > 0.0)) return std::nullopt;
-  return NoiseEstimate{known_ratio_ * fit.low_noise / period_s, fit.noise};
+  return NoiseEstimate{known_ratio_ * fit.low_noise / period_s, fit.noise, fit.low_noise};
 }
 
 }  // namespace ifog

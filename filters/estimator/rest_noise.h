@@ -5,6 +5,8 @@
 // of samples the estimator calls rest. Chapter by chapter the sums are compared: a chapter whose random walk
 // is surely slower than the one known so far replaces all that was known, as a slow motion that passes for
 // rest only ever makes the walk look quicker; one that is surely quicker is such a motion, and left out.
+// Blocks that reach back into what was replaced or left out have that in them, so a chapter is judged by the
+// blocks that are all its own.
 //
 // What an earlier run of the daemon has learned is a beginning: should the first chapters all be surely
 // quicker, it was of another sensor, or of this one when it was younger, and is forgotten.
@@ -19,6 +21,7 @@
 
 #include "filters/estimator/learned_noise.h"
 #include "filters/estimator/start_up.h"
+#include "filters/estimator/walk_likelihood.h"
 #include "filters/settings/axes.h"
 
 namespace ifog {
@@ -46,6 +49,7 @@ class RestNoise {
     std::array<double, 2> means{};  // of the last two blocks
     double half = 0.0;              // mean of the first half of the block under way
     int blocks = 0;                 // whole ones since the series began, up to two
+    int own = -1;                   // of the chapter's own, up to two; the first one may reach back
     bool has_half = false;
   };
   // The ratio of walk to noise that fits best, looked for one trial a call.
@@ -63,12 +67,15 @@ class RestNoise {
   };
   enum class Judging { kNothing, kChapter, kAll };
 
+  void begin_chapter() noexcept;
   void add(std::size_t axis, double rate) noexcept;
   void judge() noexcept;
   void compare() noexcept;
 
   std::array<std::array<Octave, kOctaves>, kMaxAxes> octaves_{};
   OctaveSums known_, chapter_, judged_;
+  OctaveSums chapter_own_, judged_own_;
+  WalkLikelihood likelihood_;
   RatioSearch search_;
   Judging judging_ = Judging::kNothing;
   double known_ratio_ = 0.0;

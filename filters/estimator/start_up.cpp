@@ -184,12 +184,14 @@ NoiseEstimate estimate_noise(std::span<const double> rates, int axes, double dt_
   const auto n = static_cast<double>(most);
   const double last_digit = std::max(greatest * std::numeric_limits<float>::epsilon(), 1e-12);
   const double least_noise = last_digit * last_digit;
-  if (taken == 0 || constant(all)) return {least_noise / (n * n * dt_s), least_noise};
+  if (taken == 0 || constant(all)) return {least_noise / (n * n * dt_s), least_noise, least_noise};
   const Fit together = fit(all, n);
-  NoiseEstimate out{together.ratio * std::max(together.octaves.low_noise, least_noise) / dt_s,
-                    std::max(together.octaves.noise, least_noise)};
+  const double slow_noise = std::max(together.octaves.low_noise, least_noise);
+  NoiseEstimate out{together.ratio * slow_noise / dt_s, std::max(together.octaves.noise, least_noise),
+                    slow_noise};
   out.moved = moved;
-  if (moved) out.measurement_noise = std::clamp(rough / taken, least_noise, out.measurement_noise);
+  if (moved)
+    out.measurement_noise = out.slow_noise = std::clamp(rough / taken, least_noise, out.measurement_noise);
   for (std::size_t a = 0; taken > 1 && a < kMaxAxes; ++a)
     if (walk[a] > 0.0) out.walk_share[a] = walk[a] / out.process_noise;
   return out;

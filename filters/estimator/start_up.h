@@ -11,6 +11,7 @@ namespace ifog {
 struct NoiseEstimate {
   double process_noise = 0.0;      // of a random walk, (rad/s)^2/s
   double measurement_noise = 0.0;  // per sample, (rad/s)^2
+  double slow_noise = 0.0;         // R of the white noise that means over many samples have
   Axes walk_share{1.0, 1.0, 1.0};  // of an axis: its own driving noise over process_noise
   bool moved = false;              // more smoothly than any noise: the walk is a motion's
 };

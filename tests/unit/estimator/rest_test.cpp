@@ -141,6 +141,21 @@ TEST(RestNoise, ForgetsASensorThatWasAnotherOne) {
   EXPECT_NEAR(std::log10(after->process_noise / 1e-3), 0.0, 0.25);
 }
 
+// Blocks that began before the walk slowed down have the quick one in them, at the octaves that tell a slow
+// walk.
+TEST(RestNoise, ForgetsABeginningThatWasAMotion) {
+  double found = 0.0;
+  constexpr int kSeeds = 5;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    RestNoise learner;
+    (void)learn(learner, 3e-3, 2 * 4096, seed);
+    const auto after = learn(learner, 1e-6, 16 * 4096, 20 + seed);
+    ASSERT_TRUE(after);
+    found += std::log10(after->process_noise / 1e-6) / kSeeds;
+  }
+  EXPECT_NEAR(found, 0.0, 0.4);
+}
+
 ChainSettings untold() {
   ChainSettings settings;
   settings.facts.nominal_rate_hz = 1.0 / kPeriod_s;
@@ -164,6 +179,39 @@ ChainOutput run(SignalChain& chain, double ratio, int samples, unsigned seed) {
     if (i == 0) first = out;
   }
   return first;
+}
+
+// Of noise correlated by 0.5 means over many samples are 3 times as loud as one of white noise. The best gain
+// for that and the walk leaves sqrt(3 Q R); the one that takes it for white, with the walk known, 1.15 times
+// that.
+TEST(LearnedNoise, TheGainIsForWhatLongMeansHave) {
+  constexpr double kRatio = 1e-4, kCorrelation = 0.5;
+  constexpr int kSeeds = 4, kSettled = 20'000, kLength = 80'000;
+  double square = 0.0;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    SignalChain chain(std::make_unique<ChainParts>(untold()));
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    Increment in;
+    ChainOutput out;
+    in.dt_s = in.covered_s[0] = kPeriod_s;
+    in.valid_axes = 1;
+    double level = 0.0, noise = 0.0;
+    for (int i = 0; i < kLength; ++i) {
+      in.sequence = static_cast<std::uint64_t>(i);
+      level += std::sqrt(kRatio) * normal(engine);
+      noise = kCorrelation * noise + std::sqrt(1.0 - kCorrelation * kCorrelation) * normal(engine);
+      in.rate_radps[0] = kSigma_radps * (level + noise);
+      in.delta_theta_rad[0] = in.rate_radps[0] * kPeriod_s;
+      chain.process(in, out);
+      if (i < kSettled) continue;
+      const double error = out.estimate.denoised_radps[0] / kSigma_radps - level;
+      square += error * error / (kSeeds * (kLength - kSettled));
+    }
+    const double density = kRatio * kSigma_radps * kSigma_radps / kPeriod_s;
+    EXPECT_NEAR(std::log10(chain.parts().filter().process_noise / density), 0.0, 0.3) << seed;
+  }
+  EXPECT_LT(square / std::sqrt(3.0 * kRatio), 1.1);
 }
 
 TEST(LearnedNoise, TakesThePlaceOfAStartUp) {
