@@ -25,7 +25,7 @@ std::string parameter_rows(const Effect& e) {
     const FieldUnit unit = field_unit(p.unit);
     std::string name = p.name;
     for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has a column of its own
-      if (name.ends_with(suffix)) name.resize(name.size() - suffix.size());
+      if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
     }
     std::replace(name.begin(), name.end(), '_', ' ');
     out += "<tr><th scope=\"row\">" + escaped(name) + "</th><td class=\"n\">" +
