@@ -152,8 +152,10 @@ TEST(Reconstruct, AHoleIsNoPartOfTheBeat) {
   const std::vector<double> found = reconstruct(read).values;
   for (std::size_t i = kFrom; i < kTo; ++i) EXPECT_NEAR(found[i], read[i], 1e-9) << i;
   for (std::size_t i = kPeriod; i < 2900; i += kPeriod) EXPECT_NEAR(found[i], truth[i], 1e-9) << i;
-  for (std::size_t i = kTo + kPeriod; i < 5900; i += 1)
-    if (i % kPeriod == 0) EXPECT_NEAR(found[i], truth[i], 1e-9) << i;
+  for (std::size_t i = kTo + kPeriod; i < 5900; ++i) {
+    if (i % kPeriod != 0) continue;
+    EXPECT_NEAR(found[i], truth[i], 1e-9) << i;
+  }
 }
 
 // A heater that is switched, or a current that is set, by the clock; the second current for some beats at a
