@@ -198,8 +198,8 @@ void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, I
     out.delta_v_mps[axis] = measured ? channel_[static_cast<std::size_t>(c)] * own_s : 0.0;
     out.moved_s[axis] = measured ? own_s : 0.0;
   }
-  std::copy_n(channel_.begin(), facts_.channels, out.channel.begin());
-  std::copy_n(channel_age_s_.begin(), facts_.channels, out.channel_age_s.begin());
+  out.channel = channel_;
+  out.channel_age_s = channel_age_s_;
 }
 
 // When the sample was taken, by a line through the times of arrival.

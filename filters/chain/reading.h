@@ -95,8 +95,8 @@ struct Increment {
   std::uint32_t stuck_axes = 0;  // of those: repeat one value, as the sensor sent it
   std::uint32_t status = 0;
   std::uint32_t flags = 0;
-  std::uint32_t samples = 1;                   // device samples in it
-  std::array<double, kMaxChannels> channel{};  // as many as the sensor has; the rest says nothing
+  std::uint32_t samples = 1;  // device samples in it
+  std::array<double, kMaxChannels> channel{};
   std::array<float, kMaxChannels> channel_age_s{};
 };
 

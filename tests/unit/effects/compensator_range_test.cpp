@@ -153,5 +153,23 @@ TEST(Compensator, BeyondTheRatesOfTheFitTheScaleFactorGoesOn) {
   EXPECT_NEAR(step(compensator, 10.0 + 0.03, {}).compensated_radps[0], 10.0, 1e-12);  // held at three
 }
 
+// Outside the range of the fit a correction is doubted for as long as the channel is there, and no longer.
+TEST(Compensator, TheDoubtOutsideARangeStaysAndGoesWithTheChannel) {
+  Model model;
+  Effect bent = linear(3e-6);
+  bent.form = "quadratic";
+  model.effects = {bent};
+  model.ranges = {{"temperature_degC", 20.0, 30.0}};
+  Compensator compensator(model, {"x", "y", "z"});
+  for (int i = 0; i < 60; ++i) {
+    const double degC = i / 10 % 2 == 0 ? 26.0 : 33.0;
+    const CompensatorOutput out = step(compensator, 1e-3, {degC});
+    // Of a square its tangent at the edge is followed: behind it is left (33 - 30)^2.
+    const double left = degC > 30.0 ? 3e-6 * 9.0 : 0.0;
+    for (const double variance : out.variance_rad2ps2) EXPECT_NEAR(variance, left * left, 1e-22) << i;
+    EXPECT_EQ((out.flags & kOutOfRange) != 0, degC > 30.0) << i;
+  }
+}
+
 }  // namespace
 }  // namespace ifog
