@@ -7,7 +7,7 @@ usage: tests/bench/kills/run.py [--kills 1000] [--jobs 4] [--seed 1] [BUILD_FOLD
 Each job is one daemon, started anew after each kill into the same folder, that reads a FIFO at some 500 frames a second.
 After each kill `ifog replay --to file:` gives what was recorded since the start, and that must be:
   - a prefix of what was sent to this run, bit for bit;
-  - no shorter than what had been sent 1.2 s before the kill (a flush is due after 0.9 s, and looked for every 50 ms);
+  - no shorter than what had been sent 1.2 s before the kill (it is written three quarters of a second after it came);
   - with no damage told, and no loss.
 Prints one line a job and the sum; exit 1 at the first recording that is not so.
 """
