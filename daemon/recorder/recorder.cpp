@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -17,7 +18,11 @@
 namespace ifog {
 namespace {
 
-constexpr auto kTurn = std::chrono::milliseconds(50);
+// Between two turns. With it what is killed misses less than a second (ArchiveLimits::flush_ns), and three
+// sensors' recorders come between their readers a dozen times a second.
+constexpr auto kRest = std::chrono::milliseconds(250);
+// What a device may bring, bytes a second, however small the tape is that it must go onto between two turns.
+constexpr std::int64_t kFastest = 5'000'000;
 // A trouble is over when nothing has been lost for so long: a disk that keeps up every other second is slow.
 constexpr std::int64_t kQuiet_ns = 10'000'000'000;
 
@@ -32,7 +37,11 @@ std::string losses_in_words(std::uint64_t deliveries, std::int64_t within_ns) {
 
 Recorder::Recorder(std::string name, std::size_t tape_bytes, std::unique_ptr<FlightFolder> folder,
                    const ArchiveLimits& limits, FlightHeader header)
-    : name_(std::move(name)), tape_(tape_bytes), archive_(std::move(folder), limits, std::move(header)) {
+    : name_(std::move(name)),
+      rest_(std::min<std::chrono::nanoseconds>(
+          kRest, std::chrono::milliseconds(static_cast<std::int64_t>(tape_bytes) * 1000 / kFastest))),
+      tape_(tape_bytes),
+      archive_(std::move(folder), limits, std::move(header)) {
   payload_.reserve(Tape::kLeastBytes);
 }
 
@@ -44,18 +53,27 @@ void Recorder::start() {
 
 void Recorder::run() {
   apply_to_this_thread({name_, 0, {}});
-  // Whoever started it: deflating and writing never stand in a reader's way.
-  const sched_param ordinary{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
-  while (!stopping_.load(std::memory_order_acquire)) {
+  // Whoever started it: deflating and writing never stand in a reader's way, of an ordinary one's neither.
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    lock.unlock();
+    // A file at its own pace waits for room on it.
+    const bool fills = tape_.is_half_full();
     turn(arrival_clock_ns(), realtime_ns());
-    std::this_thread::sleep_for(kTurn);
+    lock.lock();
+    stops_.wait_for(lock, fills ? rest_ / 5 : rest_, [this] { return stopping_; });
   }
 }
 
 void Recorder::stop() {
   if (!thread_.joinable()) return;
-  stopping_.store(true, std::memory_order_release);
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  stops_.notify_one();
   thread_.join();
   const std::int64_t now_ns = arrival_clock_ns(), wall_ns = realtime_ns();
   drain(now_ns, wall_ns, true);

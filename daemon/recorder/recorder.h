@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flight recorder of one sensor: a thread of ordinary priority that takes what the reader thread has put
-// on the tape to the disk. What the disk does, however slow or full, ends at the tape.
+// on the tape to the disk. What the disk does, however slow or full, ends at the tape. Nobody wakes it: it
+// looks a few times a second, and takes much at once.
 #pragma once
 
 #include <array>
-#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -59,6 +61,7 @@ class Recorder {
   void say(std::string message, bool good);
 
   std::string name_;
+  std::chrono::nanoseconds rest_;  // between two turns
   Tape tape_;
   FlightArchive archive_;
   std::vector<std::uint8_t> payload_;
@@ -70,13 +73,14 @@ class Recorder {
   std::uint64_t lost_before_ = 0, lost_seen_ = 0, gone_seen_ = 0;
   std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
 
-  std::mutex mutex_;                                    // never taken by a real-time thread
+  std::mutex mutex_;  // never taken by a real-time thread
+  std::condition_variable stops_;
   std::map<std::uint32_t, FlightHeader> next_headers_;  // by the number of their settings
   std::string message_;
   bool message_good_ = false;
 
   Counter file_bytes_, files_removed_, unwritten_, lost_deliveries_, lost_bytes_;
-  std::atomic<bool> stopping_{false};
+  bool stopping_ = false;  // with mutex_
   std::thread thread_;
 };
 

@@ -8,6 +8,8 @@
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +25,21 @@ namespace ifog {
 // Deliveries and bytes (payload) that came, and those of them that found no room. Any thread may read them.
 struct TapeCounters {
   Counter deliveries, bytes, lost_deliveries, lost_bytes;
+};
+
+// Every page of it is there from the start: where memory is not locked the reader thread would otherwise wait
+// for one at every hundredth delivery, until the tape has gone round once.
+template <typename T>
+struct TouchedMemory : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = TouchedMemory<U>;
+  };
+  T* allocate(std::size_t n) {
+    T* const out = std::allocator<T>::allocate(n);
+    std::memset(out, 0, n * sizeof(T));
+    return out;
+  }
 };
 
 class Tape {
@@ -49,6 +66,8 @@ class Tape {
   bool take(FlightEntryHead& head, std::vector<std::uint8_t>& payload);
   // Recorder thread: the entry that was taken last is the first of a delivery.
   [[nodiscard]] bool begins_delivery() const noexcept { return begins_delivery_; }
+  // Recorder thread.
+  [[nodiscard]] bool is_half_full() const noexcept { return queue_.read_available() > bytes_ / 2; }
   // Recorder thread: that it is at work; not when the disk takes nothing.
   void attend(bool at_work) noexcept;
 
@@ -61,7 +80,7 @@ class Tape {
   void push_frame(const ifog_can_frame& frame, std::uint8_t flags, std::int64_t read_ns) noexcept;
 
   std::size_t bytes_;
-  boost::lockfree::spsc_queue<std::uint8_t> queue_;
+  boost::lockfree::spsc_queue<std::uint8_t, boost::lockfree::allocator<TouchedMemory<std::uint8_t>>> queue_;
   // Reader thread.
   std::array<ChannelValue, kMaxChannels> recorded_{};  // of each channel, the last
   std::int64_t wall_shift_ns_ = 0;
@@ -70,8 +89,8 @@ class Tape {
   bool reopened_ = false;                                   // with a delivery that was lost
   std::uint32_t settings_due_ = 0;
   TapeCounters counters_;
-  std::atomic<std::int64_t> attended_ns_{0};  // monotonic; 0: not
-  // Recorder thread.
+  // Recorder thread: in lines of the cache of its own.
+  alignas(64) std::atomic<std::int64_t> attended_ns_{0};  // monotonic; 0: not
   std::optional<FlightEntryHead> begun_;
   bool begins_delivery_ = false;
 };

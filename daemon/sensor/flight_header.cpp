@@ -88,6 +88,13 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
 }
 
 SensorConfig recorded_sensor(const FlightHeader& header) {
+  if (header.configuration.empty()) {
+    SensorConfig named;
+    named.name = header.sensor;
+    named.driver = header.driver;
+    named.options = header.options;
+    return named;
+  }
   Config config;
   try {
     config = parse_recorded_config(header.configuration, header.configuration_file);

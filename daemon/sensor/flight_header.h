@@ -16,8 +16,8 @@ namespace ifog {
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
                            const std::string& noise);
 
-// The sensor as it was configured. Throws std::runtime_error with one line: what this version does not
-// understand of it.
+// The sensor as it was configured; where the header carries no configuration, by name, driver and options.
+// Throws std::runtime_error with one line: what this version does not understand of it.
 SensorConfig recorded_sensor(const FlightHeader& header);
 
 }  // namespace ifog

@@ -35,19 +35,36 @@ int opened(const std::string& path) {
 constexpr std::string_view kRecording = ".ifr", kOpenEnding = ".open";
 
 // A folder's flight recordings in their order: that of their names, the one being written last.
-std::deque<std::string> recordings_in(const std::string& folder) {
+std::deque<std::string> recordings_among(const std::string& folder, std::error_code& error) {
   std::deque<std::string> out;
-  std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     std::string_view name = entry.path().native();
     if (name.ends_with(kOpenEnding)) name.remove_suffix(kOpenEnding.size());
     if (name.ends_with(kRecording)) out.push_back(entry.path().string());
   }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+// Of a folder of several sensors' recordings, as a configuration names it, those of one; "" where it is none.
+std::string such_as(const std::string& folder) {
+  std::vector<std::string> of_a_sensor;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (std::error_code unread; entry.is_directory(unread) && !recordings_among(entry.path(), unread).empty())
+      of_a_sensor.push_back(entry.path().string());
+  const auto first = std::min_element(of_a_sensor.begin(), of_a_sensor.end());
+  return first == of_a_sensor.end() ? "" : ", as " + *first;
+}
+
+std::deque<std::string> recordings_in(const std::string& folder) {
+  std::error_code error;
+  std::deque<std::string> out = recordings_among(folder, error);
   if (error) throw std::runtime_error(folder + ": cannot read: " + error.message());
   if (out.empty())
     throw std::runtime_error(
-        folder + ": is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr)");
-  std::sort(out.begin(), out.end());
+        folder + ": is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr)" +
+        such_as(folder));
   return out;
 }
 

@@ -123,7 +123,7 @@ int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
 int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) {
   block_.clear();
   const BlockPlace place = type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_bytes_};
-  append_block(block_, type, place, content);
+  append_block(block_, type, place, content, deflater_);
   // Room is made before it is used: the limit is never exceeded.
   while (!kept_.empty() && kept_bytes_ + file_bytes_ + block_.size() > limits_.bytes)
     if (const int error = remove_oldest(); error != 0) return error;

@@ -28,9 +28,9 @@ struct ArchiveLimits {
   std::int64_t age_ns = 30LL * 86'400 * 1'000'000'000;
   std::uint64_t file_bytes = 16'000'000;
   std::int64_t file_ns = 3'600LL * 1'000'000'000;
-  // Nothing waits longer to be written: with a recorder's turn before and behind it, and the writing, what is
-  // killed misses a second at most.
-  std::int64_t flush_ns = 750'000'000;
+  // At the first turn so long after the one that found it waiting it is written: with turns a quarter of a
+  // second apart that is three quarters after it came, and what is killed misses a second at most.
+  std::int64_t flush_ns = 500'000'000;
 };
 
 // What came and will be in no recording.
@@ -111,6 +111,7 @@ class FlightArchive {
   std::uint64_t began_ = 0;  // number of the run's first file
 
   std::vector<std::uint8_t> waiting_, block_;
+  Deflater deflater_;
   std::uint64_t entries_waiting_ = 0;
   std::int64_t waiting_since_ns_ = -1;
   std::int64_t now_ns_ = 0, wall_ns_ = 0, asked_ns_ = 0;

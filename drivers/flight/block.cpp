@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <new>
 
 namespace ifog {
 namespace {
@@ -39,25 +40,34 @@ void put_at(std::uint8_t* to, T number) {
   std::memcpy(to, &number, sizeof number);
 }
 
-// The payload behind the head that `to` ends with; false: it does not get smaller.
-bool deflate_to(std::vector<std::uint8_t>& to, std::span<const std::uint8_t> content) {
+}  // namespace
+
+Deflater::Deflater() : stream_(std::make_unique<z_stream_s>()) {
+  if (deflateInit(stream_.get(), kLevel) != Z_OK) throw std::bad_alloc();
+}
+
+Deflater::~Deflater() { deflateEnd(stream_.get()); }
+
+bool Deflater::append(std::vector<std::uint8_t>& to, std::span<const std::uint8_t> content) {
   const std::size_t at = to.size();
-  uLongf length = compressBound(static_cast<uLong>(content.size()));
-  to.resize(at + length);
-  const bool good = compress2(to.data() + at, &length, content.data(), static_cast<uLong>(content.size()),
-                              kLevel) == Z_OK &&
-                    length < content.size();
-  to.resize(at + (good ? length : 0));
+  // One byte less than it has: what does not fit does not get smaller.
+  const std::size_t room = content.empty() ? 0 : content.size() - 1;
+  to.resize(at + room);
+  deflateReset(stream_.get());
+  stream_->next_in = const_cast<std::uint8_t*>(content.data());  // zlib writes nothing there
+  stream_->avail_in = static_cast<uInt>(content.size());
+  stream_->next_out = to.data() + at;
+  stream_->avail_out = static_cast<uInt>(room);
+  const bool good = deflate(stream_.get(), Z_FINISH) == Z_STREAM_END;
+  to.resize(at + (good ? room - stream_->avail_out : 0));
   return good;
 }
 
-}  // namespace
-
 void append_block(std::vector<std::uint8_t>& to, BlockType type, BlockPlace place,
-                  std::span<const std::uint8_t> content) {
+                  std::span<const std::uint8_t> content, Deflater& deflater) {
   const std::size_t at = to.size();
   to.resize(at + kBlockHead);
-  const bool packed = type == BlockType::data && deflate_to(to, content);
+  const bool packed = type == BlockType::data && deflater.append(to, content);
   if (!packed) to.insert(to.end(), content.begin(), content.end());
   const std::size_t stored = to.size() - at - kBlockHead;
   std::uint8_t* const head = to.data() + at;

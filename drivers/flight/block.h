@@ -6,8 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
+
+struct z_stream_s;
 
 namespace ifog {
 
@@ -32,9 +35,24 @@ struct BlockHead {
   [[nodiscard]] std::size_t size() const { return kBlockHead + stored + kBlockTail; }
 };
 
+// What deflating takes, 260 kB, kept from block to block: taken and given back for each, every processor that
+// runs a thread of the process would be told of the pages that go.
+class Deflater {
+ public:
+  Deflater();  // throws std::bad_alloc
+  ~Deflater();
+  Deflater(const Deflater&) = delete;
+  Deflater& operator=(const Deflater&) = delete;
+  // Appends content as zlib has it; false, and nothing is appended: it does not get smaller.
+  bool append(std::vector<std::uint8_t>& to, std::span<const std::uint8_t> content);
+
+ private:
+  std::unique_ptr<z_stream_s> stream_;
+};
+
 // Appends the block. What deflates to less is deflated, of data blocks. content: at most kMostBlockContent.
 void append_block(std::vector<std::uint8_t>& to, BlockType type, BlockPlace place,
-                  std::span<const std::uint8_t> content);
+                  std::span<const std::uint8_t> content, Deflater& deflater);
 
 // At least kBlockHead bytes. False: no block begins here.
 bool read_block_head(std::span<const std::uint8_t> bytes, BlockPlace place, BlockHead& out) noexcept;

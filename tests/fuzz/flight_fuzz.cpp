@@ -39,7 +39,8 @@ void read_all(std::span<const std::uint8_t> recording) {
 std::vector<std::uint8_t> header_block(std::span<const std::uint8_t> text) {
   std::vector<std::uint8_t> payload{1, 0, 0, 0, 0, 0, 0, 0, 1, 0}, out;
   payload.insert(payload.end(), text.begin(), text.end());
-  append_block(out, BlockType::header, {}, payload);
+  Deflater deflater;
+  append_block(out, BlockType::header, {}, payload, deflater);
   return out;
 }
 
@@ -59,9 +60,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_all(recording);
   } else if (data[0] == 'e') {
     std::vector<std::uint8_t> recording = header_block({});
-    append_block(recording, BlockType::data, {1, recording.size()}, rest);
+    Deflater deflater;
+    append_block(recording, BlockType::data, {1, recording.size()}, rest, deflater);
     append_block(recording, BlockType::end, {1, recording.size()},
-                 rest.first(std::min<std::size_t>(16, rest.size())));
+                 rest.first(std::min<std::size_t>(16, rest.size())), deflater);
     read_all(recording);
   } else {
     std::vector<std::uint8_t> recording = header_block({});

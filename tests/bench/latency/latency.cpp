@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a frame's last byte to the end of its LCM send, and processor time a sample: the daemon's pipeline
 // beside a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
-// ring, plugin or filter. With --record a third time, with the flight recorder on. Interleaved rounds in one
-// process. Run it by tests/bench/latency/run, in a network
-// namespace of its own.
+// ring, plugin or filter. With --record a third time, with the flight recorder on, and a fourth, without it
+// again: what this machine makes of two that are the same. Interleaved rounds in one process. Run it by
+// tests/bench/latency/run, in a network namespace of its own.
 #include <fcntl.h>
 #include <lcm/lcm.h>
 #include <sys/stat.h>
@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "daemon/pipeline/pipeline.h"
@@ -24,6 +25,7 @@
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file.h"
+#include "tests/bench/latency/thread_costs.h"
 
 namespace {
 
@@ -142,14 +144,22 @@ void bare_loop(const Plan& plan, const std::string& fifo, Stamps& stamps, std::s
   lcm_destroy(lcm);
 }
 
-enum class Kind { bare, daemon, recording };
+enum class Kind { bare, daemon, recording, again };
 
 struct Result {
   std::vector<double> latency_us;
-  double cpu_us = 0.0;  // a sample, writer left out
+  std::vector<double> p50_us, p99_us;  // of each round
+  double cpu_us = 0.0;                 // a sample, writer left out
   std::size_t lost = 0;
   std::uint64_t unrecorded = 0;  // deliveries
+  ThreadCosts readers, recorders;
 };
+
+double percentile(const std::vector<double>& sorted, double p) {
+  return sorted.empty() ? 0.0
+                        : sorted[std::min(sorted.size() - 1,
+                                          static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+}
 
 std::unique_ptr<Recorder> make_recorder(const Plan& plan, std::size_t sensor) {
   FlightHeader header;
@@ -211,12 +221,15 @@ void run_round(Kind kind, const Plan& plan, const std::vector<std::string>& path
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const std::int64_t from_ns = cpu_ns(CLOCK_PROCESS_CPUTIME_ID);
   std::int64_t writer_ns = 0;
+  const ThreadCosts readers = costs_of_threads("read"), recording = costs_of_threads("recorder");
   std::thread writer(write_frames, std::cref(plan), std::cref(fifos), std::cref(bytes), std::ref(stamps),
                      std::ref(writer_ns));
   writer.join();
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   result.cpu_us += 1e-3 * static_cast<double>(cpu_ns(CLOCK_PROCESS_CPUTIME_ID) - from_ns - writer_ns) /
                    static_cast<double>(count * paths.size()) / plan.rounds;
+  result.readers += costs_of_threads("read") - readers;
+  result.recorders += costs_of_threads("recorder") - recording;
   for (auto& pipeline : pipelines) pipeline->stop();
   for (auto& recorder : recorders) {
     recorder->stop();
@@ -225,20 +238,19 @@ void run_round(Kind kind, const Plan& plan, const std::vector<std::string>& path
   }
   for (std::thread& loop : loops) loop.join();
   for (const int fd : fifos) close(fd);
+  std::vector<double> latency_us;
   for (const auto& one : stamps)
     for (std::size_t n = count / 10; n < count; ++n) {  // the first tenth warms caches up
       const std::int64_t sent_ns = one->sent[n].load();
       if (sent_ns == 0)
         ++result.lost;
       else
-        result.latency_us.push_back(1e-3 * static_cast<double>(sent_ns - one->written[n].load()));
+        latency_us.push_back(1e-3 * static_cast<double>(sent_ns - one->written[n].load()));
     }
-}
-
-double percentile(const std::vector<double>& sorted, double p) {
-  return sorted.empty() ? 0.0
-                        : sorted[std::min(sorted.size() - 1,
-                                          static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+  std::sort(latency_us.begin(), latency_us.end());
+  result.p50_us.push_back(percentile(latency_us, 0.5));
+  result.p99_us.push_back(percentile(latency_us, 0.99));
+  result.latency_us.insert(result.latency_us.end(), latency_us.begin(), latency_us.end());
 }
 
 void print(const char* name, const std::vector<double>& l, double cpu_us, std::size_t lost) {
@@ -246,8 +258,43 @@ void print(const char* name, const std::vector<double>& l, double cpu_us, std::s
               percentile(l, 0.999), l.empty() ? 0.0 : l.back(), cpu_us, lost);
 }
 
-void report(const Plan& plan, std::size_t size, const Result& bare, const Result& daemon,
-            const Result& recording) {
+// Round by round, each beside the one of the same round: median and quartiles.
+void print_rounds(const char* what, const std::vector<double>& of, const std::vector<double>& by) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < of.size(); ++i) ratios.push_back(of[i] / by[i]);
+  std::sort(ratios.begin(), ratios.end());
+  std::printf("  %s %.3f (%.3f … %.3f)", what, percentile(ratios, 0.5), percentile(ratios, 0.25),
+              percentile(ratios, 0.75));
+}
+
+void print_costs(const char* name, const Plan& plan, const Result& result) {
+  const double seconds = plan.seconds * plan.rounds;
+  const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / seconds; };
+  std::printf(
+      "%-10s a second: readers' page faults %.1f, preempted %.1f; recorders slept %.1f, preempted %.1f\n",
+      name, each(result.readers.faults), each(result.readers.preempted), each(result.recorders.slept),
+      each(result.recorders.preempted));
+}
+
+void report_recording(const Plan& plan, const Result& daemon, const Result& recording, const Result& again) {
+  print("recording", recording.latency_us, recording.cpu_us, recording.lost);
+  std::printf("%-10s %8.2f %8.2f %8.2f %9s %12.2f   of the daemon without it; %llu deliveries not recorded\n",
+              "ratio", percentile(recording.latency_us, 0.5) / percentile(daemon.latency_us, 0.5),
+              percentile(recording.latency_us, 0.99) / percentile(daemon.latency_us, 0.99),
+              percentile(recording.latency_us, 0.999) / percentile(daemon.latency_us, 0.999), "",
+              recording.cpu_us / daemon.cpu_us, static_cast<unsigned long long>(recording.unrecorded));
+  std::printf("each round, of the daemon without it:");
+  print_rounds("p50", recording.p50_us, daemon.p50_us);
+  print_rounds("p99", recording.p99_us, daemon.p99_us);
+  std::printf("\nand of the daemon once more:         ");
+  print_rounds("p50", again.p50_us, daemon.p50_us);
+  print_rounds("p99", again.p99_us, daemon.p99_us);
+  std::printf("\n");
+  print_costs("daemon", plan, daemon);
+  print_costs("recording", plan, recording);
+}
+
+void report(const Plan& plan, std::size_t size, const Result& bare, const Result& daemon) {
   std::printf(
       "%d sensor(s) at %g Hz, %d interleaved rounds of %g s, processors %s, filter %s%s, messages of %zu "
       "bytes\n",
@@ -264,15 +311,6 @@ void report(const Plan& plan, std::size_t size, const Result& bare, const Result
               percentile(daemon.latency_us, 0.99) / percentile(bare.latency_us, 0.99),
               percentile(daemon.latency_us, 0.999) / percentile(bare.latency_us, 0.999), "",
               daemon.cpu_us / bare.cpu_us);
-  if (plan.record) {
-    print("recording", recording.latency_us, recording.cpu_us, recording.lost);
-    std::printf(
-        "%-10s %8.2f %8.2f %8.2f %9s %12.2f   of the daemon without it; %llu deliveries not recorded\n",
-        "ratio", percentile(recording.latency_us, 0.5) / percentile(daemon.latency_us, 0.5),
-        percentile(recording.latency_us, 0.99) / percentile(daemon.latency_us, 0.99),
-        percentile(recording.latency_us, 0.999) / percentile(daemon.latency_us, 0.999), "",
-        recording.cpu_us / daemon.cpu_us, static_cast<unsigned long long>(recording.unrecorded));
-  }
 }
 
 }  // namespace
@@ -304,18 +342,20 @@ int main(int argc, char** argv) {
   }
   const std::vector<std::uint8_t> bytes = frames(static_cast<std::size_t>(plan.rate_hz * plan.seconds));
   const std::size_t size = message_size();
-  Result bare, daemon, recording;
+  Result bare, daemon, recording, again;
   plan.folder = folder;
+  std::vector<std::pair<Kind, Result*>> ways{{Kind::daemon, &daemon}};
+  if (plan.record) ways.insert(ways.end(), {{Kind::recording, &recording}, {Kind::again, &again}});
   for (int round = 0; round < plan.rounds; ++round) {
     run_round(Kind::bare, plan, paths, bytes, size, bare);
-    // In turns the one and the other first: whatever the round before leaves behind is shared.
-    if (plan.record && round % 2 == 1) run_round(Kind::recording, plan, paths, bytes, size, recording);
-    run_round(Kind::daemon, plan, paths, bytes, size, daemon);
-    if (plan.record && round % 2 == 0) run_round(Kind::recording, plan, paths, bytes, size, recording);
+    for (const auto& [kind, result] : ways) run_round(kind, plan, paths, bytes, size, *result);
+    // In every order in turns: what the one before leaves behind is shared.
+    std::next_permutation(ways.begin(), ways.end());
   }
   for (Result* const result : {&bare, &daemon, &recording})
     std::sort(result->latency_us.begin(), result->latency_us.end());
-  report(plan, size, bare, daemon, recording);
+  report(plan, size, bare, daemon);
+  if (plan.record) report_recording(plan, daemon, recording, again);
   std::filesystem::remove_all(folder);
   return 0;
 }

@@ -46,8 +46,6 @@ def document(path):
     return out
 
 
-
-
 # Of a sensor that is switched on with the computer: long past where this runs, so the time constant is long, too.
 WARM_UP = """version = 1
 [[effect]]
@@ -200,6 +198,13 @@ file_s = 3
         self.await_(lambda: not glob.glob(self.path("record/nose/*.open")), "the recordings to be closed")
         sensor = self.sensor()
         self.check(sensor["books"]["balanced"] and sensor["state"] in ("running", "no data"), "status of the first day")
+        folder = self.path("record/nose")
+        there = sum(os.path.getsize(file) for file in glob.glob(folder + "/*.ifr"))
+        self.await_(lambda: self.sensor()["recorded"]["written_bytes"] >= there, "the status to have what is written")
+        sensor = self.sensor()
+        self.check(sensor["recordings"] == folder and sensor["recorded"]["written_bytes"] == there > 0 == sensor["recorded"]["lost"],
+                   "and what was recorded of it: all, and where")
+        self.check(f", 0 lost; {there / 1e6:.1f} MB written in {folder}" in self.run("status", "--config", self.config), "and so in words")
         self.check("waits for more" in self.run("night", "--config", self.config, "--least-rest", "1e6"), "too little rest is one line")
 
     def first_night(self):

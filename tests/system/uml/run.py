@@ -182,7 +182,7 @@ class Bus:
         with open(os.path.join(folder, "milliseconds")) as file:
             killed_s = int(file.read()) / 1000
         left, said = self.recorded(folder, "left")
-        # A flush is due after 0.9 s and looked for every 50 ms; the player took some time to begin.
+        # What came is written three quarters of a second later; the player took some time to begin.
         due = int((killed_s - 0.3 - 1.2) * HERTZ)
         if left != sent[:len(left)] or len(left) < due:
             raise Failure(f"{len(left)} frames recorded of those sent before the kill, {due} were due: {said}")

@@ -91,6 +91,17 @@ TEST(InputFile, SaysWhatIsInTheWay) {
   EXPECT_EQ(
       refusal("/proc/self"),
       "/proc/self: is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr)");
+  // The folder that a configuration names: each sensor has its own in it.
+  const std::string all = fs::temp_directory_path() / ("ifog-input-recordings-" + std::to_string(getpid()));
+  for (const std::string sensor : {"/empty", "/tail", "/nose"}) fs::create_directories(all + sensor);
+  for (const std::string name :
+       {"/nose/00000001-20231114T221320Z.ifr.open", "/tail/00000001-20231114T221320Z.ifr"})
+    std::ofstream(all + name).put('\n');
+  EXPECT_EQ(
+      refusal(all),
+      all + ": is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr), as " +
+          all + "/nose");
+  fs::remove_all(all);
 }
 
 }  // namespace

@@ -5,7 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include "drivers/flight/decode.h"
+#include "drivers/transport/clock.h"
 #include "tests/unit/daemon/delivered.h"
 #include "tests/unit/daemon/rig.h"
 #include "tests/unit/flight/recordings.h"
@@ -134,6 +139,35 @@ struct Recording {
     recorder.turn(3 * kSecond, kWall);
   }
 };
+
+// How often the thread of this process by that name went to sleep, by the kernel; 0: there is none.
+std::uint64_t sleeps_of(const std::string& name) {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string word;
+    if (std::getline(std::ifstream(task.path() / "comm"), word); word != name) continue;
+    for (std::ifstream status(task.path() / "status"); status >> word;)
+      if (std::uint64_t count = 0; word == "voluntary_ctxt_switches:" && status >> count) return count;
+  }
+  return 0;
+}
+
+// However many deliveries there are: every time it wakes it may stand in a reader's way.
+TEST(Recorder, LooksFourTimesASecondAndIsWokenByNobody) {
+  MemoryDisk disk;
+  Recorder recorder("rec:asleep", 4U << 20U, std::make_unique<MemoryFolder>(disk), {}, header());
+  recorder.start();
+  while (sleeps_of("rec:asleep") == 0) std::this_thread::sleep_for(1ms);
+  const std::int64_t began_ns = monotonic_ns();
+  const std::uint64_t before = sleeps_of("rec:asleep");
+  for (int n = 0; n < 1000; ++n) {
+    recorder.tape().put(delivery(kBytes, n), n, {}, 0);
+    std::this_thread::sleep_for(1ms);
+  }
+  const double seconds = 1e-9 * static_cast<double>(monotonic_ns() - began_ns);
+  EXPECT_LE(static_cast<double>(sleeps_of("rec:asleep") - before), 4.0 * seconds + 4.0);
+  recorder.stop();
+  EXPECT_EQ(recorder.lost_deliveries(), 0U);
+}
 
 // New settings begin a file with the very delivery that they take effect at, also where that is within a turn
 // of the recorder.

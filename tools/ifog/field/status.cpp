@@ -73,7 +73,9 @@ struct Kept {
   ModelName model;
   std::optional<Proposal> proposal;
   std::optional<ModelChange> last;  // of its model
-  std::string damaged;              // "" or one line
+  // Where it is recorded; "" for nowhere. Nothing: no configuration says.
+  std::optional<std::string> recordings;
+  std::string damaged;  // "" or one line
 };
 
 Kept kept_of(const Field& field, const std::string& name) {
@@ -87,8 +89,11 @@ Kept kept_of(const Field& field, const std::string& name) {
   };
   look([&] {
     if (field.config() == nullptr) return;
-    for (const SensorConfig& sensor : field.config()->sensors)
-      if (sensor.name == name) out.model = model_at(field.model_path(sensor)).name;
+    for (const SensorConfig& sensor : field.config()->sensors) {
+      if (sensor.name != name) continue;
+      out.recordings = sensor.record.folder.empty() ? "" : sensor.record.folder + "/" + name;
+      out.model = model_at(field.model_path(sensor)).name;
+    }
   });
   look([&] { out.proposal = read_proposal(field.state(), name); });
   look([&] {
@@ -115,6 +120,22 @@ void say_live(const status_t& status) {
   if (!status.notice.empty()) say("  noticed: %s\n", printable(status.notice, kLongestMessage).c_str());
 }
 
+void say_recorded(const status_t* live, const std::optional<std::string>& recordings) {
+  const bool counted = live != nullptr && live->record_deliveries > 0;
+  if (!counted && !recordings) return;
+  if (!counted && recordings->empty()) {
+    say("  recorded: no, a night has nothing to diagnose ([sensor.record] in the configuration)\n");
+    return;
+  }
+  const std::string where = recordings && !recordings->empty() ? " in " + printable(*recordings) : "";
+  if (live == nullptr)
+    say("  recorded:%s\n", where.c_str());
+  else
+    say("  recorded: %lld deliveries, %lld lost; %.1f MB written%s\n",
+        static_cast<long long>(live->record_deliveries), static_cast<long long>(live->record_lost),
+        static_cast<double>(live->record_file_bytes) * 1e-6, where.c_str());
+}
+
 // adopt: the command that would.
 void say_sensor(const std::string& name, const status_t* live, const Kept& kept, const std::string& adopt) {
   if (live != nullptr) {
@@ -125,6 +146,7 @@ void say_sensor(const std::string& name, const status_t* live, const Kept& kept,
   } else {
     say("%s  nothing heard\n", printable(name).c_str());
   }
+  say_recorded(live, kept.recordings);
   const std::string model = live != nullptr ? live->model : kept.model.identity;
   say("  model: %s%s%s%s\n", model.empty() ? "none" : printable(model).c_str(),
       live == nullptr ? " when the daemon starts" : "",
@@ -174,6 +196,13 @@ ordered_json as_json(const std::string& name, const status_t* live, const Kept& 
                      {"manoeuvres", live->manoeuvres},     {"divergences", live->divergences},
                      {"out_of_range", live->out_of_range}, {"noticed", live->notice}};
   }
+  if (live != nullptr)
+    out["recorded"] = {{"deliveries", live->record_deliveries},
+                       {"lost", live->record_lost},
+                       {"lost_bytes", live->record_lost_bytes},
+                       {"written_bytes", live->record_file_bytes},
+                       {"files_removed", live->record_removed}};
+  out["recordings"] = kept.recordings ? ordered_json(*kept.recordings) : ordered_json(nullptr);
   out["model_file"] = kept.model.identity;
   out["proposal"] = nullptr;
   if (kept.proposal)
