@@ -69,7 +69,7 @@ void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) 
   judged_own_.samples = judged_.samples;
   likelihood_.set_aside();
   begin_chapter();
-  search_.begin(judged_own_);
+  search_.begin(judged_);
   judging_ = Judging::kChapter;
 }
 
@@ -108,7 +108,7 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
 }
 
 void RestNoise::judge() noexcept {
-  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_own_)) return;
+  if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_)) return;
   if (judging_ == Judging::kChapter) {
     compare();
     return;
@@ -123,7 +123,7 @@ void RestNoise::compare() noexcept {
   judging_ = Judging::kNothing;
   if (known_.samples > 0.0) {
     const double behind =
-        fit_octaves(judged_own_.squares, judged_own_.counts, known_ratio_).misfit - search_.misfit();
+        fit_octaves(judged_.squares, judged_.counts, known_ratio_).misfit - search_.misfit();
     const bool differ = 0.5 * behind > kSurely;
     const bool quicker = differ && search_.ratio() > known_ratio_;
     if (differ) {

@@ -5,8 +5,8 @@
 // of samples the estimator calls rest. Chapter by chapter the sums are compared: a chapter whose random walk
 // is surely slower than the one known so far replaces all that was known, as a slow motion that passes for
 // rest only ever makes the walk look quicker; one that is surely quicker is such a motion, and left out.
-// Blocks that reach back into what was replaced or left out have that in them, so a chapter is judged by the
-// blocks that are all its own.
+// Blocks that reach back into what was replaced or left out have that in them: they begin anew, and a chapter
+// replaces by the blocks that are all its own.
 //
 // What an earlier run of the daemon has learned is a beginning: should the first chapters all be surely
 // quicker, it was of another sensor, or of this one when it was younger, and is forgotten.
