@@ -48,51 +48,71 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
   }
 }
 
+double middle_of(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 // What a leap is measured against.
 class Yardstick {
  public:
-  Yardstick(const SeriesView& rate, std::span<const Stretch> parts) : near_(rate.size() / kNear + 1) {
-    std::vector<double> some, block;
+  Yardstick(const SeriesView& rate, std::span<const Stretch> parts) : rate_(rate), parts_(parts) {
+    std::vector<double> some;
     const std::size_t stride = rate.size() / kEnough + 1;
-    std::size_t now = 0;
+    std::size_t next = 0;  // multiple of the stride
     double largest = 0.0, smallest_step = std::numeric_limits<double>::infinity();
-    const auto close = [&] {
-      if (block.size() >= kLeast) near_[now] = kOfMedian * median(block);
-      block.clear();
-    };
     for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
-      if (i % stride == 0) some.push_back(middle.away);
-      if (i / kNear != now) close();
-      now = i / kNear;
-      block.push_back(middle.away);
+      while (next < i) next += stride;
+      if (i == next) some.push_back(middle.away);
       largest = std::max(largest, std::abs(middle.value));
       if (middle.step > kRounding * std::abs(middle.value))
         smallest_step = std::min(smallest_step, middle.step);
     });
-    close();
     if (some.size() < 3) return;
-    all_ = kOfMedian * median(some);
+    all_ = kOfMedian * middle_of(some);
     // Of a coarse sensor most neighbours are the same, but for the rounding of their digits.
     least_ = std::max(kRounding * largest, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
+  // No more than at() says anywhere.
+  [[nodiscard]] double least() const { return std::max(all_, least_); }
   // At sample i: of the whole record; of those about it where they are louder, so that what grows louder is
-  // no fault; 0 where nothing moves.
-  [[nodiscard]] double at(std::size_t i) const {
-    const std::size_t block = i / kNear, first = block - std::min<std::size_t>(block, 1);
-    const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = near_.begin() + static_cast<std::ptrdiff_t>(std::min(block + 2, near_.size()));
-    const double near = *std::max_element(begin, end);
+  // no fault; 0 where nothing moves. i: none before that of the last call.
+  [[nodiscard]] double at(std::size_t i) {
+    const std::size_t block = i / kNear;
+    double near = 0.0;
+    for (std::size_t b = block - std::min<std::size_t>(block, 1); b < block + 2; ++b)
+      near = std::max(near, near_at(b));
     return std::max(near > kLouder * all_ ? near : all_, least_);
   }
 
  private:
-  static double median(std::vector<double>& values) {
-    const auto middle = values.begin() + std::ssize(values) / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+  struct Near {
+    std::size_t block = std::numeric_limits<std::size_t>::max();
+    double deviation = 0.0;
+  };
+
+  // The deviation of a block of samples, of those of them that have two neighbours. Worked out when something
+  // in it or beside it may leap, which is seldom.
+  double near_at(std::size_t block) {
+    Near& known = near_[block % near_.size()];
+    if (known.block == block) return known.deviation;
+    // Parts and the samples that begin and end them beside what is asked for.
+    const std::size_t begin = block * kNear, end = std::min(begin + kNear, rate_.size());
+    std::vector<Stretch> here;
+    const auto first = std::partition_point(parts_.begin(), parts_.end(),
+                                            [&](const Stretch& part) { return part.end <= begin; });
+    for (auto part = first; part != parts_.end() && part->begin < end; ++part)
+      here.push_back({std::max(part->begin + 1, begin) - 1, std::min(part->end, end + 1)});
+    std::vector<double> away;
+    for_each_middle(rate_, here, [&](std::size_t, const Middle& middle) { away.push_back(middle.away); });
+    known = {block, away.size() >= kLeast ? kOfMedian * middle_of(away) : 0.0};
+    return known.deviation;
   }
 
-  std::vector<double> near_;  // deviations, of so many samples each
+  const SeriesView& rate_;
+  std::span<const Stretch> parts_;
+  std::array<Near, 4> near_;  // by block, in turn
   double all_ = 0.0, least_ = 0.0;
 };
 
@@ -100,14 +120,15 @@ class Yardstick {
 
 Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts) {
   Glitches out;
-  const Yardstick yardstick(rate, parts);
+  Yardstick yardstick(rate, parts);
   std::size_t samples = 0;
   for (const Stretch& part : parts) samples += part.end - part.begin;
   // One in the shortest of records is no habit of its sensor yet.
   const std::size_t most = samples / kOneInAtMost + 1;
   std::optional<std::size_t> last;
+  const double far = kFar * yardstick.least();
   for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
-    if (!(middle.away > 0.0) || middle.apart >= 0.5 * middle.away) return;
+    if (!(middle.away > far) || middle.apart >= 0.5 * middle.away) return;
     const double deviation = yardstick.at(i);
     if (!(deviation > 0.0) || middle.away <= kFar * deviation) return;
     // Between two that leap the one in the middle stands apart as well.

@@ -90,14 +90,23 @@ class Pyramid {
     accepted_ = rate;
     if (first || step <= kRoundedAway * std::abs(rate)) return rate;
     steps_ = std::min(steps_ + 1.0, kUsual);
-    usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
+    usual_step_ +=
+        over(std::min(step, kSpike * std::max(usual_step_, over(step, steps_))) - usual_step_, steps_);
     return rate;
+  }
+
+  // value / count, of which there are kUsual nearly always: a power of two, by which the product is the
+  // quotient to the bit.
+  static double over(double value, double count) {
+    constexpr double kPart = 1.0 / kUsual;
+    return count == kUsual ? value * kPart : value / count;
   }
 
   struct Level {
     std::array<double, 4> last{};
     std::size_t count = 0;
-    double usual = 0.0, met = 0.0;  // mean magnitude of its coefficients beyond rounding, over so many
+    std::size_t cell = 0, cell_end = 0;  // of the last coefficient; where the next one begins, 0 at first
+    double usual = 0.0, met = 0.0;       // mean magnitude of its coefficients beyond rounding, over so many
   };
   // (1 - sqrt 3, sqrt 3 - 3, 3 + sqrt 3, -1 - sqrt 3) / (4 sqrt 2).
   static constexpr std::array<double, 4> kHigh{-0.12940952255126037, -0.22414386804201339,
@@ -106,17 +115,21 @@ class Pyramid {
   void add(std::size_t octave, std::size_t at, double coefficient, double rounding) {
     if (octave >= octaves_.size()) octaves_.resize(octave + 1);
     // It reaches back over three of its octave's lengths: half of that.
-    const std::size_t back = std::min(at, std::size_t{3} << octave);
-    const std::size_t cell = std::min(kCells - 1, (at - back) * kCells / samples_);
+    const std::size_t place = at - std::min(at, std::size_t{3} << octave);
+    Level& level = levels_[octave];
+    if (place >= level.cell_end) {
+      level.cell = std::min(kCells - 1, place * kCells / samples_);
+      level.cell_end = (level.cell + 1) * samples_ / kCells + ((level.cell + 1) * samples_ % kCells != 0);
+    }
+    const std::size_t cell = level.cell;
     octaves_[octave].counts[cell] += 1.0;
     if (std::abs(coefficient) <= rounding) return;
     octaves_[octave].beyond_rounding += 1.0;
     // An outlier counts for no more than what is rare; what stays loud soon is the usual.
-    Level& level = levels_[octave];
     level.met = std::min(level.met + 1.0, kUsual);
     const double magnitude = level.met < kFewest ? std::abs(coefficient)
                                                  : std::min(std::abs(coefficient), kMostTimes * level.usual);
-    level.usual += (magnitude - level.usual) / level.met;
+    level.usual += over(magnitude - level.usual, level.met);
     octaves_[octave].magnitudes[cell] += magnitude;
   }
 

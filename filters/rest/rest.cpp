@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
@@ -23,9 +24,10 @@ constexpr double kAround_s = 10.0;   // on either side, of the running median
 constexpr double kTurned = 20.0;     // times the scatter of neighbouring quiet windows
 constexpr double kLeastTurn = 1e-3;  // rad/s
 constexpr double kShaken = 4.0;
-constexpr double kQuieter = 0.3;          // share of the windows taken to be quiet
-constexpr std::size_t kShortestRest = 8;  // windows between two that move
-constexpr double kEnoughOfRecord = 0.5;   // of the record
+constexpr double kQuieter = 0.3;                              // share of the windows taken to be quiet
+constexpr std::size_t kShortestRest = 8;                      // windows between two that move
+constexpr double kEnoughOfRecord = 0.5;                       // of the record
+constexpr std::size_t kWorthThreads = std::size_t{1} << 20U;  // samples
 
 enum class State : unsigned char { kResting, kShaking, kTurning };
 
@@ -41,27 +43,47 @@ struct Window {
 };
 
 // Of four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
-// second smallest.
+// second smallest. All four at once, as each sample waits for the one before it in its quarter.
 Window window_of(std::span<const double> rate) {
   constexpr std::size_t kQuarters = 4;
-  std::array<double, kQuarters> scatter{}, level{};
+  std::array<double, kQuarters> n{}, level{}, scatter{};
+  std::array<std::span<const double>, kQuarters> quarter;
   for (std::size_t q = 0; q < kQuarters; ++q) {
     const std::size_t begin = q * rate.size() / kQuarters, end = (q + 1) * rate.size() / kQuarters;
-    double n = 0.0, mean = 0.0, squares = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!std::isfinite(rate[i])) continue;
-      n += 1.0;
-      const double away = rate[i] - mean;
-      mean += away / n;
-      squares += away * (rate[i] - mean);
-    }
-    if (n < 2.0) return {std::nan(""), std::nan("")};
-    scatter[q] = std::sqrt(squares / (n - 1.0));
-    level[q] = mean;
+    quarter[q] = rate.subspan(begin, end - begin);
+  }
+  const auto take = [&](std::size_t q, double value) {
+    if (!std::isfinite(value)) return;
+    n[q] += 1.0;
+    const double away = value - level[q];
+    level[q] += away / n[q];
+    scatter[q] += away * (value - level[q]);
+  };
+  const std::size_t shortest = rate.size() / kQuarters;
+  for (std::size_t i = 0; i < shortest; ++i)
+    for (std::size_t q = 0; q < kQuarters; ++q) take(q, quarter[q][i]);
+  for (std::size_t q = 0; q < kQuarters; ++q) {
+    for (const double value : quarter[q].subspan(shortest)) take(q, value);
+    if (n[q] < 2.0) return {std::nan(""), std::nan("")};
+    scatter[q] = std::sqrt(scatter[q] / (n[q] - 1.0));
   }
   std::sort(level.begin(), level.end());
   std::sort(scatter.begin(), scatter.end());
   return {0.5 * (level[1] + level[2]), scatter[1]};
+}
+
+// Of all its windows, one behind the other.
+std::vector<Window> windows_of(const SeriesView& rate, std::size_t window, std::size_t count) {
+  std::vector<Window> out;
+  out.reserve(count);
+  const std::size_t together = std::max<std::size_t>(1, kSeriesPiece / window);
+  std::vector<double> room;
+  for (std::size_t first = 0; first < count; first += together) {
+    const std::size_t some = std::min(together, count - first);
+    const std::span<const double> rates = rate.piece(first * window, some * window, room);
+    for (std::size_t i = 0; i < some; ++i) out.push_back(window_of(rates.subspan(i * window, window)));
+  }
+  return out;
 }
 
 // Median of the means around each window.
@@ -247,14 +269,12 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
     if (period_s > kSlowest_s) rest.slow_turns = dwells_of(axes);
     return rest;
   }
-  std::vector<std::vector<Window>> windows;
-  std::vector<double> room, leap(count);
-  for (const SeriesView& rate : axes) {
-    std::vector<Window>& of_axis = windows.emplace_back();
-    for (std::size_t i = 0; i < count; ++i)
-      of_axis.push_back(window_of(rate.piece(i * window, window, room)));
+  std::vector<std::vector<Window>> windows(axes.size());
+  share_out(axes.size(), samples < kWorthThreads ? 1 : 0,
+            [&](std::size_t a) { windows[a] = windows_of(axes[a], window, count); });
+  std::vector<double> leap(count);
+  for (const std::vector<Window>& of_axis : windows)
     mark_axis(of_axis, static_cast<double>(window) * period_s, state, leap);
-  }
   widen(state);
   for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
   Rest rest = as_samples(state, window, samples);
