@@ -38,9 +38,9 @@ struct ReplayTimeline {
 
 struct ReplaySource {
   std::string path;
-  std::string format;         // "auto", "candump", "bytes" or "csv"
-  std::size_t block_bytes{};  // raw bytes: sent together, one frame of the device
-  double rate_hz{};           // raw bytes: blocks a second
+  std::string format = "auto";  // or "candump", "bytes", "csv"
+  std::size_t block_bytes{};    // raw bytes: sent together, one frame of the device
+  double rate_hz{};             // raw bytes: blocks a second
   // csv: whose frames the rows become; raw bytes: whose frames and times they are, instead of the two above;
   // the channel is the interface: of a candump log that which is sent, of others that which a log is to name.
   CaptureInput input;
