@@ -48,7 +48,7 @@ TEST(AtRest, IsSaidOfASensorThatRestsAndOfNoneThatMoves) {
     const FilterSettings settings = told(ratio);
     EXPECT_GT(share_at_rest(settings, 200, 100'000, [](int) { return 7.0; }), 0.999) << ratio;
     const auto swing = [](int i) {
-      return i < 20'000 ? 0.0 : 4.0 * std::sin(2.0 * std::numbers::pi * 0.1 * kPeriod_s * (i - 20'000));
+      return i < 20'000 ? 0.0 : 30.0 * std::sin(2.0 * std::numbers::pi * 0.1 * kPeriod_s * (i - 20'000));
     };
     EXPECT_LT(share_at_rest(settings, 20'000, 100'000, swing), 0.02) << ratio;
     // A turn as quick as a hand's, from its second sample on and for a while after its end.
