@@ -22,7 +22,8 @@ class ClockSteps {
 
   // nominal_s > 0.
   explicit ClockSteps(double nominal_s) noexcept : nominal_s_(nominal_s) {}
-  void restart() noexcept { *this = ClockSteps(nominal_s_); }
+  // The device was switched off and on. How its clock ticks is as it was.
+  void restart() noexcept { jumped(); }
 
   // passed_ns >= 0. counted: samples by the device's counter; 0: it has none.
   Step take(std::int64_t passed_ns, std::uint64_t counted) noexcept {
@@ -30,14 +31,13 @@ class ClockSteps {
     if (passed_ns == 0) stood_ = true;
     // The first time it moves after it stood says nothing: where between two ticks it began nobody knows.
     const bool first_tick = stood_ && tick_ns_ == 0;
-    if (passed_ns > 0) {
-      tick_ns_ = std::gcd(tick_ns_, passed_ns);
-      steps_ = std::min(steps_ + 1, kProof);
-    }
+    if (passed_ns > 0) ticked(passed_ns);
+    // What a tick leaves open is no sample that is missing: all of it where several have one stamp.
+    const double rounded_s = (stood_ ? 1.0 : kRounded) * static_cast<double>(tick_ns_) * 1e-9;
     if (!coarse()) {
       time_s_ = counted_s_ = 0.0;
       samples_ = 0.0;
-      return {counted > 0 ? counted : at_least_one(passed_s / nominal_s_), passed_s};
+      return {counted > 0 ? counted : at_least_one((passed_s - rounded_s) / nominal_s_), passed_s};
     }
     const double period_s = this->period_s();
     const double ahead_s = time_s_ - counted_s_ + passed_s;
@@ -45,7 +45,7 @@ class ClockSteps {
     if (counted > 0)
       step.samples = counted;
     else if (!first_tick)
-      step.samples = at_least_one(ahead_s / period_s);
+      step.samples = at_least_one((ahead_s - rounded_s) / period_s);
     // Whatever the nominal period is: what is told stays by the clock's own sum.
     const double slack_s = tick_ns_ > 0 ? kSlack * static_cast<double>(tick_ns_) * 1e-9 : HUGE_VAL;
     step.dt_s = std::clamp(static_cast<double>(step.samples) * period_s, ahead_s - slack_s,
@@ -57,6 +57,8 @@ class ClockSteps {
   }
   // It was set: the step before this one is none of its own.
   void jumped() noexcept { time_s_ = counted_s_ = samples_ = 0.0; }
+  // Several samples have one stamp, as how it went on behind them has shown.
+  void stands() noexcept { stood_ = true; }
   // It has been seen to move, or to stand.
   [[nodiscard]] bool known() const noexcept { return stood_ || steps_ > 0; }
   // To what a single step says how much has passed.
@@ -83,23 +85,46 @@ class ClockSteps {
   }
 
  private:
-  static constexpr double kFine = 4.0;    // ticks a period
-  static constexpr int kProof = 32;       // steps without a finer one
-  static constexpr double kBeat = 1e-7;   // of a tick
-  static constexpr double kSlack = 2.0;   // ticks that the sum of what is told may be beside the clock's
-  static constexpr double kLeast = 0.05;  // of the nominal period: a sample takes some time
+  static constexpr double kFine = 4.0;       // ticks a period
+  static constexpr int kProof = 32;          // steps without a finer one
+  static constexpr double kBeat = 1e-7;      // of a tick
+  static constexpr double kSlack = 2.0;      // ticks that the sum of what is told may be beside the clock's
+  static constexpr double kLeast = 0.05;     // of the nominal period: a sample takes some time
+  static constexpr double kNear = 4.0;       // periods or ticks: a longer step may be behind a silence
+  static constexpr double kRounded = 0.25;   // of a tick
+  static constexpr double kUnknown_s = 1.0;  // that a tick may have
+  static constexpr int kOdd = 3;             // steps that fit no tick, and it is a finer one
 
-  // The nominal one, as far as the sum of the steps allows, which is known to a tick.
+  // One step that fits none is a clock that was set, or begun anew unseen: it says nothing of the ticks.
+  void ticked(std::int64_t passed_ns) noexcept {
+    const double tick_s = tick_ns_ > 0 ? static_cast<double>(tick_ns_) * 1e-9 : kUnknown_s;
+    if (static_cast<double>(passed_ns) * 1e-9 > kNear * std::max(nominal_s_, tick_s)) return;
+    steps_ = std::min(steps_ + 1, kProof);
+    if (tick_ns_ == 0) {
+      tick_ns_ = passed_ns;
+    } else if (passed_ns % tick_ns_ != 0) {
+      odd_ns_ = std::gcd(odd_ns_, passed_ns);
+      if (++odd_ < kOdd) return;
+      tick_ns_ = std::gcd(tick_ns_, odd_ns_);
+      odd_ns_ = 0;
+      odd_ = steps_ = 0;
+    }
+  }
+
+  // The nominal one, as far as the sum of the steps allows, which is known to a tick. Else what they took,
+  // and so much more or less that what is told comes to the middle of what the ticks leave open.
   [[nodiscard]] double period_s() const noexcept {
+    constexpr double kSamples = 256.0;  // in which it comes there
     if (samples_ < 1.0 || tick_ns_ == 0) return nominal_s_;
     const double tick_s = static_cast<double>(tick_ns_) * 1e-9;
-    return std::max(0.5 * nominal_s_,
-                    std::clamp(nominal_s_, (time_s_ - tick_s) / samples_, (time_s_ + tick_s) / samples_));
+    if (std::abs(samples_ * nominal_s_ - time_s_) <= tick_s) return nominal_s_;
+    return std::max(0.5 * nominal_s_, time_s_ / samples_ + (time_s_ - counted_s_) / kSamples);
   }
 
   double nominal_s_;
-  std::int64_t tick_ns_ = 0;  // that all steps are multiples of
-  int steps_ = 0;
+  std::int64_t tick_ns_ = 0;  // that all steps but a few are multiples of
+  std::int64_t odd_ns_ = 0;   // that those few are multiples of
+  int odd_ = 0, steps_ = 0;
   bool stood_ = false;
   double time_s_ = 0.0, counted_s_ = 0.0, samples_ = 0.0;  // since the clock is known to be coarse
 };

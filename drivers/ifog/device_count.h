@@ -98,17 +98,19 @@ class DeviceCount {
   static constexpr std::uint64_t kMostBack = RecentFrames::kKept;
   static constexpr std::uint64_t kBackUntimed = 8;  // so far frames change places, where no time says more
   static constexpr double kLate_s = 1.0;
+  static constexpr double kMoved_s = 0.5 * kLate_s;  // what has come to stand, and was more
   static constexpr double kLongSilence_s = 2.0;
   static constexpr double kDrains = 0.02;  // of the time: what was held up drains by more
   static constexpr double kPaces = 200.0;  // so many times what times scatter by tell that
   static constexpr int kPaceFrames = 8;
   static constexpr double kNoChance = 5.0;  // periods: half of the rounds that are lost to one of the pauses
-  static constexpr double kAgain_s = 0.25;  // a silence of more is another one
-  static constexpr double kNoPause_s = 0.25;  // no device begins anew within it
+  static constexpr double kAgain_s = 0.25;  // a silence of more is another one; no device begins anew in less
   static constexpr double kRateDoubt = 0.05;  // of the rate that the configuration says
   static constexpr double kScatters = 4.0;    // times what times scatter by is not by chance
   static constexpr double kClockSamples = 2.0, kClockDoubt = 0.01;  // clock and counter agree within this
-  static constexpr double kLonger = 8.0;  // than a sample took: a rate that was stated wrong, a late one
+  static constexpr double kBeside = 1.1;                            // likewise, behind a silence
+  static constexpr double kMostMore = 1.5;  // samples than its clock has time for, behind a silence
+  static constexpr double kLonger = 8.0;    // than a sample took: a rate that was stated wrong, a late one
 
   struct Timed : Frame {
     double elapsed_s = -1.0;  // since the frame before, by arrival; negative: not known
@@ -117,7 +119,6 @@ class DeviceCount {
   [[nodiscard]] std::uint64_t difference(std::uint32_t sequence) const noexcept {
     return (sequence + modulus_ - last_.sequence % modulus_) % modulus_;
   }
-
   // What arrival times scatter by: all but one in thirty of them by less. One that is far off makes it hardly
   // more.
   void scatter(double apart_s) noexcept {
@@ -137,7 +138,6 @@ class DeviceCount {
     doubt_ = {};
     last_ = frame;
   }
-
   // Came again, or after one that follows it: the count goes back by little, and on from there to here there
   // was no time. By little of a round, too: several frames of one read come with no time between them. The
   // very next of the count is never one, whatever its values are.
@@ -155,13 +155,14 @@ class DeviceCount {
     const Had had = recent_.at_place(place_ - back, frame.digest);
     if (had == Had::same && recent_.tells_values_apart()) return true;
     const double back_s = static_cast<double>(back) * nominal_s_;
-    if (had != Had::other && passed_s < 0.0 && std::abs(passed_s + back_s) <= apart_s(back_s)) return true;
+    const bool clock_fits = std::abs(passed_s + back_s) <= apart_s(back_s) + frame.grain_s;
+    if (had != Had::other && passed_s < 0.0 && clock_fits) return true;
+    if (passed_s < 0.0 && !clock_fits) return false;  // what comes late has the stamp of its place
     if (had == Had::other || back >= std::min(kMostBack, modulus_ / 4)) return false;
     if (clocked(frame) && passed_s > 0.0 && timed && !ifog::restarted(passed_s, elapsed_s)) return false;
     if (!timed) return had == Had::same || back <= kBackUntimed;
     return elapsed_s < std::max(0.5, had == Had::same ? 1.0 - prompt_s() / forward_s : 0.0) * forward_s;
   }
-
   // What clock and counter of one device are apart by, at most, over such a time.
   [[nodiscard]] double apart_s(double time_s) const noexcept {
     return kClockSamples * nominal_s_ + kClockDoubt * time_s;
@@ -182,7 +183,7 @@ class DeviceCount {
     const double counted_s = static_cast<double>(difference) * nominal_s_;
     const bool possible =
         passed_s > 0.0 && !ifog::restarted(passed_s, elapsed_s < 0.0 ? counted_s : elapsed_s);
-    const bool goes_on = difference == 1 && frame.quiet_s < kNoPause_s + 2.0 * nominal_s_;
+    const bool goes_on = difference == 1 && frame.quiet_s < kAgain_s + 2.0 * nominal_s_;
     if (!possible && goes_on) return false;  // the clock alone has jumped
     if (passed_s < 0.0 || (!possible && elapsed_s >= 0.0)) {
       step.restarted = true;
@@ -197,7 +198,8 @@ class DeviceCount {
     const double claimed = static_cast<double>(difference) + rounds * static_cast<double>(modulus_);
     if (!agree(claimed, passed_s, elapsed_s, frame.grain_s)) return false;
     const double took_s = took_by_clock_s_ > 0.0 ? took_by_clock_s_ : nominal_s_;
-    if (ifog::restarted(claimed * std::min(took_s, nominal_s_), passed_s)) {
+    const double least_s = claimed * std::min(took_s, nominal_s_);
+    if (ifog::restarted(least_s, passed_s) || (silent(frame, 0.0) && least_s > kMostMore * passed_s)) {
       step.restarted = true;  // the counter alone
       step.samples = at_least_one(passed_s / nominal_s_);
       step.dt_s = passed_s;
@@ -205,7 +207,7 @@ class DeviceCount {
     }
     step.by_clock = true;
     step.samples = static_cast<std::uint64_t>(claimed);
-    if (stood_still(claimed, passed_s - frame.grain_s))
+    if (stood_still(frame, claimed, passed_s - frame.grain_s))
       step.samples = at_least_one(passed_s / took_by_clock_s_);
     step.dt_s = passed_s;
     // While a coarse clock stood the count has gone on.
@@ -214,11 +216,13 @@ class DeviceCount {
     if (elapsed_s >= 0.0) lateness(frame, elapsed_s - (tick ? took_by_count_s : passed_s), step);
     return true;
   }
-  // By its clock much longer than its count says: it measured nothing meanwhile. Where the one before took as
-  // long it measures at another rate.
-  [[nodiscard]] bool stood_still(double claimed, double passed_s) const noexcept {
+  // By its clock much longer than its count says: it measured nothing meanwhile, or began to count anew.
+  // Where the one before took as long, or there was no silence, it measures at another rate.
+  [[nodiscard]] bool stood_still(const Timed& frame, double claimed, double passed_s) const noexcept {
     const double each_s = passed_s / claimed;
-    return took_by_clock_s_ > 0.0 && each_s > kLonger * took_by_clock_s_ && each_s > 2.0 * each_by_clock_s_;
+    if (took_by_clock_s_ == 0.0) return false;
+    if (each_s > kLonger * took_by_clock_s_ && each_s > 2.0 * each_by_clock_s_) return true;
+    return silent(frame, claimed * took_by_clock_s_) && each_s > kBeside * took_by_clock_s_;
   }
   [[nodiscard]] double rounds_by_clock(double passed_s, double counted, double grain_s) const noexcept {
     const double period_s = period_.by_clock_s(grain_s), spare = passed_s / period_s - counted;
@@ -244,25 +248,32 @@ class DeviceCount {
     return std::abs(passed_s - elapsed_s) <= kPrompt_s + kRateDoubt * elapsed_s &&
            (usual || elapsed_s >= 0.5 * passed_s);
   }
-
+  // Nothing came for longer than that, by far.
+  [[nodiscard]] static bool silent(const Frame& frame, double usual_s) noexcept {
+    return frame.quiet_s > kAgain_s + usual_s;
+  }
   // Behind another silence: how that drains is still to be seen.
   [[nodiscard]] bool held_again(const Frame& frame) const noexcept {
-    return frame.quiet_s > kAgain_s + static_cast<double>(difference(frame.sequence)) * nominal_s_;
+    return silent(frame, static_cast<double>(difference(frame.sequence)) * nominal_s_);
   }
   // How far behind its clock a frame is that is held up.
   void lateness(const Timed& frame, double late_s, Step& step) const noexcept {
     if (late_.stands(late_s, frame.elapsed_s, held_again(frame)))
-      step.clock_moved = late_s > kLate_s;
+      step.clock_moved = late_s > kMoved_s;
     else if (late_.now_s() > 0.0 ? !late_.over(late_s, frame.elapsed_s) : late_s > kLate_s)
       step.late_s = late_s;
   }
+  // Behind what nobody saw coming: a device that was opened again, a backlog of which no times are known.
+  [[nodiscard]] bool unseen(const Frame& frame) const noexcept {
+    return frame.reopened || (last_.arrival_ns <= 0 && arrivals_.known());
+  }
   // Rounds may have been lost where this one is.
-  [[nodiscard]] static bool doubtful(const Frame& frame, std::uint64_t difference) noexcept {
-    return difference != 1 || frame.quiet_s > kLongSilence_s;
+  [[nodiscard]] bool doubtful(const Frame& frame, std::uint64_t difference) const noexcept {
+    return difference != 1 || frame.quiet_s > kLongSilence_s || unseen(frame);
   }
   // So long frames have to come at the pace at which they were taken.
   [[nodiscard]] double paced_s() const noexcept {
-    return std::clamp(kPaces * scatter_s_, 0.1, Lateness::kStands_s);
+    return std::clamp(kPaces * scatter_s_, 0.09, Lateness::kStands_s);
   }
   [[nodiscard]] bool at_pace(const Timed& frame, double late_s) const noexcept {
     return doubt_.frames >= kPaceFrames && std::abs(late_s - doubt_.late_s) <= kDrains * paced_s() &&
@@ -276,7 +287,8 @@ class DeviceCount {
     }
     const double took_s = static_cast<double>(difference) * nominal_s_;
     if (doubtful(frame, difference)) doubt_.rounds = true;
-    if (difference != 1) doubt_.counts = true;
+    doubt_.since_s += std::max(0.0, frame.quiet_s);
+    if (difference != 1 || unseen(frame)) doubt_.counts = true;
     if (frame.quiet_s > took_s + kPrompt_s) doubt_.quiet_s += frame.quiet_s - took_s;
     doubt_.gap = doubt_.gap || step.gap;
     const bool drains = std::abs(step.late_s - doubt_.late_s) > kDrains * paced_s();
@@ -284,13 +296,13 @@ class DeviceCount {
     doubt_.frames = drains ? 0 : doubt_.frames + 1;
     doubt_.paced_s = drains ? 0.0 : doubt_.paced_s + std::max(0.0, frame.quiet_s);
   }
-
-  // Whole rounds of the counter in a time that it does not account for.
+  // Whole rounds of the counter in a time that it does not account for. None that the rate may be wrong by.
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
-    return whole_rounds(spare_s, static_cast<double>(modulus_) * period_.by_arrival_s(),
-                        kPrompt_s + period_.doubt() * elapsed_s, std::max(kAdapter_s, scatter_s_));
+    const double slack_s = kPrompt_s + period_.doubt() * elapsed_s;
+    if (spare_s <= slack_s) return 0.0;
+    return whole_rounds(spare_s, static_cast<double>(modulus_) * period_.by_arrival_s(), slack_s,
+                        std::max(kAdapter_s, scatter_s_));
   }
-
   // Behind a silence the very next of the count: so ends every pause of the device, and one in a round's
   // number of losses. These are told only where whole rounds fit the time as chance seldom would.
   [[nodiscard]] bool paused(bool goes_on, double spare_s, double elapsed_s) const noexcept {
@@ -304,21 +316,23 @@ class DeviceCount {
     const double period = period_.by_arrival_s();
     const bool known = frame.elapsed_s >= 0.0;
     const double elapsed_s = frame.elapsed_s + late_.now_s();
-    step.samples = difference;
-    step.late_s = known ? std::max(0.0, elapsed_s - static_cast<double>(difference) * period) : late_.now_s();
-    // So do the times of arrival say it at the end of a backlog, whose own were not known.
-    const bool after_backlog = last_.arrival_ns <= 0 && frame.elapsed_s > kPrompt_s;
     // The same count again is a round on, or nothing.
-    const bool at_once = frame.reopened || on_bus_ || after_backlog || difference == 0 ||
-                         (late_.now_s() == 0.0 && doubtful(frame, difference) && step.late_s <= kLate_s);
+    const bool again = difference == 0 && (frame.digest == last_.digest || frame.quiet_s <= kLate_s);
+    step.samples = difference > 0 || again ? difference : modulus_;
+    const double counted_s = static_cast<double>(step.samples) * period;
+    step.late_s = known ? std::max(0.0, elapsed_s - counted_s) : late_.now_s();
+    const bool at_once = on_bus_ || again ||
+                         (late_.now_s() == 0.0 && doubtful(frame, difference) &&
+                          (frame.reopened || !unseen(frame)) && step.late_s <= kLate_s);
     const bool came_to_stand = late_.stands(step.late_s, frame.elapsed_s, held_again(frame));
     const bool told = doubt_.rounds && (came_to_stand || at_pace(frame, step.late_s));
     if (known && elapsed_s > 0.0 && (at_once || told)) {
       // While a frame came again and again no round was lost: the device stood still.
       const double quiet_s = at_once ? frame.quiet_s : doubt_.quiet_s;
       const double spare_s = std::min(step.late_s, quiet_s);
-      const bool goes_on = at_once ? difference == 1 && !frame.reopened && !after_backlog : !doubt_.counts;
-      const double rounds = paused(goes_on, spare_s, elapsed_s) ? 0.0 : rounds_in(spare_s, elapsed_s);
+      const bool goes_on = at_once ? difference == 1 && !unseen(frame) : !doubt_.counts;
+      const double over_s = at_once ? elapsed_s : std::max(elapsed_s, doubt_.since_s);
+      const double rounds = paused(goes_on, spare_s, over_s) ? 0.0 : rounds_in(spare_s, over_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
       step.same_gap = !at_once && rounds > 0.0 && doubt_.gap;
       if (rounds > 0.0) step.late_s = 0.0;
@@ -326,7 +340,7 @@ class DeviceCount {
     if (came_to_stand) {
       // What does not drain was no delivery: a pause, or rounds that were lost. Which of them nothing says,
       // but the labels follow.
-      step.clock_moved = step.late_s > kLate_s || rounds_in(step.late_s, elapsed_s) >= 1.0;
+      step.clock_moved = step.late_s > kMoved_s || rounds_in(step.late_s, elapsed_s) >= 1.0;
       step.late_s = 0.0;
     } else if (late_.now_s() > 0.0 ? late_.over(step.late_s, frame.elapsed_s)
                                    : step.late_s < std::max(kLate_s, 3.0 * period) &&
@@ -367,6 +381,7 @@ class DeviceCount {
     // gap: one has been told; counts: by the count, too, some are missing
     bool rounds = false, gap = false, counts = false;
     double quiet_s = 0.0;                // in all, beside what was counted
+    double since_s = 0.0;                // they began
     double late_s = 0.0, paced_s = 0.0;  // since it last became less or more; so long
     int frames = 0;
   };

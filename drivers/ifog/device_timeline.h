@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/clock_steps.h"
@@ -102,7 +103,10 @@ class DeviceTimeline {
   static constexpr double kSamplesLate = 64.0;  // at most
   static constexpr double kSilence_s = 2.0;     // nothing is late behind it
   static constexpr double kNoPause_s = 0.25;    // no device begins anew within it
-  static constexpr double kSamePlace = 0.25;    // of a period
+  static constexpr double kSamePlace = 0.75;    // of a period: none was measured so near to another
+  static constexpr double kTickTells = 0.2;     // periods beside those that were left out
+  static constexpr double kRateOff = 0.05;      // of the stated one
+  static constexpr int kTicksTell = 3;
 
   struct Look {
     double elapsed_s = -1.0;
@@ -179,7 +183,11 @@ class DeviceTimeline {
     const std::int64_t passed_ns = ns_between(stamp_.time_ns(), now.time_ns);
     const double passed_s = this->passed_s(now);
     step.out_of_turn = !frame.reopened && (passed_ns == 0 ? same_again(now) : passed_ns < 0 && late(now));
-    if (step.out_of_turn) return step;
+    if (step.out_of_turn) {
+      if (passed_ns == 0) ++left_out_;
+      return step;
+    }
+    learn_ticks(passed_s);
     standing_ = passed_ns == 0 ? standing_ + 1 : 0;
     if (was_set(frame, now, passed_s)) {
       step.dt_s = period_s_;
@@ -218,6 +226,17 @@ class DeviceTimeline {
     return now.digest == last_digest_ &&
            (!clock_steps_.stood() || standing_ >= clock_steps_.most_in_a_tick());
   }
+  // Of one that measures the same again and again: what was left out was not sent twice where its clock then
+  // went on by as much as such samples take, and that several times in a row.
+  void learn_ticks(double passed_s) noexcept {
+    const auto left_out = static_cast<double>(std::exchange(left_out_, 0));
+    if (left_out == 0.0 || !rate_known_ || clock_steps_.stood()) return;
+    const double periods = passed_s / period_s_;
+    const bool fits =
+        periods > (1.0 - kRateOff) * left_out + kTickTells && periods < (1.0 + kRateOff) * left_out + 2.0;
+    ticks_seen_ = fits ? ticks_seen_ + 1 : 0;
+    if (ticks_seen_ >= kTicksTell) clock_steps_.stands();
+  }
   [[nodiscard]] bool late(const Look& now) const noexcept {
     if (!rate_known_ || -passed_s(now) > kSamplesLate * period_s_) return false;
     if (now.count.quiet_s > std::max(kSilence_s, 2.0 * period_s_)) return false;
@@ -254,6 +273,8 @@ class DeviceTimeline {
   RecentFrames recent_;  // of a device with a clock alone; the count keeps its own
   bool last_clocked_ = false;
   std::uint64_t last_digest_ = 0, standing_ = 0;  // standing_: frames with this same stamp before
+  std::uint64_t left_out_ = 0;                    // with the stamp and the values of the one before
+  int ticks_seen_ = 0;                            // of a clock that stood, in a row
   std::int64_t seen_ns_ = 0;                      // arrival of the last frame, used or not; 0: not known
 };
 

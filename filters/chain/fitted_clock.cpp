@@ -12,6 +12,7 @@ namespace {
 // A late arrival says little about the device's clock: its pull is limited to this many mean deviations.
 constexpr double kLatenessLimit = 4.0;
 constexpr double kShortest = 0.5;  // of the nominal period, that the true one can be
+constexpr double kTells_ns = 1e9;  // that a line has to span to say what a period is
 constexpr double kMost_ns = 9e18;
 
 }  // namespace
@@ -22,11 +23,9 @@ FittedClock::FittedClock(double nominal_period_s, int memory) noexcept
       spread_ns_(nominal_ns_),
       memory_(memory) {}
 
-double FittedClock::lateness_s(std::uint64_t steps, std::int64_t arrival_ns) const noexcept {
+double FittedClock::lateness_s(double periods, std::int64_t arrival_ns) const noexcept {
   if (fitted_ == 0 || arrival_ns <= 0) return 0.0;
-  return (static_cast<double>(ns_between(origin_ns_, arrival_ns)) - time_ns_ -
-          period_ns_ * static_cast<double>(steps)) *
-         1e-9;
+  return (static_cast<double>(ns_between(origin_ns_, arrival_ns)) - time_ns_ - period_ns_ * periods) * 1e-9;
 }
 
 // By samples that come at more than twice the nominal rate, which is none that a device has.
@@ -36,16 +35,16 @@ bool FittedClock::overtaken(std::int64_t arrival_ns) const noexcept {
          elapsed_ns < kShortest * counted_ns_;
 }
 
-std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) noexcept {
-  counted_ns_ += nominal_ns_ * static_cast<double>(steps);
+std::int64_t FittedClock::advance(double periods, std::int64_t arrival_ns) noexcept {
+  counted_ns_ += nominal_ns_ * periods;
   if (fitted_ > 0 && arrival_ns > 0 && overtaken(arrival_ns)) restart();
-  const double predicted = time_ns_ + period_ns_ * static_cast<double>(steps);
+  const double predicted = time_ns_ + period_ns_ * periods;
   if (arrival_ns <= 0) {
     time_ns_ = predicted;
   } else if (fitted_ == 0) {
     origin_ns_ = arrival_ns;
     time_ns_ = counted_ns_ = 0.0;
-    spread_ns_ = nominal_ns_;
+    spread_ns_ = std::max(spread_ns_, nominal_ns_);
     fitted_ = 1;
   } else {
     const double residual = static_cast<double>(ns_between(origin_ns_, arrival_ns)) - predicted;
@@ -56,8 +55,9 @@ std::int64_t FittedClock::advance(std::uint64_t steps, std::int64_t arrival_ns) 
     const double g = 2.0 * (2.0 * n + 1.0) / ((n + 1.0) * (n + 2.0));
     const double h = 6.0 / ((n + 1.0) * (n + 2.0));
     time_ns_ = predicted + g * pull;
-    // The first samples say nothing about the period that the nominal one does not say better.
-    if (n >= 8.0)
+    // The first samples say nothing about the period that the nominal one does not say better; nor does a
+    // delivery that brings many at once.
+    if (n >= 8.0 && counted_ns_ >= kTells_ns)
       period_ns_ = std::clamp(period_ns_ + h * pull, kShortest * nominal_ns_, nominal_ns_ / kShortest);
     spread_ns_ += (std::abs(pull) - spread_ns_) * g;
     // Never so narrow that a small shift of the arrival times could not be followed.

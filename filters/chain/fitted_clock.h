@@ -18,16 +18,18 @@ class FittedClock {
   // nominal_period_s > 0. memory: samples, ≥ 2.
   FittedClock(double nominal_period_s, int memory) noexcept;
 
-  // Advances by `steps` device samples. arrival_ns ≤ 0: no arrival time, the line is only continued.
-  // Returns the fitted time, ns since the epoch (since 0 when no arrival time was ever known).
-  std::int64_t advance(std::uint64_t steps, std::int64_t arrival_ns) noexcept;
+  // Advances by so many nominal periods of the device. arrival_ns ≤ 0: no arrival time, the line is only
+  // continued. Returns the fitted time, ns since the epoch (since 0 when no arrival time was ever known).
+  std::int64_t advance(double periods, std::int64_t arrival_ns) noexcept;
   // After a gap: the next arrival starts a new line; the fitted period is kept.
   void restart() noexcept { fitted_ = 0; }
 
   [[nodiscard]] double period_s() const noexcept { return period_ns_ * 1e-9; }
   [[nodiscard]] bool settled() const noexcept { return fitted_ >= memory_; }
-  // Arrival − line for the next sample if `steps` have passed, s; 0 before the first.
-  [[nodiscard]] double lateness_s(std::uint64_t steps, std::int64_t arrival_ns) const noexcept;
+  // What arrivals scatter by about the line, mean.
+  [[nodiscard]] double spread_s() const noexcept { return spread_ns_ * 1e-9; }
+  // Arrival − line for the next sample if `periods` have passed, s; 0 before the first.
+  [[nodiscard]] double lateness_s(double periods, std::int64_t arrival_ns) const noexcept;
 
  private:
   [[nodiscard]] bool overtaken(std::int64_t arrival_ns) const noexcept;

@@ -37,7 +37,8 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
 }
 
 double Incrementer::clock_offset_ppm() const noexcept {
-  return clock_.settled() ? (clock_.period_s() / period_s_ - 1.0) * 1e6 : 0.0;
+  const double longer = clocked_samples_ > 0.0 ? clocked_periods_ / clocked_samples_ : 1.0;
+  return clock_.settled() ? (clock_.period_s() / period_s_ * longer - 1.0) * 1e6 : 0.0;
 }
 
 double Incrementer::interval_error() const noexcept {
@@ -202,13 +203,35 @@ void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, I
   out.channel_age_s = channel_age_s_;
 }
 
+// That have passed, in nominal ones: a device's own clock says it whatever rate the device was set to.
+double Incrementer::periods_of(const Step& step, bool clocked) noexcept {
+  constexpr double kForgets = 0.999;
+  const auto samples = static_cast<double>(step.samples);
+  if (!clocked) return samples;
+  const double periods = step.dt_s / period_s_;
+  if (!step.gap) {
+    clocked_periods_ = kForgets * clocked_periods_ + periods;
+    clocked_samples_ = kForgets * clocked_samples_ + samples;
+  }
+  return periods;
+}
+
 // When the sample was taken, by a line through the times of arrival.
 void Incrementer::label(const Reading& reading, const Step& step, Increment& out) noexcept {
+  using Says = LabelLateness::Says;
   // A clock that was set back says nothing of what has passed.
   const bool set_back = reading.arrival_ns > 0 &&
                         static_cast<double>(arrivals_.latest_ns() - reading.arrival_ns) * 1e-9 > kSetBack_s;
-  const bool moved = started_ && (step.clock_moved || set_back);
-  if (step.clock_moved || set_back) clock_.restart();
+  const double periods = periods_of(step, reading.device_time_ns.has_value());
+  Says says = Says::follow;
+  if (reading.arrival_ns > 0 && step.late_s == 0.0 && !step.clock_moved && !set_back)
+    says = label_lateness_.next(clock_.lateness_s(periods, reading.arrival_ns), clock_.spread_s(),
+                                arrivals_.elapsed_s(reading.arrival_ns));
+  else if (reading.arrival_ns > 0)
+    label_lateness_.forget();
+  const bool stood = step.clock_moved || says == Says::stood;
+  const bool moved = started_ && (stood || set_back);
+  if (stood || set_back || says == Says::ahead) clock_.restart();
   // Of recorded times nobody knows whether the clock was set or the device did not count on; by one that
   // nobody sets it was the device.
   if (started_ &&
@@ -219,9 +242,8 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
     ++counts_.pauses;
   }
   // What is held up on its way says nothing of the clock, but for where a clock that was set has to begin.
-  const bool held_up = step.late_s > 0.0 && !set_back;
-  out.utime_ns =
-      ns_after(clock_.advance(step.samples, held_up ? 0 : reading.arrival_ns), reading.wall_shift_ns);
+  const bool held_up = (step.late_s > 0.0 || says == Says::wait) && !set_back;
+  out.utime_ns = ns_after(clock_.advance(periods, held_up ? 0 : reading.arrival_ns), reading.wall_shift_ns);
   // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
   // fro by as much as arrival times scatter.
   if (started_ && (out.flags & kClockStep) == 0)

@@ -17,6 +17,7 @@
 #include "drivers/ifog/device_timeline.h"
 #include "drivers/ifog/silence.h"
 #include "filters/chain/fitted_clock.h"
+#include "filters/chain/label_lateness.h"
 #include "filters/chain/open_turn.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
@@ -68,6 +69,7 @@ class Incrementer {
   [[nodiscard]] DeviceTimeline::Frame frame_of(const Reading& reading) const noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading) noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
+  [[nodiscard]] double periods_of(const Step& step, bool clocked) noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
   [[nodiscard]] Verdict turn(std::size_t axis, double value, double own_s, Turn& out) noexcept;
@@ -76,6 +78,9 @@ class Incrementer {
   SensorFacts facts_;
   double period_s_;
   FittedClock clock_;
+  LabelLateness label_lateness_;
+  // Of late, by a device's own clock: its samples take so much longer than a nominal period.
+  double clocked_periods_ = 0.0, clocked_samples_ = 0.0;
   DeviceTimeline timeline_;  // of a device that counts or has a clock
   bool started_ = false;
   bool reopened_ = false;

@@ -28,6 +28,8 @@ struct Frame {
   std::uint64_t number;
   double arrives_s;
   double stood_s = 0.0;  // still, up to here, while its clock went on
+  bool reopened = false;
+  bool timed = true;  // its arrival is known
 };
 
 // What stands between the device and the reader: nothing passes in a silence, and what it held passes behind
@@ -80,7 +82,8 @@ Got run(const std::vector<Frame>& frames, const Device& device, std::int64_t wra
   Got got;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     Reading reading;
-    reading.arrival_ns = kStart_ns + std::llround(frames[i].arrives_s * 1e9);
+    reading.arrival_ns = frames[i].timed ? kStart_ns + std::llround(frames[i].arrives_s * 1e9) : 0;
+    if (frames[i].reopened) incrementer.discontinuity();
     reading.valid_axes = 1;
     reading.value[0] = static_cast<double>(frames[i].number % 1009);
     reading.has_sequence = true;
@@ -148,6 +151,35 @@ TEST(LostRounds, WhatASilenceSwallowedIsCountedToTheSample) {
                                         << silent_s << " s, by " << at_once);
         expect_truth({{{6.0, silent_s}, {25.0, silent_s}}, 1e6, at_once, 0.0}, device);
       }
+}
+
+// A serial server that keeps what comes while nobody is connected; a reader that was stopped itself, and has
+// no times of arrival until all that had piled up is through. What of it was lost is lost, and no more.
+TEST(LostRounds, WhatWasKeptBehindAReconnectionOrAStopIsAllThere) {
+  for (const Device& device : kDevices)
+    for (const double silent_s : {2.5, 3.1, 6.0})
+      for (const double keeps_s : {0.4, 1e9})
+        for (const double faster : {3.5, 1e6})
+          for (const bool stopped : {false, true}) {
+            if (device.modulus == 16 && keeps_s < 1.0) continue;  // two rounds of it are a fifth of a second
+            SCOPED_TRACE(testing::Message()
+                         << device.rate_hz << " Hz, " << device.modulus << ", silent " << silent_s
+                         << " s, kept " << keeps_s << " s, drains at " << faster << ", stopped " << stopped);
+            const auto samples = static_cast<std::uint64_t>(30.0 * device.rate_hz);
+            std::vector<Frame> frames = through({{{6.0, silent_s}}, faster, 1, keeps_s}, device, samples);
+            bool first = true;
+            for (Frame& frame : frames) {
+              const double taken_s = static_cast<double>(frame.number) / device.rate_hz;
+              if (taken_s < 6.0) continue;
+              if (stopped)
+                frame.timed = taken_s >= 6.0 + silent_s;
+              else
+                frame.reopened = std::exchange(first, false);
+            }
+            const Got got = run(frames, device);
+            EXPECT_EQ(got.counts.missing, samples - frames.size());
+            EXPECT_NEAR(got.dt_s, 30.0, 1e-9);
+          }
 }
 
 // A sender that stands still and goes on with its count, as a programme that sends a file does between two of
