@@ -276,7 +276,7 @@ class DeviceCount {
   }
   // So long frames have to come at the pace at which they were taken.
   [[nodiscard]] double paced_s() const noexcept {
-    return std::clamp(kPaces * scatter_s_, 0.1, Lateness::kStands_s);
+    return std::clamp(kPaces * scatter_s_, 0.09, Lateness::kStands_s);
   }
   [[nodiscard]] bool at_pace(const Timed& frame, double late_s) const noexcept {
     return doubt_.frames >= kPaceFrames && std::abs(late_s - doubt_.late_s) <= kDrains * paced_s() &&
@@ -324,9 +324,9 @@ class DeviceCount {
     step.samples = difference > 0 || again ? difference : modulus_;
     const double counted_s = static_cast<double>(step.samples) * period;
     step.late_s = known ? std::max(0.0, elapsed_s - counted_s) : late_.now_s();
-    const bool at_once =
-        on_bus_ || again ||
-        (late_.now_s() == 0.0 && doubtful(frame, difference) && !unseen(frame) && step.late_s <= kLate_s);
+    const bool at_once = on_bus_ || again ||
+                         (late_.now_s() == 0.0 && doubtful(frame, difference) &&
+                          (frame.reopened || !unseen(frame)) && step.late_s <= kLate_s);
     const bool came_to_stand = late_.stands(step.late_s, frame.elapsed_s, held_again(frame));
     const bool told = doubt_.rounds && (came_to_stand || at_pace(frame, step.late_s));
     if (known && elapsed_s > 0.0 && (at_once || told)) {
