@@ -383,9 +383,8 @@ class DeviceCount {
   struct Doubt {
     // gap: one has been told; counts: by the count, too, some are missing
     bool rounds = false, gap = false, counts = false;
-    double quiet_s = 0.0;                // in all, beside what was counted
-    double since_s = 0.0;                // they began
-    double late_s = 0.0, paced_s = 0.0;  // since it last became less or more; so long
+    double quiet_s = 0.0, since_s = 0.0;  // in all, beside what was counted; since they began
+    double late_s = 0.0, paced_s = 0.0;   // since it last became less or more; so long
     int frames = 0;
   };
   Doubt doubt_;
