@@ -181,14 +181,15 @@ PromiseKept weigh_promise(const CorrectionTrial& trial) {
   return out;
 }
 
-Verdict verdict(const PromiseKept& kept) {
+PromiseVerdict verdict(const PromiseKept& kept) {
   constexpr double kNoGain = 0.5;
   // A share off by so much leaves a hundredth of the variance that was to go: less than any promise is known.
   constexpr double kAsGoodAs = 0.1;
   const double sure = kSurely * kept.share_error;
   if (kept.share - sure > kNoGain)
-    return std::abs(kept.share - 1.0) <= std::max(sure, kAsGoodAs) ? Verdict::kept : Verdict::in_part;
-  return kept.share + sure < kNoGain ? Verdict::broken : Verdict::open;
+    return std::abs(kept.share - 1.0) <= std::max(sure, kAsGoodAs) ? PromiseVerdict::kept
+                                                                   : PromiseVerdict::in_part;
+  return kept.share + sure < kNoGain ? PromiseVerdict::broken : PromiseVerdict::open;
 }
 
 }  // namespace ifog

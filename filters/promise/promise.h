@@ -43,7 +43,7 @@ struct PromiseKept {
   std::vector<ErrorOfMeans> errors;       // of 1, 10 and 100 s where there are eight such means
 };
 
-enum class Verdict {
+enum class PromiseVerdict {
   kept,     // share is surely more than 0.5, and 1 is possible or nearer than 0.1
   in_part,  // surely more than 0.5, and surely not 1
   broken,   // surely less than 0.5: the old model was better
@@ -54,6 +54,6 @@ enum class Verdict {
 [[nodiscard]] PromiseKept weigh_promise(const CorrectionTrial& trial);
 
 // Surely: three standard errors.
-[[nodiscard]] Verdict verdict(const PromiseKept& kept);
+[[nodiscard]] PromiseVerdict verdict(const PromiseKept& kept);
 
 }  // namespace ifog

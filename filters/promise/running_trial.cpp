@@ -73,7 +73,7 @@ std::optional<ShareThere> RunningTrial::weigh(std::size_t axis) const {
   if (resting < kFewestAtRest || rest.turned > 0 || range_of(before) > kAtRest) return std::nullopt;
   const PromiseKept kept = weigh_promise({time_s, before, after, rest.at_rest});
   if (!std::isfinite(kept.share_error)) return std::nullopt;
-  return ShareThere{kept.share, kept.share_error, verdict(kept) == Verdict::broken};
+  return ShareThere{kept.share, kept.share_error, verdict(kept) == PromiseVerdict::broken};
 }
 
 }  // namespace ifog

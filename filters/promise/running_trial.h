@@ -15,7 +15,7 @@ namespace ifog {
 // As in promise.h.
 struct ShareThere {
   double share = 0.0, share_error = 0.0;
-  bool denied = false;  // Verdict::broken
+  bool denied = false;  // PromiseVerdict::broken
 };
 
 class RunningTrial {

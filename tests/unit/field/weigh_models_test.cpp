@@ -51,7 +51,7 @@ TEST(WeighModels, TheRightCorrectionIsAllThere) {
       weigh_models(recorded_hour(kCoefficient), Model{}, linear(kCoefficient), 12000);
   ASSERT_EQ(gain.size(), 1U);
   EXPECT_NEAR(gain[0].kept.share, 1.0, 4.0 * gain[0].kept.share_error);
-  EXPECT_EQ(verdict_of(gain), Verdict::kept);
+  EXPECT_EQ(verdict_of(gain), PromiseVerdict::kept);
   EXPECT_NEAR(gain[0].kept.seconds, 2400.0, 1e-6);
   // 10 s means: a sine of 3 degC before, white noise over the root of a hundred samples after.
   EXPECT_NEAR(gain[0].kept.errors[1].before_radps, kCoefficient * 3.0 / std::sqrt(2.0),
@@ -62,15 +62,16 @@ TEST(WeighModels, TheRightCorrectionIsAllThere) {
 TEST(WeighModels, TwiceTheRightOneIsInPartAndThreeTimesBroken) {
   // Of a correction twice as large a half is there; of one half as large all, twice over.
   EXPECT_EQ(verdict_of(weigh_models(recorded_hour(kCoefficient), Model{}, linear(1.4 * kCoefficient), 0)),
-            Verdict::in_part);
+            PromiseVerdict::in_part);
   EXPECT_EQ(verdict_of(weigh_models(recorded_hour(kCoefficient), Model{}, linear(3.0 * kCoefficient), 0)),
-            Verdict::broken);
-  EXPECT_EQ(verdict_of(weigh_models(recorded_hour(0.0), Model{}, linear(kCoefficient), 0)), Verdict::broken);
+            PromiseVerdict::broken);
+  EXPECT_EQ(verdict_of(weigh_models(recorded_hour(0.0), Model{}, linear(kCoefficient), 0)),
+            PromiseVerdict::broken);
 }
 
 TEST(WeighModels, TheSameModelWeighsNothing) {
   EXPECT_TRUE(weigh_models(recorded_hour(kCoefficient), linear(1e-7), linear(1e-7), 0).empty());
-  EXPECT_EQ(verdict_of({}), Verdict::open);
+  EXPECT_EQ(verdict_of({}), PromiseVerdict::open);
 }
 
 }  // namespace

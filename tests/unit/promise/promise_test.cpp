@@ -83,10 +83,10 @@ TEST(Promise, ItsIntervalsHoldTheTruthInSlowNoise) {
 }
 
 TEST(Promise, VerdictsAreThoseOfWhatWasPutIn) {
-  EXPECT_EQ(verdict(weigh_promise(made(40000, 1.0, 0.5, 0.001, 2).trial())), Verdict::kept);
-  EXPECT_EQ(verdict(weigh_promise(made(40000, 0.75, 0.5, 0.001, 3).trial())), Verdict::in_part);
-  EXPECT_EQ(verdict(weigh_promise(made(40000, 0.0, 0.5, 0.001, 4).trial())), Verdict::broken);
-  EXPECT_EQ(verdict(weigh_promise(made(40000, 1.0, 0.002, 0.001, 5).trial())), Verdict::open);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 1.0, 0.5, 0.001, 2).trial())), PromiseVerdict::kept);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 0.75, 0.5, 0.001, 3).trial())), PromiseVerdict::in_part);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 0.0, 0.5, 0.001, 4).trial())), PromiseVerdict::broken);
+  EXPECT_EQ(verdict(weigh_promise(made(40000, 1.0, 0.002, 0.001, 5).trial())), PromiseVerdict::open);
 }
 
 TEST(Promise, ACorrectionThatDoesNotMoveIsLeftOpen) {
@@ -94,7 +94,7 @@ TEST(Promise, ACorrectionThatDoesNotMoveIsLeftOpen) {
   for (std::size_t i = 0; i < data.after.size(); ++i) data.after[i] = data.before[i] - 0.25;
   const PromiseKept kept = weigh_promise(data.trial());
   EXPECT_TRUE(std::isinf(kept.share_error));
-  EXPECT_EQ(verdict(kept), Verdict::open);
+  EXPECT_EQ(verdict(kept), PromiseVerdict::open);
 }
 
 TEST(Promise, WhatMovesAndWhatIsMissingDoesNotCount) {
@@ -104,7 +104,7 @@ TEST(Promise, WhatMovesAndWhatIsMissingDoesNotCount) {
   data.at_rest = {{0, 5000}, {9000, 20000}};
   const PromiseKept kept = weigh_promise(data.trial());
   EXPECT_NEAR(kept.seconds, 1590.0, 1e-6);
-  EXPECT_EQ(verdict(kept), Verdict::kept);
+  EXPECT_EQ(verdict(kept), PromiseVerdict::kept);
   ASSERT_EQ(kept.errors.size(), 3U);
   // A sine of 0.5 has a root mean square of 0.354; white noise of 1 leaves 0.1 of ten-second means.
   EXPECT_NEAR(kept.errors[1].before_radps, std::sqrt(0.125 + 0.01), 0.03);

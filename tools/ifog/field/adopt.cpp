@@ -144,7 +144,7 @@ void adopt(const AdoptArguments& arguments) {
   } catch (const std::exception& error) {
     warn("ifog adopt: the outcome is not in the history: %s\n", error.what());
   }
-  if (verdict_of(watched.gain) == Verdict::broken) {
+  if (verdict_of(watched.gain) == PromiseVerdict::broken) {
     warn("ifog adopt: back with: %s\n", field.command("revert", sensor.name).c_str());
     throw Failed("the promise was broken");
   }

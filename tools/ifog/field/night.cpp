@@ -59,8 +59,8 @@ std::vector<RecordedFile> newest(std::vector<RecordedFile> files, double most_by
 }
 
 bool pays(const AxisGain& gain) {
-  const Verdict found = verdict(gain.kept);
-  if (found != Verdict::kept && found != Verdict::in_part) return false;
+  const PromiseVerdict found = verdict(gain.kept);
+  if (found != PromiseVerdict::kept && found != PromiseVerdict::in_part) return false;
   bool gains = false;
   for (const ErrorOfMeans& error : gain.kept.errors) {
     if (error.after_radps > (1.0 + kMostLoss) * error.before_radps) return false;

@@ -151,14 +151,14 @@ std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before
   return out;
 }
 
-Verdict verdict_of(const std::vector<AxisGain>& gain) {
-  constexpr std::array kWorstFirst{Verdict::broken, Verdict::open, Verdict::in_part};
-  for (const Verdict each : kWorstFirst)
-    if (gain.empty() ? each == Verdict::open
+PromiseVerdict verdict_of(const std::vector<AxisGain>& gain) {
+  constexpr std::array kWorstFirst{PromiseVerdict::broken, PromiseVerdict::open, PromiseVerdict::in_part};
+  for (const PromiseVerdict each : kWorstFirst)
+    if (gain.empty() ? each == PromiseVerdict::open
                      : std::any_of(gain.begin(), gain.end(),
                                    [&](const AxisGain& axis) { return verdict(axis.kept) == each; }))
       return each;
-  return Verdict::kept;
+  return PromiseVerdict::kept;
 }
 
 }  // namespace ifog::tools

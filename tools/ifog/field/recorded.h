@@ -46,6 +46,6 @@ struct Recorded {
                                                  const Model& after, std::size_t begin);
 
 // The worst of the axes.
-[[nodiscard]] Verdict verdict_of(const std::vector<AxisGain>& gain);
+[[nodiscard]] PromiseVerdict verdict_of(const std::vector<AxisGain>& gain);
 
 }  // namespace ifog::tools

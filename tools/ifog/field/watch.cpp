@@ -111,13 +111,13 @@ std::string outcome(const Watched& watched) {
   }
   if (const std::string errors = gain_text(watched.gain); !errors.empty()) figures += "; " + errors;
   switch (verdict_of(watched.gain)) {
-    case Verdict::kept:
+    case PromiseVerdict::kept:
       return "the promise came true: " + figures;
-    case Verdict::in_part:
+    case PromiseVerdict::in_part:
       return "the promise came true in part: " + figures;
-    case Verdict::broken:
+    case PromiseVerdict::broken:
       return "the promise was broken, the model before was better: " + figures;
-    case Verdict::open:
+    case PromiseVerdict::open:
       break;
   }
   return "whether the promise came true cannot be told yet, too little has changed around the sensor: " +
