@@ -215,12 +215,12 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
 // the noise.
 Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
   Model model = std::move(before);
-  const FilterSettings& found = tuning.models[tuning.chosen].settings;
+  const FilterSettings& tuned = tuning.models[tuning.chosen].settings;
   if (!model.filter) model.filter.emplace();
-  model.filter->state = found.state;
-  model.filter->process_noise = found.process_noise;
-  model.filter->measurement_noise = found.measurement_noise;
-  model.filter->state_parameters = found.state_parameters;
+  model.filter->state = tuned.state;
+  model.filter->process_noise = tuned.process_noise;
+  model.filter->measurement_noise = tuned.measurement_noise;
+  model.filter->state_parameters = tuned.state_parameters;
   for (const auto& [axis, found] : noise) {
     const auto put = [](const NoiseCoefficient& c, std::optional<double>& value) {
       if (c.present) value = c.value;
