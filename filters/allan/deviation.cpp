@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -154,26 +155,26 @@ class Window {
   std::span<const double> from(std::size_t begin) {
     const std::size_t count = std::min(room_, part_.angles - begin);
     if (!angle_.in_memory().empty()) return angle_.in_memory().subspan(part_.first + begin, count);
-    if (held_.size() < count) held_.resize(count);
+    // Not a vector, which would write zeros into all of it first.
+    if (!held_) held_ = std::make_unique_for_overwrite<double[]>(count);
+    double* const held = held_.get();
     const std::size_t kept = end_ > begin ? end_ - begin : 0;
-    if (kept > 0)
-      std::copy(held_.begin() + static_cast<std::ptrdiff_t>(begin - begin_),
-                held_.begin() + static_cast<std::ptrdiff_t>(end_ - begin_), held_.begin());
+    if (kept > 0) std::copy(held + (begin - begin_), held + (end_ - begin_), held);
     std::vector<double> room;
     for (std::size_t at = kept; at < count; at += kSeriesPiece) {
       const auto piece = angle_.piece(part_.first + begin + at, std::min(kSeriesPiece, count - at), room);
-      std::copy(piece.begin(), piece.end(), held_.begin() + static_cast<std::ptrdiff_t>(at));
+      std::copy(piece.begin(), piece.end(), held + at);
     }
     begin_ = begin;
     end_ = begin + count;
-    return std::span(held_).first(count);
+    return {held, count};
   }
 
  private:
   SeriesView angle_;
   AngleSum::Part part_;
   std::size_t room_, begin_ = 0, end_ = 0;
-  std::vector<double> held_;
+  std::unique_ptr<double[]> held_;  // as many as are asked for first: later there are never more
 };
 
 // All m whose differences fit into the window, part by part. squares: by entry of m.

@@ -372,11 +372,12 @@ class Run {
 
 }  // namespace
 
-Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options) {
+Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options,
+                   const PreparedChannels* channels) {
   if (!(options.fit_from < options.fit_to))
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
-  const PreparedRecords prepared(records, share, options.significance);
+  const PreparedRecords prepared(records, share, options.significance, channels);
   Diagnosis diagnosis = Run(prepared, share.whole(), options).run();
   diagnosis.reference_delays = prepared.delays();
   const std::vector<std::string> remarks = prepared.remarks();

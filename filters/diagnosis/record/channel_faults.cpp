@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
@@ -205,19 +207,25 @@ std::string excursions_in_words(std::span<const double> values, const std::vecto
       found.size(), samples, values[found.front().from]);
 }
 
-// The channel with its faults repaired, each told in `remarks`; nothing where it has none.
-std::optional<Samples> repaired_channel(const Record& record, const RecordChannel& channel,
-                                        const std::string& where, RepairedRecords& repaired) {
+struct RepairedChannel {
+  std::optional<Samples> values;  // none: it has no fault
+  std::vector<std::string> remarks;
+  std::vector<StuckStretch> stuck;
+};
+
+RepairedChannel repaired_channel(const Record& record, std::size_t index, const RecordChannel& channel,
+                                 const std::string& where) {
+  RepairedChannel repaired;
   const Readings of(record, channel.values);
   const Usual usual = usual_of(of.values);
-  if (!usual.varied) return std::nullopt;
+  if (!usual.varied) return repaired;
   const std::vector<Run> away = excursions(of, usual);
   Samples values;  // none where they are as they were read
   if (!away.empty()) values.assign(of.values.begin(), of.values.end());
   for (const Run& run : away) interpolate(of, run, values);
   const std::vector<Stuck> stuck =
       usual.slow ? stuck_stretches(away.empty() ? of.values : values, usual) : std::vector<Stuck>{};
-  if (away.empty() && stuck.empty()) return std::nullopt;
+  if (away.empty() && stuck.empty()) return repaired;
   if (away.empty()) values.assign(of.values.begin(), of.values.end());
   if (!away.empty()) repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
   const auto told = [&](std::size_t i) { return told_time(record.origin.told(of.time_s[i])); };
@@ -226,14 +234,16 @@ std::optional<Samples> repaired_channel(const Record& record, const RecordChanne
                                text(" stands at %.6g from %s s to %s s and %s: taken for stuck, interpolated",
                                     values[run.from], told(run.from).c_str(), told(run.to).c_str(),
                                     leaps ? "then jumps" : "never else for a twentieth as long"));
-    const auto index = static_cast<std::size_t>(&record - repaired.records.data());
     repaired.stuck.push_back({index, channel.name, of.time_s[run.from], of.time_s[run.to]});
     interpolate(of, {run.from + 1, run.to}, values);
   }
-  if (of.rows.empty()) return values;
-  Samples all(channel.values.begin(), channel.values.end());
+  if (of.rows.empty()) {
+    repaired.values = std::move(values);
+    return repaired;
+  }
+  Samples& all = repaired.values.emplace(channel.values.begin(), channel.values.end());
   for (std::size_t i = 0; i < values.size(); ++i) all[of.rows[i]] = values[i];
-  return all;
+  return repaired;
 }
 
 // A sample or two of the rate, less the reference, that leap away from both their neighbours by twenty spans
@@ -274,22 +284,41 @@ std::optional<Samples> rate_without_knocks(const Record& record, const std::stri
   return rate;
 }
 
+// Which of them is meant.
+std::string of_several(const std::vector<Record>& records, std::size_t r) {
+  return records.size() > 1 ? " (" + records[r].name + ")" : "";
+}
+
 }  // namespace
 
-RepairedRecords repair_records(const std::vector<Record>& records) {
-  RepairedRecords repaired;
-  repaired.records = records;
-  const auto keep = [&](Samples values) {
-    return std::span<const double>(repaired.values.emplace_back(std::move(values)));
+RepairedRecords repair_channels(const std::vector<Record>& records, unsigned threads) {
+  RepairedRecords repaired{records, {}, {}, {}};
+  struct Wanted {
+    std::size_t record, channel;
   };
-  for (Record& record : repaired.records) {
-    const std::string where = records.size() > 1 ? " (" + record.name + ")" : "";
-    if (auto rate = rate_without_knocks(record, where, repaired.remarks))
-      record.rate_radps = keep(std::move(*rate));
-    for (RecordChannel& channel : record.channels)
-      if (auto values = repaired_channel(record, channel, where, repaired))
-        channel.values = keep(std::move(*values));
+  std::vector<Wanted> wanted;
+  for (std::size_t r = 0; r < records.size(); ++r)
+    for (std::size_t c = 0; c < records[r].channels.size(); ++c) wanted.push_back({r, c});
+  std::vector<RepairedChannel> each(wanted.size());
+  share_out(wanted.size(), threads, [&](std::size_t i) {
+    const auto [r, c] = wanted[i];
+    each[i] = repaired_channel(records[r], r, records[r].channels[c], of_several(records, r));
+  });
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto [r, c] = wanted[i];
+    if (each[i].values)
+      repaired.records[r].channels[c].values = repaired.values.emplace_back(std::move(*each[i].values));
+    std::ranges::move(each[i].remarks, std::back_inserter(repaired.remarks));
+    std::ranges::move(each[i].stuck, std::back_inserter(repaired.stuck));
   }
+  return repaired;
+}
+
+RepairedRecords leave_out_knocks(const std::vector<Record>& records) {
+  RepairedRecords repaired{records, {}, {}, {}};
+  for (std::size_t r = 0; r < records.size(); ++r)
+    if (auto rate = rate_without_knocks(records[r], of_several(records, r), repaired.remarks))
+      repaired.records[r].rate_radps = repaired.values.emplace_back(std::move(*rate));
   return repaired;
 }
 

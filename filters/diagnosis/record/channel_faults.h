@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of logging: a thermometer that says 85 or -127 °C for some seconds (power-on and bus error of the
-// DS18B20), a glitch of the logger, a value that stands still while the sensor moves on.
+// DS18B20), a glitch of the logger, a value that stands still while the sensor moves on; and knocks of the
+// rate.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +33,10 @@ struct RepairedRecords {
 // - of slow channels, stretches of one value, a fiftieth of the record or more, that end in such a leap or
 //   are twenty times as long as any other.
 // Channels of a few values are left alone: a switch may be off for an hour. Missing values stay missing.
+// threads: channels looked at at a time; 0: as many as there are processors.
+RepairedRecords repair_channels(const std::vector<Record>& records, unsigned threads = 1);
+
 // Of the rate, a sample or two that leap by twenty spans and back become missing.
-RepairedRecords repair_records(const std::vector<Record>& records);
+RepairedRecords leave_out_knocks(const std::vector<Record>& records);
 
 }  // namespace ifog

@@ -25,14 +25,9 @@ double period_by_unit(const std::string& channel) {
 }
 
 bool moves(std::span<const double> values) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return high > low;
+  const auto finite = [](double value) { return std::isfinite(value); };
+  const auto first = std::find_if(values.begin(), values.end(), finite);
+  return std::any_of(first, values.end(), [&](double value) { return finite(value) && value != *first; });
 }
 
 struct Turn {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 
-#include "filters/diagnosis/record/fitted_part.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/units/told_time.h"
 
@@ -57,7 +56,8 @@ std::string in_words(const Record& record, std::size_t parts, std::size_t left_o
 
 PartedRecords part_at_long_holes(const std::vector<Record>& records) {
   PartedRecords out;
-  for (const Record& record : records) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
     double longest_s = 0.0;
     std::vector<SampleRange> parts = parts_of(record, longest_s);
     const std::size_t rows = record.time_s.size();
@@ -67,15 +67,23 @@ PartedRecords part_at_long_holes(const std::vector<Record>& records) {
       std::erase_if(parts, [&](const SampleRange& part) { return !long_enough(part, rows); });
     if (longest_s == 0.0 || parts.empty()) {
       out.records.push_back(record);
+      out.parts.push_back({r, {0, rows}});
       continue;
     }
     for (const SampleRange& samples : parts) {
       Record part = part_of(record, samples);
       part.name += " (from " + told_time(part.origin.told(part.time_s.front())) + " s)";
       out.records.push_back(std::move(part));
+      out.parts.push_back({r, samples});
     }
     out.remarks.push_back(in_words(record, parts.size(), left_out, longest_s));
   }
+  return out;
+}
+
+PartedRecords not_parted(const std::vector<Record>& records) {
+  PartedRecords out{records, {}, {}};
+  for (std::size_t r = 0; r < records.size(); ++r) out.parts.push_back({r, {0, records[r].time_s.size()}});
   return out;
 }
 

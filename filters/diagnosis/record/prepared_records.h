@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures as every diagnosis and measurement takes them: stamps that scatter set even, parted at
-// long holes, angles without their wraps, faults of logging
-// repaired, a late reference shifted, derived channels beside, turns left out, the part to fit cut, ramps
-// taken out. Each step's records show columns that the step before owns, so all of it stays together.
+// Captures as every diagnosis and measurement takes them: behind what all axes have in common
+// (prepared_channels.h), knocks of the rate left out, a late reference shifted, derived channels beside,
+// turns left out, the part to fit cut, ramps taken out. Each step's records show columns that the step before
+// owns, so all of it stays together.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "filters/diagnosis/record/channel_faults.h"
 #include "filters/diagnosis/record/derived_channels.h"
-#include "filters/diagnosis/record/even_stamps.h"
 #include "filters/diagnosis/record/fitted_part.h"
-#include "filters/diagnosis/record/long_holes.h"
+#include "filters/diagnosis/record/prepared_channels.h"
 #include "filters/diagnosis/record/ramps_out.h"
 #include "filters/diagnosis/record/reference_delay.h"
 #include "filters/diagnosis/record/turned.h"
@@ -21,27 +21,28 @@ namespace ifog {
 
 class PreparedRecords {
  public:
-  // captures: their arrays outlive this. share: of each, that is fitted. significance: of a ramp. Throws
-  // std::invalid_argument as check_columns() and without_turns() do.
+  // captures: their arrays outlive this. share: of each, that is fitted. significance: of a ramp. channels:
+  // of the same captures and share, outlives this; null: made here. Throws std::invalid_argument as
+  // check_columns() and without_turns() do.
   explicit PreparedRecords(const std::vector<Record>& captures, const TimeShare& share = {},
-                           double significance = 0.01);
+                           double significance = 0.01, const PreparedChannels* channels = nullptr);
   PreparedRecords(const PreparedRecords&) = delete;
   PreparedRecords& operator=(const PreparedRecords&) = delete;
 
   [[nodiscard]] const std::vector<Record>& whole() const { return resting_.records; }
   [[nodiscard]] const std::vector<Record>& fitted() const { return fitted_; }
   [[nodiscard]] const WithoutRamps& without_ramps() const { return without_; }  // of what is fitted
-  // As whole(), with channels before their faults were repaired; null where there were none.
+  // As whole(), with what was logged before its faults were repaired; null where there were none.
   [[nodiscard]] const std::vector<Record>* as_logged() const;
   [[nodiscard]] const std::vector<ReferenceDelay>& delays() const { return aligned_.delays; }
-  [[nodiscard]] const std::vector<StuckStretch>& stuck() const { return repaired_.stuck; }
+  [[nodiscard]] const std::vector<StuckStretch>& stuck() const { return channels_.stuck(); }
   [[nodiscard]] std::vector<std::string> remarks() const;  // in the order of the steps
 
  private:
-  TimedRecords timed_;
-  PartedRecords parted_;
-  DerivedRecords unwrapped_;
-  RepairedRecords repaired_;
+  std::optional<PreparedChannels> own_;
+  const PreparedChannels& channels_;
+  std::vector<Record> logged_;  // none where nothing was repaired
+  RepairedRecords quiet_;
   AlignedRecords aligned_;
   DerivedRecords derived_;
   WithoutTurns resting_;

@@ -2,6 +2,7 @@
 #include "filters/diagnosis/residual/periodogram.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -34,20 +35,24 @@ Samples power_in_memory(std::span<const double> error, double mean) {
   return power;
 }
 
-// exp(-i 2 pi m / n) for m below n, by two tables of the root of n.
+// exp(-i 2 pi m / n) for m below n, by two tables of the root of n, a power of two: a division would cost
+// more than all the rest.
 class UnitRoots {
  public:
-  explicit UnitRoots(std::size_t n) : step_(static_cast<std::size_t>(std::sqrt(static_cast<double>(n))) + 1) {
+  explicit UnitRoots(std::size_t n) : bits_(static_cast<std::size_t>(std::bit_width(n)) / 2 + 1) {
+    const std::size_t step = std::size_t{1} << bits_;
     const double turn = -2.0 * std::numbers::pi / static_cast<double>(n);
-    for (std::size_t i = 0; i < step_; ++i) {
+    for (std::size_t i = 0; i < step; ++i) {
       fine_.push_back(std::polar(1.0, turn * static_cast<double>(i)));
-      coarse_.push_back(std::polar(1.0, turn * static_cast<double>(i * step_)));
+      coarse_.push_back(std::polar(1.0, turn * static_cast<double>(i << bits_)));
     }
   }
-  [[nodiscard]] Complex operator[](std::size_t m) const { return coarse_[m / step_] * fine_[m % step_]; }
+  [[nodiscard]] Complex operator[](std::size_t m) const {
+    return coarse_[m >> bits_] * fine_[m & ((std::size_t{1} << bits_) - 1)];
+  }
 
  private:
-  std::size_t step_;
+  std::size_t bits_;
   std::vector<Complex> fine_, coarse_;
 };
 

@@ -26,14 +26,16 @@ struct Logged {
   explicit Logged(Value&& value) : Logged() {
     for (std::size_t i = 0; i < kSamples; ++i) channel.push_back(value(static_cast<double>(i)));
   }
-  [[nodiscard]] RepairedRecords repaired(const char* name) const {
+  [[nodiscard]] Record record(const char* name) const {
     Record record;
     record.name = "logged";
     record.time_s = time;
     record.rate_radps = rate;
     record.channels = {{name, channel}};
-    return repair_records({record});
+    return record;
   }
+  [[nodiscard]] RepairedRecords repaired(const char* name) const { return repair_channels({record(name)}); }
+  [[nodiscard]] RepairedRecords without_knocks() const { return leave_out_knocks({record("supply_V")}); }
 };
 
 // Hundredths of a degree, as a thermometer gives them.
@@ -163,7 +165,7 @@ TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsMissing) {
   for (double& rate : logged.rate) rate = 1e-6 * normal(random);
   logged.rate[1700] = 5e-4;  // a hundred times what the others span
   const auto clean = logged.rate;
-  const RepairedRecords repaired = logged.repaired("temperature_degC");
+  const RepairedRecords repaired = logged.without_knocks();
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double rate = repaired.records[0].rate_radps[i];
     if (i == 1700)
@@ -176,7 +178,26 @@ TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsMissing) {
   // A knock of ten samples and one of sixty sigma are the sensor's own.
   logged.rate[1700] = 6e-5;
   for (std::size_t i = 3000; i < 3010; ++i) logged.rate[i] = 5e-4;
-  EXPECT_TRUE(logged.repaired("temperature_degC").remarks.empty());
+  EXPECT_TRUE(logged.without_knocks().remarks.empty());
+}
+
+TEST(ChannelFaults, AreTheSameHoweverManyChannelsAreLookedAtAtATime) {
+  Logged logged(warming);
+  std::vector<std::vector<double>> columns(6, logged.channel);
+  Record record = logged.record("temperature_degC");
+  record.channels.clear();
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t i = 100 * c + 50; i < 100 * c + 55; ++i) columns[c][i] = c == 3 ? columns[c][i] : 85.0;
+    record.channels.push_back({"temperature_" + std::to_string(c) + "_degC", columns[c]});
+  }
+  const RepairedRecords one = repair_channels({record, record}, 1);
+  const RepairedRecords many = repair_channels({record, record}, 4);
+  ASSERT_EQ(one.remarks.size(), 10U);
+  EXPECT_EQ(one.remarks, many.remarks);
+  for (std::size_t r = 0; r < 2; ++r)
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      EXPECT_TRUE(std::ranges::equal(one.records[r].channels[c].values, many.records[r].channels[c].values));
+  EXPECT_EQ(one.records[0].channels[3].values.data(), columns[3].data()) << "without a fault, not copied";
 }
 
 // Without rows for 300 s the channel goes on in a straight line: no step for a derivative to see.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 
 #include "filters/effects/compensator.h"
 #include "tests/unit/diagnosis/gaussian_deviate.h"
@@ -56,6 +57,16 @@ Record record_of(const Loop& made) {
 TEST(Ramp, WrapsAreRecognised) {
   EXPECT_EQ(wrap_period(loop(4000, 5.4e-5, 0.0).ramp), kPeriod);
   EXPECT_EQ(wrap_period(std::vector<double>{20.0, 21.0, 22.0, 21.5, 20.0}), 0.0);
+}
+
+TEST(Ramp, WhatIsMissingIsNoCountAndWhatFallsBelowZeroIsNoCounter) {
+  std::vector<double> ramp = loop(9000, 5.4e-5, 0.0).ramp;
+  ramp[10] = std::nan("");
+  ramp[20] = std::numeric_limits<double>::infinity();
+  ramp[5000] = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(wrap_period(ramp), kPeriod);
+  ramp[8999] = -1.0;
+  EXPECT_EQ(wrap_period(ramp), 0.0);
 }
 
 TEST(Ramp, TheTableIsTheNonlinearity) {

@@ -14,6 +14,7 @@
 #include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/prepared_channels.h"
 #include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/unused_channels.h"
 
@@ -300,6 +301,51 @@ TEST(PreparedRecords, NothingIsRepairedWhereNothingIsWrong) {
   Record backwards = arrays.record();
   arrays.time[7] = arrays.time[5];
   EXPECT_THROW(PreparedRecords({backwards}), std::invalid_argument);
+}
+
+// Two axes with one thermometer, which has a fault, and a hole of half an hour.
+TEST(PreparedChannels, AreThoseOfEachAxisByItself) {
+  Arrays x(4000);
+  Arrays y(4000);
+  std::mt19937_64 draw(13);
+  std::normal_distribution<double> normal;
+  for (Arrays* axis : {&x, &y}) {
+    for (double& rate : axis->rate) rate = 1e-6 * normal(draw);
+    for (std::size_t i = 0; i < 4000; ++i) {
+      axis->temperature[i] = 25.0 + 1e-3 * static_cast<double>(i);
+      if (i >= 1500) axis->time[i] += 1800.0;
+    }
+    axis->temperature[1000] = 85.0;
+  }
+  y.rate[2500] = 1e-3;  // a knock of one of them
+  const std::vector<Record> of_x = {x.record()};
+  const std::vector<Record> of_y = {y.record()};
+  const PreparedChannels channels(of_x);
+  EXPECT_TRUE(channels.has_faults());
+  for (const std::vector<Record>* captures : {&of_x, &of_y}) {
+    const PreparedRecords shared(*captures, {}, 0.01, &channels);
+    const PreparedRecords own(*captures);
+    EXPECT_EQ(shared.remarks(), own.remarks());
+    ASSERT_EQ(shared.whole().size(), 2U);
+    ASSERT_EQ(own.whole().size(), 2U);
+    for (std::size_t part = 0; part < 2; ++part) {
+      const Record& one = shared.whole()[part];
+      const Record& other = own.whole()[part];
+      EXPECT_EQ(one.name, other.name);
+      EXPECT_TRUE(std::ranges::equal(one.time_s, other.time_s));
+      EXPECT_EQ(one.rate_radps.size(), part == 0 ? 1500U : 2500U);
+      for (std::size_t i = 0; i < one.rate_radps.size(); ++i)
+        EXPECT_EQ(std::isnan(one.rate_radps[i]) ? 1.0 : one.rate_radps[i],
+                  std::isnan(other.rate_radps[i]) ? 1.0 : other.rate_radps[i]);
+      EXPECT_TRUE(
+          std::ranges::equal(values_of(one, "temperature_degC"), values_of(other, "temperature_degC")));
+    }
+    EXPECT_EQ(values_of(shared.as_logged()->front(), "temperature_degC")[1000], 85.0);
+    EXPECT_EQ(std::isnan(shared.whole()[1].rate_radps[1000]), captures == &of_y);
+  }
+  Record short_of_one = y.record();
+  short_of_one.rate_radps = short_of_one.rate_radps.first(3999);
+  EXPECT_THROW(static_cast<void>(channels.of_axis({short_of_one})), std::invalid_argument);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <exception>
 #include <span>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "drivers/capture/column_names.h"
@@ -20,6 +21,10 @@
 
 namespace ifog::tools {
 namespace {
+
+// Rates worked on at a time, were there fewer processors: of three on two, the third would have one idle
+// beside it.
+constexpr unsigned kTogether = 3;
 
 // No value at all in a column's rows.
 bool is_dead(const SeriesView& values) {
@@ -217,7 +222,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   // Side by side; of what several of them refuse the first is told.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());
-  share_out(rates.size(), 0, [&](std::size_t i) {
+  share_out(rates.size(), std::max(kTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {
     try {
       records[i] = record_of(part, rates[i], options);
     } catch (...) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -17,6 +18,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/record/prepared_channels.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
@@ -166,11 +168,11 @@ std::vector<Record> records_of(const std::vector<CaptureView>& captures,
 
 namespace {
 
-Diagnosis diagnose_axis(const std::vector<CaptureView>& captures, const std::vector<std::string>& names,
-                        std::size_t axis, const DiagnoseOptions& options) {
-  const std::vector<Record> records = records_of(captures, names, axis);
+// work(), with what it refuses as one line that names a capture.
+template <typename Work>
+auto naming_a_capture(const std::vector<std::string>& names, const Work& work) {
   try {
-    return diagnose(records, options);
+    return work();
   } catch (const std::invalid_argument& error) {
     // Of several captures the diagnosis names the one it means.
     const std::string what = error.what();
@@ -200,12 +202,17 @@ class Together {
 std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& captures,
                                          const std::vector<std::string>& names,
                                          const std::vector<std::size_t>& axes, const AxesToDiagnose& wanted) {
+  if (axes.empty()) return {};
   DiagnoseOptions options;
   options.significance = wanted.significance;
   options.fit_from = wanted.fit_from;
   options.fit_to = wanted.fit_to;
   options.subtract_earth_rate = wanted.earth;
   options.latitude_rad = wanted.latitude_rad;
+  const auto channels = naming_a_capture(names, [&] {
+    return std::make_unique<PreparedChannels>(records_of(captures, names, axes.front()),
+                                              TimeShare{options.fit_from, options.fit_to}, wanted.threads);
+  });
   Together together("diagnose", axes.size(), options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
@@ -216,7 +223,8 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
     own.axis = found[i].axis = captures.front().axes[axes[i]];
     own.progress = [&, i](std::size_t done, std::size_t) { together.at(i, done); };
     try {
-      found[i].diagnosis = diagnose_axis(captures, names, axes[i], own);
+      const std::vector<Record> records = records_of(captures, names, axes[i]);
+      found[i].diagnosis = naming_a_capture(names, [&] { return diagnose(records, own, channels.get()); });
     } catch (...) {
       failed[i] = std::current_exception();
     }

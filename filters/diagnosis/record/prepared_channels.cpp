@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/record/prepared_channels.h"
+
+#include <utility>
+
+#include "filters/diagnosis/record/blocks.h"
+
+namespace ifog {
+namespace {
+
+const std::vector<Record>& checked(const std::vector<Record>& captures) {
+  check_columns(captures);
+  return captures;
+}
+
+}  // namespace
+
+// Of a share of each record the rest is what judges, so there records stay whole. An angle's wraps are no
+// faults.
+PreparedChannels::PreparedChannels(const std::vector<Record>& captures, const TimeShare& share,
+                                   unsigned threads)
+    : timed_(with_even_stamps(checked(captures))),
+      parted_(share.whole() ? part_at_long_holes(timed_.records) : not_parted(timed_.records)),
+      unwrapped_(with_unwrapped_angles(parted_.records)),
+      repaired_(repair_channels(unwrapped_.records, threads)) {}
+
+std::vector<Record> PreparedChannels::of_axis(const std::vector<Record>& captures) const {
+  return with_rates_of(captures, repaired_.records);
+}
+
+std::vector<Record> PreparedChannels::as_logged(const std::vector<Record>& captures) const {
+  return with_rates_of(captures, unwrapped_.records);
+}
+
+std::vector<Record> PreparedChannels::with_rates_of(const std::vector<Record>& captures,
+                                                    const std::vector<Record>& channels) const {
+  check_columns(captures);
+  std::vector<Record> records;
+  records.reserve(channels.size());
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    Record record = part_of(captures[parted_.parts[i].of], parted_.parts[i].samples);
+    record.name = channels[i].name;
+    record.time_s = channels[i].time_s;
+    record.channels = channels[i].channels;
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+std::vector<std::string> PreparedChannels::remarks_of_times() const {
+  std::vector<std::string> all = timed_.remarks;
+  all.insert(all.end(), parted_.remarks.begin(), parted_.remarks.end());
+  return all;
+}
+
+}  // namespace ifog

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the diagnoses of all axes of a sensor begin with: stamps that scatter set even, captures parted at
+// long holes, angles without their wraps, channels' faults repaired. Nothing of it is of a rate, so it is
+// done once. Each step's records show columns that the step before owns, so all of it stays together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/record/channel_faults.h"
+#include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/record/even_stamps.h"
+#include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/long_holes.h"
+
+namespace ifog {
+
+class PreparedChannels {
+ public:
+  // captures: of any one axis; their arrays outlive this. share: of each, that will be fitted; threads:
+  // channels looked at at a time, 0: as many as there are processors. Throws std::invalid_argument as
+  // check_columns() does.
+  explicit PreparedChannels(const std::vector<Record>& captures, const TimeShare& share = {},
+                            unsigned threads = 1);
+  PreparedChannels(const PreparedChannels&) = delete;
+  PreparedChannels& operator=(const PreparedChannels&) = delete;
+
+  // The same captures as records of an axis: its rates, with these times and channels. Throws
+  // std::invalid_argument as check_columns() does.
+  [[nodiscard]] std::vector<Record> of_axis(const std::vector<Record>& captures) const;
+  // Likewise, with channels before their faults were repaired.
+  [[nodiscard]] std::vector<Record> as_logged(const std::vector<Record>& captures) const;
+  [[nodiscard]] bool has_faults() const { return !repaired_.values.empty(); }
+  [[nodiscard]] const std::vector<StuckStretch>& stuck() const { return repaired_.stuck; }
+  // In the order of the steps: of times, and of channels.
+  [[nodiscard]] std::vector<std::string> remarks_of_times() const;
+  [[nodiscard]] const std::vector<std::string>& remarks() const { return repaired_.remarks; }
+
+ private:
+  [[nodiscard]] std::vector<Record> with_rates_of(const std::vector<Record>& captures,
+                                                  const std::vector<Record>& channels) const;
+
+  TimedRecords timed_;
+  PartedRecords parted_;
+  DerivedRecords unwrapped_;
+  RepairedRecords repaired_;
+};
+
+}  // namespace ifog
