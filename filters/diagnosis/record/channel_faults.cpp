@@ -250,8 +250,9 @@ RepairedChannel repaired_channel(const Record& record, std::size_t index, const 
 // of all the others: a knock, or a fault of the logger. Nothing that an effect could be fitted to.
 std::optional<Samples> rate_without_knocks(const Record& record, const std::string& where,
                                            std::vector<std::string>& remarks) {
-  const Samples error = error_of(record);
-  const Readings of(record, error);
+  const bool plain = record.reference_radps.empty();
+  const Samples less_reference = plain ? Samples() : error_of(record);
+  const Readings of(record, plain ? record.rate_radps : std::span<const double>(less_reference));
   const Usual usual = usual_of(of.values);
   const double far = kFar * (usual.high - usual.low);
   if (!(far > 0.0)) return std::nullopt;
