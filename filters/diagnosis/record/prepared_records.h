@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures as every diagnosis and measurement takes them: stamps that scatter set even, parted at
-// long holes, angles without their wraps, faults of logging
-// repaired, a late reference shifted, derived channels beside, turns left out, the part to fit cut, ramps
-// taken out. Each step's records show columns that the step before owns, so all of it stays together.
+// Captures as every diagnosis and measurement takes them: stamps that scatter set even, parted at long holes,
+// angles without their wraps, faults of logging repaired, a late reference shifted, derived channels beside,
+// turns left out, the part to fit cut, ramps taken out. Each step's records show columns that the step before
+// owns, so all of it stays together.
 #pragma once
 
 #include <string>
