@@ -9,6 +9,7 @@
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"
+#include "filters/rules/names.h"
 
 namespace ifog {
 namespace {
@@ -153,8 +154,10 @@ void TableReader::filter_setting(const FilterSetting& setting, FilterChoice& cho
   const toml::node* const node = find(setting.key);
   if (node == nullptr) return;
   const std::optional<SettingValue> value = setting_value(*node);
-  if (!value || !choose(setting, *value, choice))
-    wrong(setting.key, *node, expected(setting, node->value<std::string>().value_or("")));
+  const std::string text = node->value<std::string>().value_or("");
+  if (!value || !choose(setting, *value, choice)) return wrong(setting.key, *node, expected(setting, text));
+  // What has its name elsewhere than in the table.
+  if (const std::string name = expected_name(setting, text); !name.empty()) wrong(setting.key, *node, name);
 }
 
 std::optional<std::vector<int>> TableReader::integers(std::string_view key, int least, int most) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kNext = 7;      // stamps whose median says that a hole is one
 constexpr std::size_t kSettle = 128;  // that say what the phase is
 constexpr double kHalf = 0.5;         // of a period
-// A loop of second order, critically damped: settled within a hundred samples, and with an error of a
+// A tracker of second order, critically damped: settled within a hundred samples, and with an error of a
 // twenty-fifth of a period by stamps that are off by up to half of one.
 constexpr double kPhaseGain = 1.0 / 32.0, kRateGain = kPhaseGain * kPhaseGain / 4.0;
 // Behind a silence of so many periods the device may have begun anew, at any phase.

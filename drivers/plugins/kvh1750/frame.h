@@ -21,7 +21,6 @@ namespace ifog::kvh {
 enum class Format : std::uint8_t { kA = 0x55, kB = 0x56, kC = 0x57 };  // the header's last byte
 
 inline constexpr std::size_t kHeaderLength = 4;
-inline constexpr std::size_t kShortestFrame = 36;
 inline constexpr std::size_t kLongestFrame = 40;
 inline constexpr std::uint32_t kSequenceModulus = 128;
 

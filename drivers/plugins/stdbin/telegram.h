@@ -35,7 +35,7 @@ struct Telegram {
   std::optional<std::uint32_t> sensor_status;  // navigation block 14, the first of its two words
 };
 
-inline constexpr std::size_t kShortestHeader = 21, kChecksum = 4;
+inline constexpr std::size_t kChecksum = 4;
 // All blocks of all masks, and room for some of later versions.
 inline constexpr std::size_t kLongestTelegram = 2048;
 

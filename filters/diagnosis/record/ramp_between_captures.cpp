@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCertainlyAnother =
     60.0;  // twice the log-likelihood, of the harmonics there and over those that stand
-// The rate as measured has a bias, which the loop's ramp need not share, and another one from capture to
+// The rate as measured has a bias, which the ramp need not share, and another one from capture to
 // capture: k is as uncertain.
 constexpr double kBiased = 0.02;
 constexpr double kApart = 2.0;  // such reaches, between where lines would move and where they would stand
@@ -46,8 +46,8 @@ Best best_near(const UnbrokenPart& part, const std::vector<double>& angle, doubl
   return best;
 }
 
-// Over the angle as measured, or as turned at the mean rate: the noise of the rate is in the ramp of a loop
-// that follows what it measures, and not in that of one that follows the rotation.
+// Over the angle as measured, or as turned at the mean rate: the noise of the rate is in the ramp of a
+// closed loop that follows what it measures, and not in that of one that follows the rotation.
 Best best_near(const UnbrokenPart& part, double k, double reach, double width, std::size_t harmonics) {
   const Best measured = best_near(part, part.angle_rad, k, reach, width, harmonics);
   const Best even = best_near(part, evenly_turned(part), k, reach, width, harmonics);

@@ -12,7 +12,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import tomllib
 
 IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
@@ -20,6 +19,7 @@ sys.path.insert(0, str(SOURCE / "tests/system/command_line"))
 import schema  # noqa: E402
 
 import lot  # noqa: E402
+from waiting import wait_for  # noqa: E402
 
 
 def fleet(folder, *arguments, expect=0):
@@ -241,16 +241,6 @@ def is_running(process):
         return pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
     except OSError:
         return False
-
-
-def wait_for(what, ready, seconds=60):
-    until = time.monotonic() + seconds
-    while time.monotonic() < until:
-        value = ready()
-        if value:
-            return value
-        time.sleep(0.05)
-    raise AssertionError(f"{what}: not within {seconds} s")
 
 
 def check_no_child_outlives_the_run(folder):

@@ -17,11 +17,11 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 
 IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 
 import lot  # noqa: E402
+from waiting import wait_for  # noqa: E402
 
 GYROS = [f"G{i:02}" for i in range(1, 11)]
 INSIDE = "IFOG_FLEET_NAMESPACE"
@@ -58,16 +58,6 @@ PartitionName=p Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP
 def skip(why):
     print(f"SKIPPED: {why}")
     sys.exit(77)
-
-
-def wait_for(what, ready, seconds=60):
-    until = time.monotonic() + seconds
-    while time.monotonic() < until:
-        value = ready()
-        if value:
-            return value
-        time.sleep(0.2)
-    raise AssertionError(f"{what}: not within {seconds} s")
 
 
 class Cluster:

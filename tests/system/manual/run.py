@@ -16,6 +16,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import each_check  # noqa: E402
+
 IFOG, IFOGD = map(os.path.abspath, sys.argv[1:3])
 SOURCE, MANUAL = (pathlib.Path(argument).resolve() for argument in sys.argv[3:])
 COMPLETION = "/usr/share/bash-completion/bash_completion"
@@ -185,15 +188,7 @@ def main():
     if missing or not os.path.exists(COMPLETION):
         print(f"no {', '.join(missing) or 'bash-completion'} here; tools/install-packages test installs them")
         return 77
-    checks, failed = Checks(), 0
-    for name in sorted(each for each in dir(Checks) if each.startswith("check_")):
-        try:
-            getattr(checks, name)()
-            print(f"ok       {name[6:].replace('_', ' ')}")
-        except AssertionError as error:
-            failed += 1
-            print(f"FAILED   {name[6:].replace('_', ' ')}: {error}")
-    return 1 if failed else 0
+    return 1 if each_check.failures_of(Checks()) else 0
 
 
 if __name__ == "__main__":

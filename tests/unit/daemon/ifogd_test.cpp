@@ -88,7 +88,8 @@ TEST_F(Ifogd, WhatShowsOnlyInThePartsIsToldByItsKeysLine) {
         {"model = \"bad.toml\"\n" + std::string(kFile), ":7" + sensor + path("bad.toml") + ":1: version = 7"},
         {"model = \"model.toml\"\n" + std::string(kFile),
          ":7" + sensor + path("model.toml") + ":4: the model uses channel \"supply_V\", which"},
-        {std::string(kFile) + "[sensor.filter]\nstate = \"foo\"\n", ":11" + sensor},
+        {std::string(kFile) + "[sensor.filter]\nstate = \"foo\"\n",
+         std::string(":11: sensor.filter.state = 'foo': expected ")},
         {std::string("[sensor.transport]\ntype = \"can\"\ninterface = \"can0\"\n"),
          ":8" + sensor + "driver \"kvh1750\" cannot be fed from a transport of type \"can\""},
         {std::string(kFile) + "[[sensor.channel]]\nname = \"coil_degC\"\nsource = \"can\"\ninterface = "

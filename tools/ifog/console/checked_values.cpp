@@ -31,6 +31,11 @@ bool read(std::string_view text, T& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+std::string_view without_plus(std::string_view digits) {
+  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+  return digits;
+}
+
 std::string complaint(const std::string& value, const std::string& expected) {
   return "is " + in_quotes(value) + ", expected " + expected;
 }
@@ -53,14 +58,13 @@ std::optional<double> number_in(const std::string& text) {
 
 std::optional<std::int64_t> whole_in(const std::string& text) {
   std::int64_t value = 0;
-  if (!CLI::detail::lexical_cast(text, value)) return std::nullopt;
+  if (!read(without_plus(text), value)) return std::nullopt;
   return value;
 }
 
 bool is_number(const std::string& text, ValueKind kind) {
   if (kind == ValueKind::number) return number_in(text).has_value();
-  std::string_view digits = text;
-  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+  const std::string_view digits = without_plus(text);
   std::int64_t whole = 0;
   std::uint64_t count = 0;
   if (kind == ValueKind::count) return read(digits, count);

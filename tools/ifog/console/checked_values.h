@@ -22,7 +22,7 @@ ValueKind value_kind(const std::string& type);
 // Decimal and finite, by the rule of drivers/ifog/decimal.h; empty: it is none.
 std::optional<double> number_in(const std::string& text);
 
-// Whole, within 64 bits, as the parser takes it; empty: it is none.
+// Whole, within 63 bits and a sign; empty: it is none. (The parser takes the largest one for what is larger.)
 std::optional<std::int64_t> whole_in(const std::string& text);
 
 // Decimal and finite; whole where the kind says so, and within 64 bits.

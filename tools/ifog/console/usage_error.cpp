@@ -65,8 +65,11 @@ std::string plainly(const CLI::App& command, const std::string& said) {
   if (!said.starts_with(kSays) || at == std::string::npos) return plainly_counted(said);
   const std::string name = said.substr(kSays.size(), at - kSays.size());
   const CLI::Option* const option = command.get_option_no_throw(name);
-  return name + ": is " + in_quotes(said.substr(at + kIs.size())) + ", expected " +
-         (option == nullptr ? "another value" : option->get_type_name() + " in the range that it can hold");
+  std::string expected = "another value";
+  if (option != nullptr)
+    expected = option->get_type_name().empty() ? "nothing behind it, true or false"
+                                               : option->get_type_name() + " in the range that it can hold";
+  return name + ": is " + in_quotes(said.substr(at + kIs.size())) + ", expected " + expected;
 }
 
 }  // namespace
