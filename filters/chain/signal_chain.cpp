@@ -90,16 +90,24 @@ void ChainParts::recall(const LearnedNoise& learned) noexcept {
   if (!learns_process_noise_) return;
   filter_.process_noise = learned.process_noise;
   rest_measurement_noise_ = learned.measurement_noise;
-  rest_noise_.recall(learned.octaves);
+  if (learned.is_of(identity_)) {
+    rest_noise_.recall(learned.octaves);
+  } else {
+    learned_otherwise_ = learned;
+    rest_noise_.recall_bound(learned.octaves);
+  }
 }
 
 std::optional<LearnedNoise> ChainParts::learned() const noexcept {
   if (!learns_process_noise_ || !estimator_ || !(rest_measurement_noise_ > 0.0)) return std::nullopt;
-  const EstimatorHealth& health = estimator_->health();
-  return LearnedNoise{.process_noise = filter_.process_noise,
-                      .measurement_noise = rest_measurement_noise_,
-                      .colour = health.colour,
-                      .octaves = rest_noise_.known()};
+  if (learned_otherwise_ && !rest_noise_.knows_enough()) return learned_otherwise_;
+  LearnedNoise out{.process_noise = filter_.process_noise,
+                   .measurement_noise = rest_measurement_noise_,
+                   .colour = estimator_->health().colour,
+                   .octaves = rest_noise_.known(),
+                   .model = {}};
+  out.set_model(identity_);
+  return out;
 }
 
 void ChainParts::use_effects(const ChainSettings& settings) {
@@ -202,6 +210,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
     }
   }
   moved_ = noise.moved;
+  rest_noise_.begin_after(start_up_size_);
   estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
   retune();
   shares_.walk = noise.walk_share;

@@ -135,7 +135,8 @@ class ChainParts {
   std::uint32_t measured_axes_ = 0;  // that the estimator has been given
   bool learns_process_noise_ = false, learns_measurement_noise_ = false;
   RestNoise rest_noise_;
-  double rest_measurement_noise_ = 0.0;  // as that has found it
+  double rest_measurement_noise_ = 0.0;            // as that has found it
+  std::optional<LearnedNoise> learned_otherwise_;  // with another model: a bound
   // Noise of a sample over that of long means: the filter's gain, which takes the one for white, is right for
   // the other with a driving noise as much larger.
   double colour_ = 1.0;

@@ -45,9 +45,24 @@ void RestNoise::recall(const OctaveSums& known) noexcept {
   if (!(known.samples > 0.0)) return;
   known_ = known;
   contradictions_ = 0;
+  chapter_length_ = kChapter;
   // Its ratio first of all: no chapter is there to be compared before.
   search_.begin(known_);
   judging_ = Judging::kAll;
+}
+
+void RestNoise::recall_bound(const OctaveSums& of_other) noexcept {
+  if (!(of_other.samples > 0.0)) return;
+  judged_ = of_other;
+  contradictions_ = 0;
+  // No chapter ends before its ratio is found.
+  chapter_length_ = 2 * kShortest;
+  search_.begin(judged_);
+  judging_ = Judging::kBound;
+}
+
+void RestNoise::begin_after(std::size_t samples) noexcept {
+  chapter_length_ = static_cast<int>(std::clamp<std::size_t>(samples, kShortest, kChapter));
 }
 
 void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) noexcept {
@@ -63,7 +78,8 @@ void RestNoise::take(const Axes& rate, std::uint32_t valid_axes, RestSample is) 
   }
   if (is == RestSample::kMotion || valid_axes == 0) return;
   chapter_.samples += 1.0;
-  if (++in_chapter_ < kChapter) return;
+  if (++in_chapter_ < chapter_length_) return;
+  chapter_length_ = std::min(2 * chapter_length_, kChapter);
   judged_ = chapter_;
   judged_own_ = chapter_own_;
   judged_own_.samples = judged_.samples;
@@ -109,21 +125,37 @@ void RestNoise::add(std::size_t axis, double rate) noexcept {
 
 void RestNoise::judge() noexcept {
   if (!search_.advance(judging_ == Judging::kAll ? known_ : judged_)) return;
-  if (judging_ == Judging::kChapter) {
-    compare();
-    return;
+  switch (std::exchange(judging_, Judging::kNothing)) {
+    case Judging::kNothing:
+      break;
+    case Judging::kBound:
+      most_ratio_ = search_.quickest();
+      break;
+    case Judging::kChapter:
+      compare();
+      break;
+    case Judging::kAll:
+      judge_all();
+      break;
   }
-  known_ratio_ = std::min(search_.quickest(), likelihood_.quickest(kNearlyAsWell));
-  judging_ = Judging::kNothing;
+}
+
+void RestNoise::judge_all() noexcept {
+  if (most_ratio_ < search_.ratio()) {
+    const double behind = fit_octaves(known_.squares, known_.counts, most_ratio_).misfit - search_.misfit();
+    if (0.5 * behind > kSurely) most_ratio_ = kNoBound;
+  }
+  likeliest_ = search_.ratio();
+  known_ratio_ = std::min({search_.quickest(), likelihood_.quickest(kNearlyAsWell), most_ratio_});
   news_ = true;
 }
 
 // The chapter that was read before this one with all that is known.
 void RestNoise::compare() noexcept {
-  judging_ = Judging::kNothing;
   if (known_.samples > 0.0) {
-    const double behind =
-        fit_octaves(judged_.squares, judged_.counts, known_ratio_).misfit - search_.misfit();
+    // Quicker than the bound, or slower than what is likeliest: what lies between is in both.
+    const double against = std::clamp(search_.ratio(), std::min(likeliest_, known_ratio_), known_ratio_);
+    const double behind = fit_octaves(judged_.squares, judged_.counts, against).misfit - search_.misfit();
     const bool differ = 0.5 * behind > kSurely;
     const bool quicker = differ && search_.ratio() > known_ratio_;
     if (differ) {
@@ -132,7 +164,9 @@ void RestNoise::compare() noexcept {
       begin_chapter();
     }
     if (quicker && (contradictions_ < 0 || ++contradictions_ < kContradicted)) return;
-    contradictions_ = -1;
+    // A bound may still turn out too slow.
+    contradictions_ = !quicker && known_ratio_ == most_ratio_ ? 0 : -1;
+    if (quicker) most_ratio_ = kNoBound;
     if (differ) {
       known_ = {};
       likelihood_.forget();

@@ -66,12 +66,13 @@ void TrackerBank::begin() noexcept {
   measured_ = 0;
 }
 
-void TrackerBank::begin(std::span<const Axes> measurements) noexcept {
+void TrackerBank::begin(std::span<const Axes> measurements, std::uint32_t measured_axes) noexcept {
   begin();
   for (const Axes& rate : measurements) {
     predict(1.0);
-    correct(rate, ~0U);
+    correct(rate, axes_of_sensor(axes_));
   }
+  measured_ = measured_axes;
 }
 
 void TrackerBank::begin_from(std::size_t tracker, std::size_t from) noexcept {

@@ -84,7 +84,7 @@ class WalkLikelihood {
   static constexpr double kSlowest = 1e-12, kStep = 1.5;
   // A lag of four blocks.
   static constexpr double kQuickest = 1.0 / (16.0 * kBlock * kBlock);
-  static constexpr double kFewest = 32.0;
+  static constexpr double kFewest = 16.0;
 
   struct Level {
     double value = 0.0, variance = -1.0;  // in that of a block's noise; below 0: not known

@@ -25,6 +25,9 @@ class Reader {
     if (!value) fail(key, "expected a string");
     return *value;
   }
+  [[nodiscard]] std::string words_or(const char* key, const char* otherwise) const {
+    return table_.contains(key) ? words(key) : otherwise;
+  }
   [[nodiscard]] double at_least(const char* key, double least) const {
     return plausible(key, table_[key].value<double>(), least);
   }
@@ -67,6 +70,7 @@ std::string kept_noise_text(const KeptNoise& kept) {
   line("axes", std::to_string(kept.axes));
   line("sample_rate_hz", toml_number(kept.sample_rate_hz));
   line("learned", toml_quoted(kept.learned), "  # UTC, the last rest that is in it");
+  line("model", toml_quoted(noise.model.data()), "  # that corrected it, \"\": none");
   line("process_noise", toml_number(noise.process_noise), "  # of a random walk, (rad/s)^2/s");
   line("measurement_noise", toml_number(noise.measurement_noise), "  # per sample, (rad/s)^2");
   line("colour", toml_list(std::span(noise.colour).first(static_cast<std::size_t>(kept.axes))),
@@ -88,6 +92,8 @@ KeptNoise parse_kept_noise(std::string_view text, const std::string& name) {
   if (axes != std::floor(axes) || axes > kMaxAxes)
     in.fail("axes", "expected 1 to " + std::to_string(kMaxAxes));
   kept.axes = static_cast<int>(axes);
+  // Of a file that does not say: it is taken for another one.
+  kept.noise.set_model(in.words_or("model", "?"));
   // The smallest that is no denormal: what is divided by stays a number.
   constexpr double kPositive = 1e-300;
   kept.sample_rate_hz = in.at_least("sample_rate_hz", kPositive);

@@ -8,6 +8,7 @@
 //   axes = 3
 //   sample_rate_hz = 1000
 //   learned = "2026-01-31T13:05:09Z"   # the last rest that is in it
+//   model = "3f9c21a0b7de"            # identity of the one that corrected it; "": none
 //   process_noise = 1.2e-15            # of a random walk, (rad/s)^2/s
 //   measurement_noise = 3.1e-10        # per sample, (rad/s)^2
 //   colour = [1.0, 1.02, 0.99]         # by axis

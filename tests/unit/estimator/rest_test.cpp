@@ -106,6 +106,22 @@ TEST(RestNoise, FindsTheWalkThatMadeTheRecord) {
   }
 }
 
+// A few hundred samples say something, a few thousand a good deal: no walk that is there is missed for that.
+TEST(RestNoise, BoundsTheWalkEarly) {
+  constexpr int kSeeds = 5;
+  double still = 0.0, walking = 0.0;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    RestNoise of_still, of_walking;
+    EXPECT_TRUE(learn(of_still, 1e-9, 600, 40 + seed));
+    const auto more = learn(of_still, 1e-9, 2000, 50 + seed), walk = learn(of_walking, 1e-3, 2600, 60 + seed);
+    ASSERT_TRUE(more && walk);
+    still += std::log10(more->process_noise) / kSeeds;
+    walking += std::log10(walk->process_noise) / kSeeds;
+  }
+  EXPECT_LT(still, -3.5);
+  EXPECT_NEAR(walking, -3.0, 0.3);
+}
+
 TEST(RestNoise, LearnsNothingUnderWayOrFromWhatIsPassedOver) {
   for (const RestSample is : {RestSample::kMotion, RestSample::kPassedOver}) {
     RestNoise learner;
@@ -139,6 +155,27 @@ TEST(RestNoise, ForgetsASensorThatWasAnotherOne) {
   const auto after = learn(third, 1e-3, 80 * 4096, 8);
   ASSERT_TRUE(after);
   EXPECT_NEAR(std::log10(after->process_noise / 1e-3), 0.0, 0.25);
+}
+
+// Corrected otherwise than before: a bound from the first news on, the sums begin anew, and what is surely
+// quicker than the bound is believed.
+TEST(RestNoise, WhatOtherCorrectionsLeftIsABound) {
+  RestNoise first;
+  (void)learn(first, 1e-7, 1'000'000, 31);
+  for (const double ratio : {1e-10, 1e-3}) {
+    RestNoise second;
+    second.recall_bound(first.known());
+    const auto early = learn(second, ratio, 1000, 32);
+    ASSERT_TRUE(early);
+    EXPECT_LT(early->process_noise, 3e-7) << ratio;
+    const auto late = learn(second, ratio, 80 * 4096, 33);
+    ASSERT_TRUE(late);
+    EXPECT_LT(second.known().samples, 400'000.0);
+    if (ratio < 1e-7)
+      EXPECT_LT(late->process_noise, 1e-8);
+    else
+      EXPECT_NEAR(std::log10(late->process_noise / ratio), 0.0, 0.25);
+  }
 }
 
 // A swing that passes for rest: blocks that began in it reach into what comes after it, at the octaves that
@@ -232,10 +269,39 @@ TEST(LearnedNoise, TakesThePlaceOfAStartUp) {
   EXPECT_NEAR(second.parts().filter().measurement_noise / (kSigma_radps * kSigma_radps), 1.0, 0.05);
 }
 
+// Ten minutes after a model has come that corrects the walk the sensor is as quiet as it is now; with the
+// same model a walk that seldom shows stays known. What is kept says which model was in.
+TEST(LearnedNoise, GivesWayWhereTheModelHasChanged) {
+  constexpr double kWalk = 1e-7, kCorrected = 1e-10;
+  RestNoise before;
+  (void)learn(before, kWalk, 2'000'000, 34);
+  LearnedNoise learned{.process_noise = kWalk * kSigma_radps * kSigma_radps / kPeriod_s,
+                       .measurement_noise = kSigma_radps * kSigma_radps,
+                       .octaves = before.known(),
+                       .model = {}};
+  for (double& square : learned.octaves.squares) square *= kSigma_radps * kSigma_radps;
+  ChainSettings settings = untold();
+  auto model = std::make_shared<Model>();
+  model->sensor = "corrected";
+  settings.model = model;
+  std::array<double, 2> found{};
+  for (const bool same : {true, false}) {
+    learned.set_model(same ? model->identity() : "");
+    settings.learned = learned;
+    SignalChain chain(std::make_unique<ChainParts>(settings));
+    EXPECT_TRUE(chain.parts().learned()->is_of(same ? model->identity() : ""));
+    (void)run(chain, kCorrected, 120'000, 35);
+    found[same ? 0 : 1] = chain.parts().filter().process_noise * kPeriod_s / (kSigma_radps * kSigma_radps);
+    EXPECT_TRUE(chain.parts().learned()->is_of(model->identity()));
+  }
+  EXPECT_GT(found[0], 3e-8);
+  EXPECT_LT(found[1], 3e-9);
+}
+
 TEST(LearnedNoise, StandsBehindWhatIsTold) {
   ChainSettings settings = untold();
   settings.learned =
-      LearnedNoise{.process_noise = 1.0, .measurement_noise = 2.0, .colour = {}, .octaves = {}};
+      LearnedNoise{.process_noise = 1.0, .measurement_noise = 2.0, .colour = {}, .octaves = {}, .model = {}};
   auto model = std::make_shared<Model>();
   model->filter = told(1e-6);
   settings.model = model;

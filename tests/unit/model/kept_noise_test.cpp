@@ -25,6 +25,7 @@ KeptNoise some() {
     kept.noise.octaves.counts[k] = static_cast<double>(k);
   }
   kept.noise.octaves.samples = 8192.0;
+  kept.noise.set_model("3f9c21a0b7de");
   return kept;
 }
 
@@ -58,6 +59,14 @@ TEST(KeptNoise, ReadsBackToTheBit) {
   EXPECT_EQ(read.noise.octaves.squares, kept.noise.octaves.squares);
   EXPECT_EQ(read.noise.octaves.counts, kept.noise.octaves.counts);
   EXPECT_EQ(read.noise.octaves.samples, kept.noise.octaves.samples);
+  EXPECT_EQ(read.noise.model, kept.noise.model);
+}
+
+// As written before the model was said.
+TEST(KeptNoise, OfNoModelThatIsSaidItIsOfAnother) {
+  const KeptNoise read = parse_kept_noise(noise_with("model = \"3f9c21a0b7de\"", ""), "f.toml");
+  EXPECT_FALSE(read.noise.is_of(""));
+  EXPECT_FALSE(read.noise.is_of("3f9c21a0b7de"));
 }
 
 TEST(KeptNoise, RefusesByLineWhatIsNone) {
@@ -65,11 +74,11 @@ TEST(KeptNoise, RefusesByLineWhatIsNone) {
             "f.toml:2: schema: expected \"ifog.noise/1\"");
   EXPECT_EQ(noise_complaint(noise_with("axes = 2", "axes = 4")), "f.toml:5: axes: expected 1 to 3");
   EXPECT_EQ(
-      noise_complaint(noise_with("axes = 2", "axes = 3")).rfind("f.toml:10: colour: expected a list of 3", 0),
+      noise_complaint(noise_with("axes = 2", "axes = 3")).rfind("f.toml:11: colour: expected a list of 3", 0),
       0U);
   for (const char* wrong : {"nan", "inf", "-1", "0", "\"1\"", "[1]"})
     EXPECT_EQ(noise_complaint(noise_with("samples = 8192", std::string("samples = ") + wrong))
-                  .rfind("f.toml:11: samples: expected a number from 1", 0),
+                  .rfind("f.toml:12: samples: expected a number from 1", 0),
               0U)
         << wrong;
   EXPECT_EQ(noise_complaint(noise_with("sensor = \"nose\"\n", "")), "f.toml: sensor: expected a string");
