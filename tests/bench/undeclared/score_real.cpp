@@ -140,8 +140,8 @@ ifog::Capture piece(const Source& source, const Recordings& from, Draw& draw) {
   return c;
 }
 
-// What lags the channel and is settled when the record begins: at what the channel was, not at the noise of its
-// first reading, whose decay would be a warm-up.
+// What lags the channel and is settled when the record begins: at what the channel was, not at the noise of
+// its first reading, whose decay would be a warm-up.
 Series settled_low_pass(const Series& channel, double tau_s) {
   const auto first = std::min(channel.size(), static_cast<std::size_t>(tau_s / kStep_s));
   double mean = 0.0;
