@@ -131,6 +131,8 @@ class EffectSearch {
       Trial trial = refined(model, model.size() - 1, each.shape);
       if (each.with) trial.score -= kSecondOfPair;
       if (each.with) trial.added = 2;
+      // A knock that does not last is no effect, nor does it speak against one that is hidden beside it.
+      if (last.form == Form::kStep && !proven(trial)) continue;
       if (trial.score > best.score) best = trial;
     }
     return best;

@@ -140,13 +140,25 @@ ifog::Capture piece(const Source& source, const Recordings& from, Draw& draw) {
   return c;
 }
 
+// What lags the channel and is settled when the record begins: at what the channel was, not at the noise of
+// its first reading, whose decay would be a warm-up.
+Series settled_low_pass(const Series& channel, double tau_s) {
+  const auto first = std::min(channel.size(), static_cast<std::size_t>(tau_s / kStep_s));
+  double mean = 0.0;
+  for (std::size_t k = 0; k < first; ++k) mean += channel[k] / static_cast<double>(first);
+  Series led(1, mean);
+  led.insert(led.end(), channel.begin(), channel.end());
+  const Series out = low_passed(led, tau_s, kStep_s);
+  return {out.begin() + 1, out.end()};
+}
+
 // Adds an effect of `form` of the channel, 12 to 80 times its error in this noise; returns how many times.
 double implant_effect(ifog::Capture& c, const Series& channel, const std::string& form, Draw& draw) {
   const std::size_t samples = channel.size();
   Series effect(channel);
   if (form != "linear") {
     const double tau = draw.log_uniform(60.0, 300.0);
-    const Series slow = low_passed(channel, tau, kStep_s);
+    const Series slow = settled_low_pass(channel, tau);
     for (std::size_t k = 0; k < samples; ++k)
       effect[k] = form == "rate" ? (channel[k] - slow[k]) / tau : slow[k];
   }

@@ -135,6 +135,19 @@ TEST(Search, TakesTheEffectThatIsThereAndNoOther) {
   EXPECT_LT(found.chosen[0].p_value, 1e-6);
 }
 
+// It jumps at once and comes back within a minute: a step gains more than the supply does, and does not last.
+TEST(Search, AKnockThatDoesNotLastHidesNoEffect) {
+  BlockData data = with_supply(8);
+  add(data, of(1, Form::kLinear), 4.0);
+  for (Eigen::Index i = 900; i < data.grid.error.size(); ++i)
+    data.grid.error[i] += 30.0 * std::exp(-static_cast<double>(i - 900) / 25.0);
+  const SearchResult found = search_effects(data, with_reconstructed_channels(data), {});
+  ASSERT_EQ(found.chosen.size(), 1U);
+  EXPECT_EQ(found.chosen[0].candidate.channel, 1U);
+  EXPECT_EQ(found.chosen[0].candidate.form, Form::kLinear);
+  EXPECT_NEAR(found.coefficients[1], 4.0, 4.0 * std::sqrt(found.covariance(1, 1)));
+}
+
 SearchResult chosen(const BlockData& data, const std::vector<Candidate>& model) {
   SearchResult found;
   for (const Candidate& each : model) found.chosen.push_back({each, 100.0, 1e-9});
