@@ -21,6 +21,7 @@ import time
 import traceback
 
 import frames
+from again import Again
 from faults import Faults, complaints
 from loop import Loop, make_days
 from machine import Failure, Machine, connect
@@ -55,20 +56,32 @@ def configuration(hertz):
 
 
 class Line:
-    """The host's end of a serial line; a sequence that goes on from one sending to the next."""
+    """The host's end of a serial line; a sequence that goes on from one sending to the next. A silence that fits whole rounds of that
+    sequence at the stated rate is one in which they were lost, for all that anybody can tell, and the daemon says so: between two
+    sendings half a round is over."""
 
     def __init__(self, path):
         self.link, self.next = connect(path, 10), 0
+        self.round_s = self.ended = None
+
+    def at_rate(self, hertz):
+        self.round_s = 128 / hertz
+
+    def send_behind_silence(self, packed, hertz):
+        if self.ended is not None and self.round_s is not None:
+            time.sleep((self.ended - time.monotonic() + self.round_s / 2) % self.round_s)
+        frames.send_paced(self.link, packed, hertz)
+        self.ended = time.monotonic()
 
     def send(self, count, hertz):
         packed = [frames.kvh1750(self.next + i, hertz) for i in range(count)]
         self.next += count
-        sending = threading.Thread(target=frames.send_paced, args=(self.link, packed, hertz), daemon=True)
+        sending = threading.Thread(target=self.send_behind_silence, args=(packed, hertz), daemon=True)
         sending.start()
         return sending
 
 
-class Box(Faults, Loop):
+class Box(Faults, Again, Loop):
     def __init__(self, build, packages, work, given):
         self.build, self.packages, self.work = build, packages, work
         self.pulls, self.kills, self.seconds = given.pulls, given.kills, given.seconds
@@ -105,6 +118,8 @@ class Box(Faults, Loop):
 
     def configure(self, hertz):
         self.hertz = hertz
+        self.lines["usb"].at_rate(hertz)
+        self.lines["serial"].at_rate(min(hertz, SERIAL_LIMIT))
         self.machine.run(f"cat >/etc/ifogd/ifogd.toml <<'END'\n{configuration(hertz)}\nEND")
 
     def counting(self, *names):
@@ -325,7 +340,7 @@ def main():
     image = os.path.join(work, "image")
     subprocess.run([os.path.join(HERE, "make_image"), image], check=True, timeout=900)
     box = Box(build, packages, work, given)
-    checks = [name for part in (Box, Faults, Loop) for name in vars(part) if name.startswith("check_")]
+    checks = [name for part in (Box, Faults, Again, Loop) for name in vars(part) if name.startswith("check_")]
     wanted = [name for name in checks if name in NEEDED or not given.only or any(word in name for word in given.only)]
     passed = failed = 0
     box.machine = Machine(image, box.overlay(), os.path.join(work, "machine"))
