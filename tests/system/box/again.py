@@ -13,10 +13,10 @@ from machine import Failure
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import flight_file  # noqa: E402
 
-HERTZ, COUNT = 50, 400
+HERTZ, COUNT = 50, 425  # and no whole number of the motion's periods, whose angle is none
 ANGLE_RAD = 1e-12
-# The emulated processor and the host each hold things up; the first for a while at times, which the share allows.
-ON_TIME_S, ON_TIME_SHARE = 0.02, 0.95
+# The emulated processor takes milliseconds where another takes microseconds, and a busy host holds it up for a while at times.
+ON_TIME_S, ON_TIME_SHARE, MEDIAN_S = 0.02, 0.8, 0.01
 
 
 def sensor(name, device, baud, record):
@@ -94,11 +94,11 @@ class Again:
         if second["angle"] != first["angle"]:
             raise Failure(f"the angle is {second['angle']!r} of what was sent again, {first['angle']!r} the first time")
         late = frames.off_time(recorded, list(self.arrivals(recorded, came)))
-        on_time = sum(each <= ON_TIME_S for each in late) / len(late)
+        on_time, median = sum(each <= ON_TIME_S for each in late) / len(late), sorted(late)[len(late) // 2]
         text = (f"{len(sent)} bytes in {len(recorded)} deliveries as recorded, {100 * on_time:.1f} % within {ON_TIME_S * 1e3:g} ms of when they came (median "
-                f"{sorted(late)[len(late) // 2] * 1e3:.1f} ms, at most {max(late) * 1e3:.0f}; the program's own lateness {report['lateness_us']['p50'] / 1e3:.1f} ms median); "
+                f"{median * 1e3:.1f} ms, at most {max(late) * 1e3:.0f}; the program's own lateness {report['lateness_us']['p50'] / 1e3:.1f} ms median); "
                 f"angle {second['angle']!r} rad both times, {abs(second['angle'] - expected):.1e} from what was sent")
-        if on_time < ON_TIME_SHARE:
+        if on_time < ON_TIME_SHARE or median > MEDIAN_S:
             raise Failure(text)
         return text
 
