@@ -186,8 +186,8 @@ class Bus:
         with open(os.path.join(folder, "milliseconds")) as file:
             killed_s = int(file.read()) / 1000
         left, said = self.recorded(folder, "left")
-        # What came is written three quarters of a second later; the player took some time to begin.
-        due = int((killed_s - 0.3 - 1.2) * HERTZ)
+        with open(os.path.join(folder, "due")) as file:
+            due = int(file.read())
         if left != sent[:len(left)] or len(left) < due:
             raise Failure(f"{len(left)} frames recorded of those sent before the kill, {due} were due: {said}")
         if not any(name.endswith(".open") for name in os.listdir(os.path.join(folder, "left"))):
