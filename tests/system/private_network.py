@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A network namespace of one's own, where LCM may send and nothing leaves this machine."""
+"""A network namespace of one's own, where LCM may send and nothing leaves this machine; with mounts of one's own where asked for."""
 import os
 import subprocess
 import sys
@@ -7,11 +7,11 @@ import sys
 INSIDE = "IFOG_PRIVATE_NETWORK"
 
 
-def enter():
+def enter(mounts=False):
     """This process again, in such a namespace; returns in there. What is started from in there stays there."""
     if os.environ.get(INSIDE) == "1":
         subprocess.run("ip link set lo up multicast on && ip route replace 224.0.0.0/4 dev lo", shell=True, check=True)
         return
-    flags = "-n" if os.geteuid() == 0 else "-rn"
+    flags = ("-n" if os.geteuid() == 0 else "-rn") + ("m" if mounts else "")
     os.environ[INSIDE] = "1"
     os.execvp("unshare", ["unshare", flags, sys.executable, *sys.argv])

@@ -47,7 +47,7 @@ def angle(begin, count, hertz):
 
 
 def misread(sent, sent_baud, read_baud):
-    """The bytes that a UART at read_baud makes of what another sends at sent_baud, 8N1: the line is looked at in the middle of
+    """The bytes that a UART at read_baud makes of what another sends at sent_baud, 8N1: the line is looked at in the shift of
     each of its bits. A byte whose stop bit is low has a framing error and is handed on all the same, as the 8250 does."""
     line = bytearray()
     for byte in sent:
@@ -73,6 +73,41 @@ def candump(samples, hertz, interface, start=1_700_000_000.0):
         data = struct.pack("<iHBb", round(rate(sample, hertz) / 1e-9), sample % 65536, 0, 25)
         lines.append(f"({start + sample / hertz:.6f}) {interface} {CAN_ID:03X}#{data.hex().upper()}\n")
     return "".join(lines)
+
+
+def late_by(sample, period):
+    """How much later than evenly a sample comes, s: a hash's worth, and every 500th holds up all behind it for ten periods."""
+    wait = (sample * 2654435761 % 2**32 / 2**32) * 0.4 * period
+    return max(wait, (10 - sample % 500) * period)
+
+
+def unevenly(log):
+    """A candump log whose frames are held up by late_by(); the order stays."""
+    lines = log.splitlines()
+    stamps = [float(line[1:line.index(")")]) for line in lines]
+    period = (stamps[-1] - stamps[0]) / (len(stamps) - 1)
+    return "".join(f"({stamp + late_by(n, period):.6f}){line[line.index(')') + 1:]}\n" for n, (stamp, line) in enumerate(zip(stamps, lines)))
+
+
+def heard(path):
+    """(time in s, frame as text) of each line of a log of candump."""
+    with open(path) as file:
+        return [(float(stamp.strip("()")), frame) for stamp, _, frame in (line.split() for line in file)]
+
+
+def off_time(recorded, again, stops=()):
+    """How far each came from its recorded time, s, (time, ...) lists of one length. What the clocks are apart a tenth of them says, those
+    that came earliest: whatever hinders makes late. Left out is what was due while the machine was stopped, (from, to), and as long
+    again, while it catches up."""
+    apart = [b[0] - a[0] for a, b in zip(recorded, again)]
+    shift = sorted(apart)[len(apart) // 10]
+    kept, stops = [], sorted(stops)
+    for (due, *_), each in zip(recorded, apart):
+        while stops and 2 * stops[0][1] - stops[0][0] < due + shift:
+            stops.pop(0)
+        if not stops or due + shift < stops[0][0] - 0.001:
+            kept.append(abs(each - shift))
+    return kept
 
 
 def send_paced(link, frames, hertz):

@@ -24,6 +24,7 @@ struct MemoryDisk {
   std::map<std::string, std::int64_t> modified_ns;
   std::uint64_t room = UINT64_MAX;  // for all files together
   int refuses = 0;                  // errno of every append, 0: none
+  int gone = 0;                     // errno of everything, 0: it is there
   bool cuts_back = true;            // a part that did not fit is taken back
   std::int64_t now_ns = 0;
   std::string open;  // name of the open file
@@ -40,11 +41,13 @@ class MemoryFolder final : public FlightFolder {
   explicit MemoryFolder(MemoryDisk& disk) : disk_(disk) {}
   int list(std::vector<File>& out) override {
     out.clear();
+    if (disk_.gone != 0) return disk_.gone;
     for (const auto& [name, bytes] : disk_.files)
       out.push_back({name, bytes.size(), disk_.modified_ns[name]});
     return 0;
   }
   int begin(const std::string& name) override {
+    if (disk_.gone != 0) return disk_.gone;
     if (disk_.files.contains(name)) return EEXIST;
     disk_.files[name];
     disk_.modified_ns[name] = disk_.now_ns;
@@ -53,6 +56,7 @@ class MemoryFolder final : public FlightFolder {
   }
   int append(std::span<const std::uint8_t> bytes) override {
     if (disk_.open.empty()) return EBADF;
+    if (disk_.gone != 0) return disk_.gone;
     if (disk_.refuses != 0) return disk_.refuses;
     if (!disk_.files.contains(disk_.open)) {
       disk_.open.clear();
@@ -78,12 +82,16 @@ class MemoryFolder final : public FlightFolder {
   void leave() override { disk_.open.clear(); }
   int take_over(const std::string& open_name, const std::string& name) override {
     if (open_name == disk_.open) return EBUSY;
+    if (disk_.gone != 0) return disk_.gone;
     disk_.files[name] = std::move(disk_.files[open_name]);
     disk_.files.erase(open_name);
     disk_.modified_ns[name] = disk_.modified_ns[open_name];
     return 0;
   }
-  int remove(const std::string& name) override { return disk_.files.erase(name) == 1 ? 0 : ENOENT; }
+  int remove(const std::string& name) override {
+    if (disk_.gone != 0) return disk_.gone;
+    return disk_.files.erase(name) == 1 ? 0 : ENOENT;
+  }
   [[nodiscard]] std::string path() const override { return "memory"; }
 
  private:

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorder through a year on a disk that others fill and empty.
+// A recorder through a year on a disk that others fill and empty, that is slow for up to a day, that goes and
+// comes back, as it was or empty.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <memory>
 #include <random>
@@ -14,7 +16,7 @@
 namespace ifog {
 namespace {
 
-// A recorder on a disk that others fill and empty, which is killed and started again now and then.
+// A recorder on such a disk, which is killed and started again now and then.
 class HardYear {
  public:
   static constexpr std::int64_t kStep = 600 * kSecond, kLength = 365 * kDay;
@@ -36,6 +38,7 @@ class HardYear {
     if (chance(0.002)) disk.room = disk.used() + static_cast<std::uint64_t>(random_() % 3000);
     if (chance(0.02)) disk.room = UINT64_MAX;
     disk.cuts_back = !chance(0.1);
+    trouble(now_ns < kLength - kDay);
     for (int i = 0; i < 4; ++i, ++count) {
       when[count] = now_ns;
       // As the tape does it: what finds no room is left out, and that is known.
@@ -44,8 +47,12 @@ class HardYear {
       else
         archive->add({FlightKind::bytes, 0, 0, 0, now_ns}, payload(added_.emplace_back(count)));
     }
-    archive->turn(now_ns, disk.now_ns);
-    archive->turn(now_ns + 60 * kSecond, disk.now_ns + 60 * kSecond);
+    if (slow_steps_ == 0) {
+      archive->turn(now_ns, disk.now_ns);
+      archive->turn(now_ns + 60 * kSecond, disk.now_ns + 60 * kSecond);
+    } else if (archive->full()) {
+      ++overflows;
+    }
     fullest = std::max(fullest, disk.used());
     const bool refuses = archive->error() != 0;
     refusals += refuses && !refused_ ? 1 : 0;
@@ -61,8 +68,30 @@ class HardYear {
   std::map<std::uint64_t, std::int64_t> when;
   std::uint64_t count = 0, fullest = 0;
   int refusals = 0, recoveries = 0, kills = 0;
+  int outages = 0, emptied = 0, slow_times = 0, overflows = 0;
 
  private:
+  // A write that lasts for hours: no turn ends meanwhile. A card that is pulled out and put in again, and one
+  // that has been wiped.
+  void trouble(bool begins) {
+    if (slow_steps_ > 0) --slow_steps_;
+    if (begins && slow_steps_ == 0 && chance(0.001)) {
+      slow_steps_ = 1 + static_cast<int>(random_() % 144);
+      ++slow_times;
+    }
+    if (begins && disk.gone == 0 && chance(0.001)) {
+      disk.gone = chance(0.5) ? EIO : EROFS;
+      ++outages;
+    }
+    if (disk.gone != 0 && (!begins || chance(0.05))) disk.gone = 0;
+    if (begins && chance(0.0005)) wipe();
+  }
+  void wipe() {
+    ++emptied;
+    disk.files.clear();
+    left_out.insert(added_.begin(), added_.end() - static_cast<std::ptrdiff_t>(archive->entries_waiting()));
+    added_.erase(added_.begin(), added_.end() - static_cast<std::ptrdiff_t>(archive->entries_waiting()));
+  }
   bool chance(double p) { return std::uniform_real_distribution<>(0.0, 1.0)(random_) < p; }
   void start() {
     archive = std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk), limits, some_header());
@@ -85,6 +114,7 @@ class HardYear {
   std::mt19937 random_{365};
   std::vector<std::uint64_t> added_;
   bool refused_ = false;
+  int slow_steps_ = 0;
 };
 
 // Limits are held at every moment, each refusal ends when there is room, and what is on the disk is what was
@@ -97,6 +127,10 @@ TEST(FlightArchive, AYearOfDiskPressure) {
   EXPECT_GT(year.refusals, 30);
   EXPECT_GT(year.recoveries, 25);
   EXPECT_GT(year.kills, 100);
+  EXPECT_GT(year.outages, 20);
+  EXPECT_GT(year.emptied, 10);
+  EXPECT_GT(year.slow_times, 20);
+  EXPECT_GT(year.overflows, 20);
   year.disk.room = UINT64_MAX;
   year.archive->close(HardYear::kLength, kWall + HardYear::kLength);
   const ReadBack read = read_back(all_of(year.disk));

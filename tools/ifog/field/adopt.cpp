@@ -53,13 +53,13 @@ void keep_outcome(const Field& field, const std::string& sensor, const ModelName
   if (!history.changes().empty() && history.changes().back().model == model) history.set_outcome(text);
 }
 
-// The last recording that there is; 0: none, or they cannot be seen, which the watch will say.
-std::uint64_t last_recording(const SensorConfig& sensor) {
+// The last recording that there is, 0: none. Nothing: they cannot be seen, which the watch will say.
+std::optional<std::uint64_t> last_recording(const SensorConfig& sensor) {
   try {
     const std::vector<RecordedFile> files = recorded_files(sensor);
     return files.empty() ? 0 : files.back().number;
   } catch (const std::exception&) {
-    return 0;
+    return std::nullopt;
   }
 }
 
@@ -102,7 +102,7 @@ void adopt(const AdoptArguments& arguments) {
   Proposal proposal;
   Model model;
   ModelInUse before;
-  const std::uint64_t recorded_before = last_recording(sensor);
+  const std::optional<std::uint64_t> recorded_before = last_recording(sensor);
   {
     const StateInHand hand(field.state());
     before = model_at(field.model_path(sensor));
@@ -113,8 +113,9 @@ void adopt(const AdoptArguments& arguments) {
     History history(field.state(), sensor.name);
     history.forget_what_never_was(before.name);
     // First what undoes it, then it, and the proposal goes last: wherever this ends, nothing is lost.
-    history.add({"adopt", utc_now(), proposal.model, before.name, proposal.why, proposal.gain, ""},
-                before.model);
+    history.add(
+        {"adopt", utc_now(), proposal.model, before.name, proposal.why, proposal.gain, "", recorded_before},
+        before.model);
     try {
       exchange->exchange(model, before.model);
     } catch (...) {
@@ -125,14 +126,18 @@ void adopt(const AdoptArguments& arguments) {
   }
   say("%s: model %s in place of %s: %s\n", sensor.name.c_str(), proposal.model.identity.c_str(),
       or_none(before.name.identity), printable(proposal.why, kLongestMessage).c_str());
+  const auto unwatched = [&](const std::string& why) {
+    if (!arguments.json.empty()) write_json(arguments.json, as_json(proposal, {}, why));
+  };
   if (!exchange->daemon_runs()) {
-    say("  the daemon does not run: it begins with this model, and nothing was watched\n");
-    return;
+    const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
+    say("  %s\n", why.c_str());
+    return unwatched(why);
   }
   say("  the daemon has taken it; promised: %s\n", gain_text(proposal.gain).c_str());
-  if (arguments.watch_s <= 0.0) return;
+  if (arguments.watch_s <= 0.0) return unwatched("nothing was watched");
   const Watched watched = watch(exchange->live(), field, sensor, before.model.value_or(Model{}), model,
-                                recorded_before, arguments.watch_s);
+                                recorded_before.value_or(0), arguments.watch_s);
   tell_innovations(watched);
   std::string text = outcome(watched);
   if (!watched.whole)
@@ -151,6 +156,8 @@ void adopt(const AdoptArguments& arguments) {
 }
 
 void revert(const AdoptArguments& arguments) {
+  will_read("--config", arguments.field.config);
+  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
@@ -171,7 +178,8 @@ void revert(const AdoptArguments& arguments) {
   if (back) require_that_it_fits(field, sensor, *back);
   ModelExchange exchange(field, sensor, now.name);
   const ModelName name = in_force->replaced;
-  history.add({"revert", utc_now(), name, now.name, "", {}, ""}, now.model);
+  const std::string when = utc_now();
+  history.add({"revert", when, name, now.name, "", {}, "", last_recording(sensor)}, now.model);
   try {
     exchange.exchange(back, now.model);
   } catch (...) {
@@ -181,6 +189,13 @@ void revert(const AdoptArguments& arguments) {
   say("%s: model %s is in place again, %s is kept\n", sensor.name.c_str(), or_none(name.identity),
       now.name.identity.c_str());
   if (!exchange.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
+  if (!arguments.json.empty())
+    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
+                                                      {"sensor", sensor.name},
+                                                      {"when", when},
+                                                      {"model", name.identity},
+                                                      {"replaced", now.name.identity},
+                                                      {"running", exchange.daemon_runs()}});
 }
 
 }  // namespace
@@ -204,6 +219,7 @@ void add_revert(const Command& program) {
   const Command command = program.add_subcommand("revert", "Take the last adoption back");
   command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
   arguments->field.add_to(command, true);
+  command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1");
   command.callback([arguments] { revert(*arguments); });
 }
 

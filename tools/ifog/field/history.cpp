@@ -22,11 +22,13 @@ History::History(const std::string& state, const std::string& sensor) : state_(s
   const std::optional<json> file = read_state_json(path(), kHistorySchema);
   if (!file) return;
   with_keys(path(), [&] {
-    for (const json& each : file->at("changes"))
+    for (const json& each : file->at("changes")) {
       changes_.push_back({each.at("what").get<std::string>(), each.at("when").get<std::string>(),
                           name_from(each.at("model")), name_from(each.at("replaced")),
                           each.at("why").get<std::string>(), gain_of(each.at("gain")),
-                          each.at("outcome").get<std::string>()});
+                          each.at("outcome").get<std::string>(), std::nullopt});
+      if (each.contains("recorded")) changes_.back().recorded = each.at("recorded").get<std::uint64_t>();
+    }
   });
 }
 
@@ -77,7 +79,7 @@ std::optional<Model> History::kept(const ModelName& name) const {
 
 void History::write() const {
   ordered_json changes = ordered_json::array();
-  for (const ModelChange& each : changes_)
+  for (const ModelChange& each : changes_) {
     changes.push_back({{"what", each.what},
                        {"when", each.when},
                        {"model", as_json(each.model)},
@@ -85,6 +87,8 @@ void History::write() const {
                        {"why", each.why},
                        {"gain", gain_json(each.gain)},
                        {"outcome", each.outcome}});
+    if (each.recorded) changes.back()["recorded"] = *each.recorded;
+  }
   const ordered_json file = {{"schema", kHistorySchema}, {"sensor", sensor_}, {"changes", changes}};
   write_state_file(path(), file.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }

@@ -3,6 +3,7 @@
 // folder, schema ifog.history/1. A model that was replaced is kept beside it as NAME.kept-IDENTITY.toml.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct ModelChange {
   std::string why;             // of the proposal
   std::vector<AxisGain> gain;  // promised
   std::string outcome;         // in words, "" while nothing is known
+  // Number of the last recording that was there then, 0 for none: what is newer was made afterwards, whatever
+  // the wall clock did. Nothing: they could not be seen, or an older program wrote it.
+  std::optional<std::uint64_t> recorded;
 };
 
 class History {

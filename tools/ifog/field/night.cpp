@@ -23,6 +23,8 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command.h"
+#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/bookmark.h"
@@ -39,6 +41,7 @@ namespace {
 struct NightArguments {
   FieldOptions field;
   std::vector<std::string> sensors;
+  std::string json;
   double least_rest_s = 1800.0;
   double most_bytes = 400e6;
 };
@@ -100,6 +103,10 @@ class Night {
   std::string run();
   // The recordings could not be judged: what run() gave is why.
   [[nodiscard]] bool failed() const { return failed_; }
+  // Of the model that was proposed, "": none.
+  [[nodiscard]] const std::string& proposed() const { return proposed_; }
+  // What came of the last adoption, in words; "" where that was not judged.
+  [[nodiscard]] const std::string& promise() const { return promise_; }
 
  private:
   std::string judge(const std::vector<RecordedFile>& all);
@@ -118,6 +125,7 @@ class Night {
   const SensorConfig& sensor_;
   bool gone_through_ = false;  // not to be looked at again
   bool failed_ = false;
+  std::string proposed_, promise_;
 };
 
 std::string Night::run() {
@@ -192,14 +200,19 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   const ModelChange last = history.changes().back();
   if (in_use.name != last.model) return;
   std::vector<RecordedFile> since = files;
-  std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
+  // By their numbers, for the wall clock may have been set since; numbers that begin anew are all newer.
+  if (!last.recorded)
+    std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
+  else if (since.back().number >= *last.recorded)
+    std::erase_if(since, [&](const RecordedFile& file) { return file.number <= *last.recorded; });
   if (since.empty()) return;
   try {
     const Recorded recorded = read_recorded(sensor_, since, field_.required_config().plugin_folders);
     Watched watched;
     watched.gain = weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
     if (watched.gain.empty()) return;
-    const std::string text = "night of " + utc_now() + ": " + outcome(watched);
+    promise_ = outcome(watched);
+    const std::string text = "night of " + utc_now() + ": " + promise_;
     say("%s: %s\n", sensor_.name.c_str(), text.c_str());
     const StateInHand hand(field_.state());
     if (History fresh(field_.state(), sensor_.name);
@@ -262,6 +275,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
                  in_hours(proposal.gain.front().kept.seconds) + " held out";
   const std::string why = proposal.why;
   propose(std::move(proposal), model, recorded, found, name, hashes);
+  proposed_ = model.identity();
   return "proposes model " + model.identity() + " against " +
          (in_use.name.identity.empty() ? "none" : in_use.name.identity) + ": " + why;
 }
@@ -282,12 +296,15 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
 }
 
 void run(const NightArguments& arguments) {
+  will_read("--config", arguments.field.config);
+  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
   if (std::error_code none; !std::filesystem::is_directory(field.state(), none))
     throw std::runtime_error(field.state() + ": is no folder, expected the daemon's state folder (--state)");
   bool failed = false;
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const SensorConfig& sensor : field.required_config().sensors) {
     if (!arguments.sensors.empty() &&
         std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
@@ -308,7 +325,14 @@ void run(const NightArguments& arguments) {
     else
       warn("%s\n", line.c_str());
     failed = failed || !good;
+    all.push_back({{"sensor", sensor.name},
+                   {"failed", !good},
+                   {"said", said},
+                   {"proposed", night.proposed()},
+                   {"promise", night.promise()}});
   }
+  if (!arguments.json.empty())
+    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
   if (failed) throw Failed("not every sensor could be judged");
 }
 
@@ -329,6 +353,7 @@ void add_night(const Command& program) {
                   "of recordings, the newest; a byte takes some four of memory")
       .within(1e5, 1e12)
       .shows_default();
+  command.add_option("--json", arguments->json, "write what the night says, schema ifog.night_report/1");
   command.callback([arguments] { run(*arguments); });
 }
 

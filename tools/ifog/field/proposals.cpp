@@ -23,12 +23,13 @@ struct ProposalsArguments {
   std::string json;
 };
 
-// Whether adopting it would be refused: the model is no longer the one it was made against.
-bool is_stale(const Field& field, const Proposal& proposal) {
-  if (field.config() == nullptr) return false;
+// Why adopting it would be refused, "": it would not.
+std::string why_stale(const Field& field, const Proposal& proposal) {
+  if (field.config() == nullptr) return "";
   for (const SensorConfig& sensor : field.config()->sensors)
-    if (sensor.name == proposal.sensor) return model_at(field.model_path(sensor)).name != proposal.against;
-  return true;
+    if (sensor.name == proposal.sensor)
+      return model_at(field.model_path(sensor)).name != proposal.against ? ", which is no longer in use" : "";
+  return "; " + field.config_path() + " has no such sensor";
 }
 
 void run(const ProposalsArguments& arguments) {
@@ -42,19 +43,19 @@ void run(const ProposalsArguments& arguments) {
       const std::optional<Proposal> found = read_proposal(field.state(), name);
       if (!found) continue;  // adopted meanwhile
       any = true;
-      const bool stale = is_stale(field, *found);
+      const std::string why_not = why_stale(field, *found);
       const std::string report = (std::filesystem::path(field.state()) / found->report_file).string();
-      say("%s  of %s against model %s%s\n  %s\n  report %s\n", name.c_str(), printable(found->made).c_str(),
+      say("%s  of %s against model %s%s%s\n  %s\n  report %s\n", name.c_str(), printable(found->made).c_str(),
           found->against.identity.empty() ? "none" : printable(found->against.identity).c_str(),
-          stale ? ", which is no longer in use: not to be adopted" : "",
+          printable(why_not).c_str(), why_not.empty() ? "" : ": not to be adopted",
           printable(found->why, kLongestMessage).c_str(), report.c_str());
-      if (!stale) say("  adopt with: %s\n", field.command("adopt", name).c_str());
+      if (why_not.empty()) say("  adopt with: %s\n", field.command("adopt", name).c_str());
       all.push_back({{"sensor", name},
                      {"made", found->made},
                      {"why", found->why},
                      {"against", found->against.identity},
                      {"model", found->model.identity},
-                     {"stale", stale},
+                     {"stale", !why_not.empty()},
                      {"report", report},
                      {"gain", gain_json(found->gain)}});
     } catch (const std::exception& error) {
