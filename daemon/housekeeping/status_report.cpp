@@ -23,6 +23,10 @@ double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
 constexpr const char* kFrozen =
     "the device sends the same frame again and again: its counter or clock stands still, nothing of it is "
     "taken";
+// What its own counter or clock shows.
+constexpr const char* kMixed =
+    "frames of two devices come mixed on one line: their counters go to and fro, which of them is wanted "
+    "nobody knows, and nothing of either is taken";
 
 struct Named {
   const char* name;
@@ -109,6 +113,7 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
     case TransportState::open:
       break;
   }
+  if (mixed_) return status_t::STATE_NO_DATA;
   if (sample_ns_ == 0) return status_t::STATE_STARTING;
   if (static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_))
     return status_t::STATE_NO_DATA;
@@ -127,7 +132,8 @@ void StatusReport::look_for_samples(const ReaderCounters& reader) {
   frozen_before_ = frozen_;
   const bool long_ago = sample_ns_ != 0 &&
                         static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_);
-  frozen_ = long_ago && !news && (came || frozen_);
+  mixed_ = reader.mixed.load(std::memory_order_relaxed);
+  frozen_ = long_ago && !mixed_ && !news && (came || frozen_);
 }
 
 // A file is over, all of it is in the books, and no frame was in it.
@@ -224,6 +230,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
     now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
                  came() + " (is it this driver's, with these options?)";
   look_for_samples(pipeline.reader().counters());
+  if (now_.fault.empty() && mixed_) now_.fault = kMixed;
   if (now_.fault.empty() && frozen_) now_.fault = kFrozen;
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());

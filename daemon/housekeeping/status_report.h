@@ -73,6 +73,7 @@ class StatusReport {
   bool frozen_before_ = false;
   int in_vain_ = 0;             // updates in a row after which something had come, and never a good frame
   std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
+  bool mixed_ = false;          // frames of two devices come, and none is taken
   bool frozen_ = false;         // samples come, and they are all those that came before
 };
 

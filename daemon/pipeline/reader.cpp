@@ -102,6 +102,7 @@ void Reader::publish_counters() noexcept {
   counters_.device_restarts.set(counts.restarts);
   counters_.clock_steps.set(counts.clock_steps);
   counters_.axes_seen.store(incrementer_.axes_seen(), std::memory_order_relaxed);
+  counters_.mixed.store(incrementer_.mixed(), std::memory_order_relaxed);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   counters_.interval_error.store(incrementer_.interval_error(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();

@@ -34,6 +34,7 @@ struct ReaderCounters {
   Counter stood_back;                       // times it had used its share of a processor, see ProcessorShare
   Counter bytes_at_end;                     // of a file that ends within a frame; also in bytes_skipped
   std::atomic<std::uint32_t> axes_seen{0};  // Incrementer::axes_seen()
+  std::atomic<bool> mixed{false};           // Incrementer::mixed()
   std::atomic<double> clock_offset_ppm{0.0};
   std::atomic<double> interval_error{0.0};  // Incrementer::interval_error()
 };

@@ -159,7 +159,7 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   else
     step = step_to(sample);
   if (step.out_of_turn) {
-    ++repeated_;
+    ++(timeline_.mixed() ? mixed_ : repeated_);
     return std::nullopt;
   }
   const std::uint64_t steps = first || anew ? 0 : step.samples;

@@ -63,6 +63,8 @@ class SampleTimes {
   [[nodiscard]] std::size_t clock_sets() const { return clock_sets_; }
   // Samples left out because they came twice, or after one that follows.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
+  // Likewise because they are of two devices, and nobody knows which of them is wanted.
+  [[nodiscard]] std::size_t mixed() const { return mixed_; }
 
  private:
   enum class Clock { undecided, device, counter, arrival, number };
@@ -82,7 +84,7 @@ class SampleTimes {
   std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
   std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
-  std::size_t taken_ = 0, missing_ = 0, repeated_ = 0, restarted_ = 0, clock_sets_ = 0;
+  std::size_t taken_ = 0, missing_ = 0, repeated_ = 0, mixed_ = 0, restarted_ = 0, clock_sets_ = 0;
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@
 #include "drivers/ifog/arrivals.h"
 #include "drivers/ifog/clock_steps.h"
 #include "drivers/ifog/device_count.h"
+#include "drivers/ifog/mixed_devices.h"
 #include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
 #include "drivers/ifog/rolling_stamp.h"
@@ -55,7 +57,10 @@ class DeviceTimeline {
         rate_known_(rate_hz > 0.0),
         period_s_(rate_hz > 0.0 ? 1.0 / rate_hz : 1.0),
         count_(modulus > 0 ? modulus : 1, period_s_, on_bus),
-        clock_steps_(period_s_) {}
+        clock_steps_(period_s_),
+        mixed_(modulus > 0 ? static_cast<std::int64_t>(modulus) : 0,
+               modulus > 0 ? 1 : std::max<std::int64_t>(std::llround(period_s_ * 1e9), 1),
+               modulus > 0 ? 1.0 : kGoesOn, rate_known_ ? period_s_ : 0.0) {}
 
   // Whether it decides of this frame: else there is neither counter nor clock to go by.
   [[nodiscard]] bool tells(const Frame& frame) const noexcept {
@@ -63,24 +68,20 @@ class DeviceTimeline {
   }
   // The first, or one that does not join those before.
   std::int64_t first(const Frame& frame) noexcept {
-    arrivals_.forget();
-    recent_.forget();
-    clock_steps_.restart();
-    prompt_.forget();
-    const Look now = look_at(frame, -1.0, frame.stamp.ns);
-    count_.first(now.count);
-    keep(frame, now, period_s_);
-    return frame.stamp.ns;
+    mixed_.first(place(frame));
+    return begin(frame);
   }
   // The next; it is taken into account.
   Step next(const Frame& frame) noexcept {
+    if (places(frame) && !mixed_.plain(place(frame))) [[unlikely]] {
+      const MixedDevices::Says says = mixed_.next({place(frame), frame.arrival_ns, digest_of(frame.values)});
+      if (says == MixedDevices::Says::left) return leave_out(frame);
+      if (says == MixedDevices::Says::anew) return anew(frame);
+    }
     const double elapsed_s = arrivals_.elapsed_s(frame.arrival_ns);
     const Look now = look_at(frame, elapsed_s, proposed(frame, elapsed_s));
     Step step = counted(frame) ? by_counter(frame, now) : by_clock(frame, now);
-    if (step.out_of_turn) {
-      if (frame.arrival_ns > 0) seen_ns_ = frame.arrival_ns;
-      return step;
-    }
+    if (step.out_of_turn) return leave_out(frame);
     step.time_ns = now.time_ns;
     if (step.restarted) {
       recent_.forget();
@@ -95,6 +96,8 @@ class DeviceTimeline {
   }
   // Its clock has stood still while it measured: only the sum of its steps says how much has passed.
   [[nodiscard]] bool clock_stood() const noexcept { return clock_steps_.stood(); }
+  // Frames of two devices come, and none is taken.
+  [[nodiscard]] bool mixed() const noexcept { return mixed_.two(); }
   // Of the arrivals, ns; 0: none was known.
   [[nodiscard]] std::int64_t latest_arrival_ns() const noexcept { return arrivals_.latest_ns(); }
 
@@ -107,6 +110,8 @@ class DeviceTimeline {
   static constexpr double kTickTells = 0.2;     // periods beside those that were left out
   static constexpr double kRateOff = 0.05;      // of the stated one
   static constexpr int kTicksTell = 3;
+  static constexpr double kGoesOn = 3.5;                 // periods of a clock, from a sample to the next
+  static constexpr std::uint64_t kTellsCountsApart = 8;  // a counter of fewer goes anywhere by chance
 
   struct Look {
     double elapsed_s = -1.0;
@@ -116,6 +121,40 @@ class DeviceTimeline {
   };
 
   [[nodiscard]] bool counted(const Frame& frame) const noexcept { return frame.counts && modulus_ > 0; }
+  // By what frames of two devices are told: the counter, else the clock.
+  [[nodiscard]] bool places(const Frame& frame) const noexcept {
+    return modulus_ > 0 ? frame.counts && modulus_ >= kTellsCountsApart
+                        : frame.clocked && last_clocked_ && rate_known_;
+  }
+  [[nodiscard]] std::int64_t place(const Frame& frame) const noexcept {
+    return modulus_ > 0 ? static_cast<std::int64_t>(frame.sequence) : frame.stamp.ns;
+  }
+  std::int64_t begin(const Frame& frame) noexcept {
+    arrivals_.forget();
+    recent_.forget();
+    clock_steps_.restart();
+    prompt_.forget();
+    const Look now = look_at(frame, -1.0, frame.stamp.ns);
+    count_.first(now.count);
+    keep(frame, now, period_s_);
+    return frame.stamp.ns;
+  }
+  Step leave_out(const Frame& frame) noexcept {
+    Step step;
+    step.out_of_turn = true;
+    if (frame.arrival_ns > 0) seen_ns_ = frame.arrival_ns;
+    return step;
+  }
+  // Of another device than what was taken, for all that is known.
+  Step anew(const Frame& frame) noexcept {
+    const double elapsed_s = arrivals_.elapsed_s(frame.arrival_ns);
+    Step step;
+    step.restarted = step.gap = true;
+    step.samples = elapsed_s > 0.0 && rate_known_ ? at_least_one(elapsed_s / period_s_) : 1;
+    step.dt_s = static_cast<double>(step.samples) * period_s_;
+    step.time_ns = begin(frame);
+    return step;
+  }
   [[nodiscard]] std::int64_t proposed(const Frame& frame, double elapsed_s) const noexcept {
     if (!last_clocked_) return frame.stamp.ns;
     std::optional<double> counted_s;
@@ -157,12 +196,15 @@ class DeviceTimeline {
     counted.samples = std::max<std::uint64_t>(counted.samples, 1);
     if (!counted.restarted && frame.clocked && last_clocked_) {
       const std::int64_t passed_ns = ns_between(stamp_.time_ns(), now.time_ns);
-      if (passed_ns == 0 || counted.by_clock) {
+      // Rounds that were lost a while ago, as the times of arrival tell now: of them this step of the clock
+      // knows nothing.
+      const bool rounds = !counted.by_clock && counted.samples >= modulus_;
+      if (!rounds && (passed_ns == 0 || counted.by_clock)) {
         const ClockSteps::Step passed = clock_steps_.take(passed_ns, counted.samples);
         if (clock_steps_.coarse()) counted.dt_s = passed.dt_s;
       } else {
         step.by_count = true;
-        step.clock_set = clock_steps_.known();
+        step.clock_set = !rounds && clock_steps_.known();
         clock_steps_.jumped();
       }
     }
@@ -267,6 +309,7 @@ class DeviceTimeline {
   double period_s_;
   DeviceCount count_;
   ClockSteps clock_steps_;
+  MixedDevices mixed_;
   RollingStamp stamp_;
   Arrivals arrivals_;
   PromptArrivals prompt_;

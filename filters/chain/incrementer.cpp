@@ -257,6 +257,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     now = step(reading, frame);
     if (now.out_of_turn) {
       ++counts_.repeated;
+      counts_.mixed += timeline_.mixed() ? 1 : 0;
       return false;
     }
     sequence_ += now.samples;

@@ -30,6 +30,7 @@ struct IncrementerCounts {
   std::uint64_t gaps = 0;      // places where samples are missing
   std::uint64_t missing = 0;   // samples missing
   std::uint64_t repeated = 0;  // samples left out because they came twice, or after one that follows
+  std::uint64_t mixed = 0;     // of those: they come with another device's, and neither is taken
   std::uint64_t restarts = 0;  // device counter or clock jumped back: it was switched off and on
   // Samples with an axis that may not be used; one that the device has never marked good it may not have at
   // all: what is missing of that counts from when it comes.
@@ -55,6 +56,8 @@ class Incrementer {
   [[nodiscard]] const IncrementerCounts& counts() const noexcept { return counts_; }
   // Bits of the axes that the device has marked good at least once.
   [[nodiscard]] std::uint32_t axes_seen() const noexcept { return axes_seen_; }
+  // Frames of two devices come on one line, and none is taken.
+  [[nodiscard]] bool mixed() const noexcept { return timeline_.mixed(); }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
   // By which part of it the true interval is longer than the nominal one, where that is used: of a device

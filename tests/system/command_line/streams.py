@@ -285,7 +285,8 @@ class Checks:
         (folder / "col.csv").write_text(text.replace("rate_radps", "rate_`touch PWNED`\x1b[2J<_radps"))
         for name in [*names, "col.csv"]:
             for command in (["allan", name, "--plot", "p.svg"], ["allan", name, "--plot", "p.png"],
-                            ["denoise", name, "--output", "o.csv", "--plot", "d.svg"], ["compare", name, "--plot", "c.svg"], ["allan", name + "?"]):
+                            ["denoise", name, "--output", "o.csv", "--plot", "d.svg"], ["compare", name, "--plot", "c.svg"],
+                            ["diagnose", name, "--report", "r.html"], ["allan", name + "?"]):
                 result = subprocess.run([IFOG, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, timeout=120, check=False)
                 assert result.returncode == (1 if name + "?" in command else 0), f"{command}: {result.stderr}"
@@ -293,6 +294,8 @@ class Checks:
                 assert not [c for c in said if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160 or c == "\u202e")], f"{command}: {said!r}"
             for picture in ("p.svg", "d.svg", "c.svg"):
                 xml.etree.ElementTree.parse(folder / picture)
+            page = (folder / "r.html").read_text()
+            assert page.rstrip().endswith("</html>") and "<b>&" not in page, f"{name}: in the report as it is"
             assert (folder / "p.png").read_bytes().startswith(b"\x89PNG")
         assert not (folder / "PWNED").exists(), "a name was run as a command"
 

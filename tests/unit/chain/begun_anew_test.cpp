@@ -98,13 +98,14 @@ class Stream {
   std::uint64_t sent_ = 0;
 };
 
-void expect_no_angle(std::int64_t tick_ns, std::uint32_t seed) {
+// short_counter: of some bits, so that whole rounds of it pass while it is switched off.
+void expect_no_angle(std::int64_t tick_ns, std::uint32_t seed, bool short_counter = false) {
   Chance chance(seed);
   const double stated_hz = chance.of({50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 1000.0});
   // Of one whose ticks are as long as its period should be, a clock alone cannot say that it is slower.
   const bool even = std::abs(stated_hz * 1e-9 * static_cast<double>(tick_ns) - 1.0) < 0.01;
   const double off = !even && chance.one_in(3) ? chance.between(-0.02, 0.02) : 0.0;
-  const std::uint32_t modulus = chance.of({0U, 0U, 65'536U});
+  const std::uint32_t modulus = short_counter ? chance.of({16U, 128U, 256U}) : chance.of({0U, 0U, 65'536U});
   const std::int64_t wrap_ns =
       chance.of({std::int64_t{0}, std::int64_t{65'536'000'000}, std::int64_t{4'294'967'296'000}});
   const Device device{stated_hz,
@@ -113,7 +114,7 @@ void expect_no_angle(std::int64_t tick_ns, std::uint32_t seed) {
                       tick_ns,
                       wrap_ns,
                       modulus == 0 && chance.one_in(4),
-                      chance.one_in(3) ? 2 + chance.below(8) : 1};
+                      chance.one_in(3) ? 2 + chance.below(short_counter ? 29 : 8) : 1};
   Stream stream(device);
   double time_s = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -128,6 +129,13 @@ void expect_no_angle(std::int64_t tick_ns, std::uint32_t seed) {
 TEST(BegunAnew, WhateverItsClockTicksNoAngleIsMadeOrLost) {
   for (const std::int64_t tick_ns : {1000, 1'000'000, 10'000'000, 100'000'000})
     for (std::uint32_t seed = 1; seed <= 200; ++seed) expect_no_angle(tick_ns, seed);
+}
+
+// The rounds of a pause are told seconds later, by a sample whose own step of the clock knows nothing of
+// them.
+TEST(BegunAnew, NorIsItWhereTheCounterGoesRoundMeanwhile) {
+  for (const std::int64_t tick_ns : {1000, 1'000'000, 10'000'000, 100'000'000})
+    for (std::uint32_t seed = 1; seed <= 300; ++seed) expect_no_angle(tick_ns, seed, true);
 }
 
 // Twice the same frame each time, of a device that measures one value: those are no ticks of its clock.

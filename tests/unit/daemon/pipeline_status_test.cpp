@@ -65,6 +65,45 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsToldOnceInWords) {
   }
 }
 
+// Two devices on one line: in the books, in the state and in words; and what is published is not their sum.
+TEST(PipelineStatus, FramesOfTwoDevicesAreNotTakenAndToldInWords) {
+  constexpr std::size_t kCount = 4000, kApart = 40;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 1e-4);
+  const auto turning = [&](double radps) {
+    return [&normal, &random, radps](int n) { return radps - rate_of(n) + normal(random); };
+  };
+  const std::vector<std::uint8_t> one = frames(kCount, turning(0.1)),
+                                  other = frames(kCount + kApart, turning(-0.4));
+  std::vector<std::uint8_t> line;
+  for (std::size_t n = 0; n < kCount; ++n) {
+    line.insert(line.end(), one.begin() + n * kFrame, one.begin() + (n + 1) * kFrame);
+    line.insert(line.end(), other.begin() + (n + kApart) * kFrame, other.begin() + (n + kApart + 1) * kFrame);
+  }
+  Rig rig(line, kFrame, true);
+  rig.transport->stays_open_ = true;
+  rig.pipeline->start();
+  while (rig.pipeline->reader().books().decoded < 2 * kCount) std::this_thread::sleep_for(1ms);
+  rig.pipeline->filter().ask();
+  FilterSnapshot snapshot;
+  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
+  const status_t status = report.update(*rig.pipeline, snapshot, 1.0);
+  EXPECT_EQ(status.state, status_t::STATE_NO_DATA);
+  EXPECT_TRUE(status.fault.starts_with("frames of two devices come mixed on one line")) << status.fault;
+  EXPECT_EQ(status.samples_decoded, static_cast<std::int64_t>(2 * kCount));
+  EXPECT_EQ(status.samples_in + status.samples_repeated, status.samples_decoded);
+  EXPECT_GT(status.samples_repeated, static_cast<std::int64_t>(kCount));
+  rig.pipeline->stop();
+  const std::vector<rate_t> messages = rig.publisher->messages();
+  ASSERT_FALSE(messages.empty());
+  double angle_rad = 0.0;
+  for (const rate_t& message : messages) angle_rad += message.delta_theta[0];
+  const double taken_s = 1e-3 * static_cast<double>(messages.size());
+  EXPECT_LT(taken_s, 1.0);
+  EXPECT_NEAR(angle_rad, 0.1 * taken_s, 0.5 * 0.03);
+}
+
 TEST(PipelineStatus, HousekeepingGetsASnapshotWhileSamplesFlow) {
   Rig rig(frames(5000), kFrame, true, 64, 50us);
   rig.pipeline->start();

@@ -174,6 +174,9 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
   if (builder.repeated() != 0)
     warn("%s: %zu samples came twice or after one that follows, and are left out\n", path.c_str(),
          builder.repeated());
+  if (builder.mixed() != 0)
+    warn("%s: %zu samples are of two devices that come mixed, and left out: which of them is wanted?\n",
+         path.c_str(), builder.mixed());
   if (builder.impossible() != 0)
     warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", path.c_str(),
          builder.impossible());

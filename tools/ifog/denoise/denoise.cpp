@@ -194,8 +194,7 @@ void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& ro
   if (result.not_as_published_from_s)
     warn(
         "%s: from %s s on, until the filter has settled, this need not be what was published: the "
-        "recording "
-        "lacks something there\n",
+        "recording lacks something there\n",
         options.capture.c_str(), told_time(rows.origin().told(*result.not_as_published_from_s)).c_str());
   if (result.merged > 0)
     warn(
@@ -208,6 +207,9 @@ void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& ro
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
+  if (result.counts.mixed > 0)
+    warn("%s: %llu samples are of two devices that come mixed, and left out: which of them is wanted?\n",
+         options.capture.c_str(), static_cast<unsigned long long>(result.counts.mixed));
   if (rows.none_filtered())
     warn(
         "%s: %s: denoised is the compensated rate; expected --process-noise and --measurement-noise, or a "
