@@ -22,7 +22,7 @@ struct ModelChange {
   std::string outcome;         // in words, "" while nothing is known
   // Number of the last recording that was there then, 0 for none: what is newer was made afterwards, whatever
   // the wall clock did. Nothing: they could not be seen, or an older program wrote it.
-  std::optional<std::uint64_t> recorded;
+  std::optional<std::uint64_t> recorded{};
 };
 
 class History {
