@@ -110,8 +110,8 @@ class DeviceTimeline {
   static constexpr double kTickTells = 0.2;     // periods beside those that were left out
   static constexpr double kRateOff = 0.05;      // of the stated one
   static constexpr int kTicksTell = 3;
-  static constexpr double kGoesOn = 3.5;                 // periods of a clock, from a sample to the next
-  static constexpr std::uint64_t kTellsCountsApart = 8;  // a counter of fewer goes anywhere by chance
+  static constexpr double kGoesOn = 3.5;                  // periods of a clock, from a sample to the next
+  static constexpr std::uint64_t kTellsCountsApart = 64;  // of fewer, frames that change places look like two
 
   struct Look {
     double elapsed_s = -1.0;

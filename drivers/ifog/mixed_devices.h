@@ -11,7 +11,7 @@
 // One device can look so in part. Where its frames change places, what comes late is what was missing: both
 // counts together then are as many frames as one of them has gone on. Where frames are missing, or it is
 // polled, so that a round and one more passes from one to the next, that takes longer than samples do; where
-// nobody knows when they came, a counter of few bits shows nothing.
+// nobody knows when they came, a counter of few bits shows nothing, and one of fewer than 64 never.
 // Frames that were held up show nothing.
 //
 // Two devices whose counters are the same, to one, cannot be told from one that counts every second sample.

@@ -248,7 +248,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
   const bool keep_out = now.valid != 0 && outliers_.keep_out();
   if (now.valid != 0 && outliers_.jump()) {
     hear(m);
-    jump(m.valid, out);
+    jump(out);
     forget_unmeasured(m.valid);
     return;
   }

@@ -104,7 +104,7 @@ class Engine {
   void hear(const Measurement& m) noexcept;
   // of: axes that learn of it.
   void learn_noise(const Measurement& m, std::uint32_t of) noexcept;
-  void jump(std::uint32_t valid, EstimatorOutput& out) noexcept;
+  void jump(EstimatorOutput& out) noexcept;
   void begin_again(const Measurement& m, const Surprise& now, const Axes& least) noexcept;
   void judge_manoeuvre() noexcept;
   void begin_manoeuvre(const Measurement& m, std::size_t tracker, EstimatorOutput& out) noexcept;

@@ -40,7 +40,7 @@ void Engine::owe_to_manoeuvre(std::size_t axis) noexcept {
 }
 
 // Measurements that looked like outliers are a jump: all begin with them.
-void Engine::jump(std::uint32_t valid, EstimatorOutput& out) noexcept {
+void Engine::jump(EstimatorOutput& out) noexcept {
   out.flags |= kManoeuvre;
   ++health_.manoeuvres;
   const std::span<const Axes> run = outliers_.run();
@@ -51,7 +51,7 @@ void Engine::jump(std::uint32_t valid, EstimatorOutput& out) noexcept {
     owe_to_manoeuvre(a);
   }
   ledger_.pace(count);
-  trackers_.begin(run, outliers_.measured() | valid);
+  trackers_.begin(run);
   move_rest(mean, rest_->rule().measurement_noise() / count);
   rest_->skip();
   outliers_.clear();
@@ -130,7 +130,7 @@ void Engine::begin_again(const Measurement& m, const Surprise& now, const Axes& 
     else if (!has(waiting_axes_, a))
       both[0][a] = both[1][a];
   }
-  trackers_.begin(both, waiting_axes_ | m.valid);
+  trackers_.begin(both);
   forget_unmeasured(m.valid);
   double scale = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) {

@@ -31,8 +31,6 @@ class OutlierRun {
   [[nodiscard]] bool began() const noexcept { return began_; }
   // The far ones in a row, the last one included, oldest first.
   [[nodiscard]] std::span<const Axes> run() const noexcept { return {run_.data(), length_}; }
-  // Axes that one of them at least has.
-  [[nodiscard]] std::uint32_t measured() const noexcept { return measured_; }
   // The run was dealt with as a jump.
   void clear() noexcept { length_ = 0; }
   void restart() noexcept {

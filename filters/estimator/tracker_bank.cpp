@@ -66,13 +66,12 @@ void TrackerBank::begin() noexcept {
   measured_ = 0;
 }
 
-void TrackerBank::begin(std::span<const Axes> measurements, std::uint32_t measured_axes) noexcept {
+void TrackerBank::begin(std::span<const Axes> measurements) noexcept {
   begin();
   for (const Axes& rate : measurements) {
     predict(1.0);
-    correct(rate, axes_of_sensor(axes_));
+    correct(rate, ~0U);
   }
-  measured_ = measured_axes;
 }
 
 void TrackerBank::begin_from(std::size_t tracker, std::size_t from) noexcept {

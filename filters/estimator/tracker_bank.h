@@ -32,9 +32,8 @@ class TrackerBank {
   // Trackers as long as this, in samples, take part; once in they stay.
   void reach(double samples) noexcept;
   void begin() noexcept;
-  // All of them afresh from these rates of all axes, oldest first. measured_axes: those that were measured in
-  // one of them at least; the others stand where they were.
-  void begin(std::span<const Axes> measurements, std::uint32_t measured_axes) noexcept;
+  // All of them afresh from these measurements, oldest first.
+  void begin(std::span<const Axes> measurements) noexcept;
   // This one, and all that are longer, from what the one before it knows.
   void begin_from(std::size_t tracker, std::size_t from) noexcept;
 

@@ -31,7 +31,7 @@ void expect_found(const SentFrames& frames, const StreamFacts& facts, const Send
 }
 
 TEST(MixedDevices, TwoThatAreInterleavedAreFoundAndNotSummed) {
-  for (const std::uint32_t modulus : {16U, 128U, 256U, 65'536U})
+  for (const std::uint32_t modulus : {64U, 128U, 256U, 65'536U})
     for (const std::uint64_t apart : {2U, 5U, 8U, 13U, 40U, 64U, 100U, 127U}) {
       if (apart % modulus < 2 || modulus - apart % modulus < 2) continue;
       SCOPED_TRACE(testing::Message() << "modulus " << modulus << ", apart " << apart);

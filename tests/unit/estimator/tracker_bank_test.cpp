@@ -73,20 +73,5 @@ TEST(TrackerBank, AParabolaIsForeseenOnEveryAxis) {
   }
 }
 
-// Begun anew, it grows older with each measurement of what the sensor has, one axis or more, from the first.
-TEST(TrackerBank, BegunAnewItIsAsOldAsItsMeasurements) {
-  const std::vector<Axes> jump{{1.0}, {1.0}};
-  for (const std::size_t axes : {1U, 3U}) {
-    TrackerBank bank(axes);
-    bank.reach(300.0);
-    bank.begin(jump, 1);
-    for (int n = 1; n <= 20; ++n) {
-      bank.predict(1.0);
-      bank.correct({1.0}, 1);
-      ASSERT_EQ(bank.age(bank.size() - 1), 2.0 + n) << axes;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace ifog
