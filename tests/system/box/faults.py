@@ -13,18 +13,12 @@ from machine import Failure
 ANGLE_RAD = 1e-9
 
 
-ROUND = 128  # in which the counter of a KVH 1750 begins anew
-
-
 def complaints(sent, got):
-    """What is wrong with a count, or nothing. The lines here are silent between two sendings and then go on with their counter. Where
-    such a silence fits whole rounds of it, as one in twelve does, the daemon takes it for one in which they were lost, for nothing tells
-    it otherwise: that is no fault where all that was sent has come."""
+    """What is wrong with a count, or nothing."""
     wrong = []
     if got["messages"] != sent:
         wrong.append(f"{got['messages']} messages of {sent} sent")
-    counts = dict(got, missing=got.get("missing", 0) % ROUND if not wrong else got.get("missing", 0))
-    wrong += [f"{name} {counts[name]}" for name in ("missing", "out_of_order", "merged") if counts.get(name)]
+    wrong += [f"{name} {got[name]}" for name in ("missing", "out_of_order", "merged") if got.get(name)]
     return ", ".join(wrong)
 
 

@@ -47,7 +47,7 @@ def angle(begin, count, hertz):
 
 
 def misread(sent, sent_baud, read_baud):
-    """The bytes that a UART at read_baud makes of what another sends at sent_baud, 8N1: the line is looked at in the shift of
+    """The bytes that a UART at read_baud makes of what another sends at sent_baud, 8N1: the line is looked at in the middle of
     each of its bits. A byte whose stop bit is low has a framing error and is handed on all the same, as the 8250 does."""
     line = bytearray()
     for byte in sent:

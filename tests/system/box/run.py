@@ -56,15 +56,27 @@ def configuration(hertz):
 
 
 class Line:
-    """The host's end of a serial line; a sequence that goes on from one sending to the next."""
+    """The host's end of a serial line; a sequence that goes on from one sending to the next. A silence that fits whole rounds of that
+    sequence at the stated rate is one in which they were lost, for all that anybody can tell, and the daemon says so: between two
+    sendings half a round is over."""
 
     def __init__(self, path):
         self.link, self.next = connect(path, 10), 0
+        self.round_s = self.ended = None
+
+    def at_rate(self, hertz):
+        self.round_s = 128 / hertz
+
+    def send_behind_silence(self, packed, hertz):
+        if self.ended is not None and self.round_s is not None:
+            time.sleep((self.ended - time.monotonic() + self.round_s / 2) % self.round_s)
+        frames.send_paced(self.link, packed, hertz)
+        self.ended = time.monotonic()
 
     def send(self, count, hertz):
         packed = [frames.kvh1750(self.next + i, hertz) for i in range(count)]
         self.next += count
-        sending = threading.Thread(target=frames.send_paced, args=(self.link, packed, hertz), daemon=True)
+        sending = threading.Thread(target=self.send_behind_silence, args=(packed, hertz), daemon=True)
         sending.start()
         return sending
 
@@ -106,6 +118,8 @@ class Box(Faults, Again, Loop):
 
     def configure(self, hertz):
         self.hertz = hertz
+        self.lines["usb"].at_rate(hertz)
+        self.lines["serial"].at_rate(min(hertz, SERIAL_LIMIT))
         self.machine.run(f"cat >/etc/ifogd/ifogd.toml <<'END'\n{configuration(hertz)}\nEND")
 
     def counting(self, *names):

@@ -139,7 +139,7 @@ class Odd:
         self.check(listed["proposals"][0]["stale"] and "tail.toml has no such sensor: not to be adopted" in said and "adopt with" not in said,
                    "a proposal of a sensor that is no longer configured is listed with that")
         said, status = self.json("status", "--wait", "0.1", config="tail.toml")
-        self.check(status["sensors"][1]["proposal"]["stale"] and "no configuration has its sensor: not to be adopted" in said and "adopt with" not in said,
+        self.check(status["sensors"][1]["proposal"]["stale"] and "the configuration has no such sensor: not to be adopted" in said and "adopt with" not in said,
                    "and the status says so, too")
         self.check("no sensor 'nose'" in self.ran("adopt", "nose", code=1, config="tail.toml"), "and adopting it is refused")
 

@@ -203,7 +203,7 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   // By their numbers, for the wall clock may have been set since; numbers that begin anew are all newer.
   if (!last.recorded)
     std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
-  else if (since.back().number >= *last.recorded)
+  else if (!since.empty() && since.back().number >= *last.recorded)
     std::erase_if(since, [&](const RecordedFile& file) { return file.number <= *last.recorded; });
   if (since.empty()) return;
   try {

@@ -76,7 +76,7 @@ struct Kept {
   // Where it is recorded; "" for nowhere. Nothing: no configuration says.
   std::optional<std::string> recordings;
   std::string damaged;  // "" or one line
-  bool configured = false;
+  bool gone = false;    // the configuration that there is has no such sensor
 };
 
 Kept kept_of(const Field& field, const std::string& name) {
@@ -90,9 +90,10 @@ Kept kept_of(const Field& field, const std::string& name) {
   };
   look([&] {
     if (field.config() == nullptr) return;
+    out.gone = true;
     for (const SensorConfig& sensor : field.config()->sensors) {
       if (sensor.name != name) continue;
-      out.configured = true;
+      out.gone = false;
       out.recordings = sensor.record.folder.empty() ? "" : sensor.record.folder + "/" + name;
       out.model = model_at(field.model_path(sensor)).name;
     }
@@ -164,7 +165,7 @@ void say_sensor(const std::string& name, const status_t* live, const Kept& kept,
   if (kept.proposal)
     say("  proposal of %s: %s\n  %s\n", printable(kept.proposal->made).c_str(),
         printable(kept.proposal->why, kLongestMessage).c_str(),
-        !kept.configured                       ? "no configuration has its sensor: not to be adopted"
+        kept.gone                              ? "the configuration has no such sensor: not to be adopted"
         : kept.proposal->against == kept.model ? ("adopt with: " + adopt).c_str()
                                                : "it was made against another model: not to be adopted");
   if (!kept.damaged.empty()) say("  %s\n", kept.damaged.c_str());
@@ -212,7 +213,7 @@ ordered_json as_json(const std::string& name, const status_t* live, const Kept& 
     out["proposal"] = {{"made", kept.proposal->made},
                        {"why", kept.proposal->why},
                        {"model", kept.proposal->model.identity},
-                       {"stale", !kept.configured || kept.proposal->against != kept.model}};
+                       {"stale", kept.gone || kept.proposal->against != kept.model}};
   out["last_change"] = nullptr;
   if (kept.last)
     out["last_change"] = {
