@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares what the daemon published, as lcm-logger recorded it, with what `ifog denoise` computed of the
+// Compares what the daemon published, as it was recorded, with what `ifog denoise` computed of the
 // same frames: bit for bit, sample by sample.
 //
 // usage: log_equals LOG CHANNEL DENOISED.csv [CAPTURE.csv RESOLUTION_RADPS]

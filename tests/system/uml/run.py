@@ -246,7 +246,7 @@ class Bus:
         return text
 
     def check_published_equals_offline_bit_for_bit(self):
-        """capture → frames → vcan → daemon → LCM → lcm-logger, against `ifog denoise` of the same frames."""
+        """capture → frames → vcan → daemon → LCM → a log of all of it, against `ifog denoise` of the same frames."""
         folder = self.folder("bits", RESOLUTION, 0.02, 200)
         name, capture = self.capture(folder)
         log = os.path.join(folder, "can.log")
