@@ -23,7 +23,7 @@ double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
 constexpr const char* kFrozen =
     "the device sends the same frame again and again: its counter or clock stands still, nothing of it is "
     "taken";
-// What its own counter or clock shows.
+// What the counter shows.
 constexpr const char* kMixed =
     "frames of two devices come mixed on one line: their counters go to and fro, which of them is wanted "
     "nobody knows, and nothing of either is taken";

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,9 +57,7 @@ class DeviceTimeline {
         period_s_(rate_hz > 0.0 ? 1.0 / rate_hz : 1.0),
         count_(modulus > 0 ? modulus : 1, period_s_, on_bus),
         clock_steps_(period_s_),
-        mixed_(modulus > 0 ? static_cast<std::int64_t>(modulus) : 0,
-               modulus > 0 ? 1 : std::max<std::int64_t>(std::llround(period_s_ * 1e9), 1),
-               modulus > 0 ? 1.0 : kGoesOn, rate_known_ ? period_s_ : 0.0) {}
+        mixed_(static_cast<std::int64_t>(modulus), rate_known_ ? period_s_ : 0.0) {}
 
   // Whether it decides of this frame: else there is neither counter nor clock to go by.
   [[nodiscard]] bool tells(const Frame& frame) const noexcept {
@@ -110,8 +107,7 @@ class DeviceTimeline {
   static constexpr double kTickTells = 0.2;     // periods beside those that were left out
   static constexpr double kRateOff = 0.05;      // of the stated one
   static constexpr int kTicksTell = 3;
-  static constexpr double kGoesOn = 3.5;                  // periods of a clock, from a sample to the next
-  static constexpr std::uint64_t kTellsCountsApart = 64;  // of fewer, frames that change places look like two
+  static constexpr std::uint64_t kTellsCountsApart = 128;  // mixed_devices.h
 
   struct Look {
     double elapsed_s = -1.0;
@@ -121,13 +117,12 @@ class DeviceTimeline {
   };
 
   [[nodiscard]] bool counted(const Frame& frame) const noexcept { return frame.counts && modulus_ > 0; }
-  // By what frames of two devices are told: the counter, else the clock.
+  // Whether its counter tells frames of two devices apart.
   [[nodiscard]] bool places(const Frame& frame) const noexcept {
-    return modulus_ > 0 ? frame.counts && modulus_ >= kTellsCountsApart
-                        : frame.clocked && last_clocked_ && rate_known_;
+    return frame.counts && modulus_ >= kTellsCountsApart;
   }
-  [[nodiscard]] std::int64_t place(const Frame& frame) const noexcept {
-    return modulus_ > 0 ? static_cast<std::int64_t>(frame.sequence) : frame.stamp.ns;
+  [[nodiscard]] static std::int64_t place(const Frame& frame) noexcept {
+    return static_cast<std::int64_t>(frame.sequence);
   }
   std::int64_t begin(const Frame& frame) noexcept {
     arrivals_.forget();

@@ -10,8 +10,9 @@
 //
 // One device can look so in part. Where its frames change places, what comes late is what was missing: both
 // counts together then are as many frames as one of them has gone on. Where frames are missing, or it is
-// polled, so that a round and one more passes from one to the next, that takes longer than samples do; where
-// nobody knows when they came, a counter of few bits shows nothing, and one of fewer than 64 never.
+// polled, so that a round and one more passes from one to the next, that takes longer than samples do.
+// A counter of less than 128 shows nothing, nor does a clock: frames of one device that change places would
+// look like two, and its own samples would be left out.
 // Frames that were held up show nothing.
 //
 // Two devices whose counters are the same, to one, cannot be told from one that counts every second sample.
@@ -20,7 +21,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -34,18 +34,13 @@ class MixedDevices {
     anew   // taken, but it does not join what was
   };
   struct Frame {
-    std::int64_t at = 0;          // its count, or its stamp, ns
+    std::int64_t at = 0;          // its count
     std::int64_t arrival_ns = 0;  // 0: not known
     std::uint64_t digest = 0;     // of its values
   };
 
-  // round: of the count or the stamp; 0: it has none. one: a sample in it, > 0. ahead: samples to the next
-  // frame at most, for it to go on. period_s: of a sample; 0: not known.
-  MixedDevices(std::int64_t round, std::int64_t one, double ahead, double period_s) noexcept
-      : round_(round),
-        one_(one),
-        next_(static_cast<std::int64_t>(ahead * static_cast<double>(one))),
-        period_s_(period_s) {}
+  // modulus: of the count, > 0. period_s: of a sample; 0: not known.
+  MixedDevices(std::int64_t modulus, double period_s) noexcept : modulus_(modulus), period_s_(period_s) {}
 
   // Nothing comes before it.
   void first(std::int64_t at) noexcept {
@@ -55,9 +50,7 @@ class MixedDevices {
   // The next frame goes on with the last, and there is nothing else: no more is to be asked.
   [[nodiscard]] bool plain(std::int64_t at) noexcept {
     if (watching_) return false;
-    const std::int64_t by = ahead(tails_[latest_].at, at);
-    // Several samples may have one stamp, but not one count.
-    if (by > next_ || by < (one_ > 1 ? 0 : 1)) return false;
+    if (ahead(tails_[latest_].at, at) != 1) return false;
     tails_[latest_].at = at;
     return true;
   }
@@ -91,23 +84,26 @@ class MixedDevices {
   static constexpr std::size_t kTails = 4;
   static constexpr int kShows = 32, kTurns = 8;  // frames in a row that go on with one of the counts; of
                                                  // those such that change from one to another
-  static constexpr std::uint64_t kAlive = 256;   // frames in which a count that is there goes on
-  static constexpr std::uint64_t kAlone = 512;   // likewise, and the other has gone
-  static constexpr std::int64_t kLoses = 8;      // frames that may be missing within a count that is followed
-  static constexpr std::size_t kKept = 1024;  // frames of all; by a second way half of them may lie between
+  // And of two of the counts so many each: the late frames of one device go on for no longer than they are
+  // late by, as the counts behind have come already.
+  static constexpr int kGoes = 13;
+  static constexpr std::uint64_t kAlive = 256;  // frames in which a count that is there goes on
+  static constexpr std::uint64_t kAlone = 512;  // likewise, and the other has gone
+  static constexpr std::int64_t kLoses = 8;     // frames that may be missing within a count that is followed
+  static constexpr std::size_t kKept = 1024;    // frames of all; by a second way half of them may lie between
   static constexpr std::size_t kEvery = 5;  // of them are looked for among the others: of each count in turn
   static constexpr int kLooks = 64, kOwn = 63;  // looks, of which so many find nothing where they are two
   static constexpr std::uint64_t kBlock = 128;  // frames in which both are counted
   static constexpr int kBlocks = 3;             // in a row
   static constexpr double kTogether = 1.5;      // frames for each that the followed one has gone on
   static constexpr double kMostPolled = 16.0, kOfRound = 0.125, kHeldUp = 0.25;  // times what samples take
-  static constexpr double kLongRound = 64.0;  // so many are not lost again and again, where no time says it
 
   enum class State : std::uint8_t { one, doubtful, two };
   struct Tail {
     std::int64_t at = 0;
     std::uint64_t seen = 0, digest = 0;
     bool used = false;
+    int went = 0;  // frames of those in a row that were its own
   };
   // Of the followed one, or of all others.
   struct Looks {
@@ -122,18 +118,13 @@ class MixedDevices {
   };
 
   [[nodiscard]] std::int64_t ahead(std::int64_t from, std::int64_t to) const noexcept {
-    auto by = static_cast<std::int64_t>(static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from));
-    if (round_ > 0 && (by < 0 || by >= round_)) by = (by % round_ + round_) % round_;
-    return by;
-  }
-  [[nodiscard]] bool follows(std::int64_t from, std::int64_t to, std::int64_t most) const noexcept {
-    const std::int64_t by = ahead(from, to);
-    return by > 0 && by <= most;
+    const std::int64_t by = to - from;
+    return by >= 0 ? by : by + modulus_;
   }
 
   void begin(std::int64_t at) noexcept {
     tails_ = {};
-    tails_[0] = {at, 0, 0, true};
+    tails_[0] = {.at = at, .used = true};
     latest_ = followed_ = 0;
     watching_ = joins_ = false;
   }
@@ -148,17 +139,14 @@ class MixedDevices {
   }
   // To which count it belongs: the latest where it goes on with that, else the nearest; kTails: to none.
   [[nodiscard]] std::size_t tail_of(const Frame& frame) const noexcept {
-    if (follows(tails_[latest_].at, frame.at, next_)) return latest_;
-    const std::int64_t most =
-        state_ == State::one
-            ? next_
-            : std::max(next_, std::min(kLoses, round_ > 0 ? round_ / one_ / 8 : kLoses) * one_);
+    if (ahead(tails_[latest_].at, frame.at) == 1) return latest_;
+    const std::int64_t most = state_ == State::one ? 1 : kLoses;
     std::size_t nearest = kTails;
     std::int64_t least = most + 1;
     for (std::size_t i = 0; i < kTails; ++i) {
       const Tail& tail = tails_[i];
       if (!alive(tail)) continue;
-      if (tail.at == frame.at && (one_ > 1 || tail.digest == frame.digest)) return i;
+      if (tail.at == frame.at && tail.digest == frame.digest) return i;
       const std::int64_t by = ahead(tail.at, frame.at);
       if (by <= 0 || by > most || by > least || (by == least && i != followed_)) continue;
       least = by;
@@ -173,44 +161,46 @@ class MixedDevices {
       if (!tails_[i].used || (tails_[oldest].used && tails_[i].seen < tails_[oldest].seen)) oldest = i;
     }
     if (state_ == State::one && followed_ == oldest) followed_ = latest_;
-    tails_[oldest] = {frame.at, frames_, frame.digest, true};
+    tails_[oldest] = {frame.at, frames_, frame.digest, true, 0};
     latest_ = oldest;
     turns_ = 0;
   }
   void go_on(std::size_t tail, const Frame& frame) noexcept {
     Tail& to = tails_[tail];
-    const double by = static_cast<double>(ahead(to.at, frame.at)) / static_cast<double>(one_);
+    const auto by = static_cast<double>(ahead(to.at, frame.at));
     if (tail != latest_) {
       if (turns_++ == 0) {
         began_ns_ = frame.arrival_ns;
         advanced_ = 0.0;
         in_a_row_ = 0;
+        for (Tail& each : tails_) each.went = 0;
       }
       alternated_ = frames_;
     }
     ++in_a_row_;
     advanced_ += by;
     if (tail == followed_) block_.advanced += by;
-    to = {frame.at, frames_, frame.digest, true};
+    to = {frame.at, frames_, frame.digest, true, to.went + 1};
     latest_ = tail;
   }
   // They took no longer than samples do; and, where that is asked, were not held up.
   [[nodiscard]] bool at_their_pace(std::int64_t from_ns, std::int64_t to_ns, double samples,
                                    bool not_held_up) const noexcept {
-    const double rounds = round_ > 0 ? static_cast<double>(round_) / static_cast<double>(one_) : HUGE_VAL;
-    if (from_ns <= 0 || to_ns <= 0 || period_s_ <= 0.0) return rounds >= kLongRound;
+    if (from_ns <= 0 || to_ns <= 0 || period_s_ <= 0.0) return true;
     const double took_s = static_cast<double>(to_ns - from_ns) * 1e-9, usual_s = samples * period_s_;
-    return took_s <= std::min(kMostPolled, kOfRound * rounds) * usual_s &&
+    return took_s <= std::min(kMostPolled, kOfRound * static_cast<double>(modulus_)) * usual_s &&
            (!not_held_up || took_s >= kHeldUp * usual_s);
   }
   // Both counts go on as quickly as samples are taken, and do not stand beside each other.
   [[nodiscard]] bool shows(const Frame& frame) const noexcept {
     if (turns_ < kTurns || in_a_row_ < kShows) return false;
+    const auto goes = [](const Tail& tail) { return tail.went >= kGoes; };
+    if (std::count_if(tails_.begin(), tails_.end(), goes) < 2) return false;
     if (!at_their_pace(began_ns_, frame.arrival_ns, advanced_, false)) return false;
     for (const Tail& a : tails_)
       for (const Tail& b : tails_) {
         if (&a == &b || !alive(a) || !alive(b)) continue;
-        if (const std::int64_t by = ahead(a.at, b.at); - one_ <= by && by <= one_) return false;
+        if (ahead(a.at, b.at) <= 1) return false;
       }
     return true;
   }
@@ -288,7 +278,7 @@ class MixedDevices {
     looks.looks = looks.own = 0;
   }
 
-  std::int64_t round_, one_, next_;
+  std::int64_t modulus_;
   double period_s_;
   State state_ = State::one;
   bool watching_ = false;  // more than one count has been seen of late

@@ -31,7 +31,7 @@ void expect_found(const SentFrames& frames, const StreamFacts& facts, const Send
 }
 
 TEST(MixedDevices, TwoThatAreInterleavedAreFoundAndNotSummed) {
-  for (const std::uint32_t modulus : {64U, 128U, 256U, 65'536U})
+  for (const std::uint32_t modulus : {128U, 256U, 65'536U})
     for (const std::uint64_t apart : {2U, 5U, 8U, 13U, 40U, 64U, 100U, 127U}) {
       if (apart % modulus < 2 || modulus - apart % modulus < 2) continue;
       SCOPED_TRACE(testing::Message() << "modulus " << modulus << ", apart " << apart);
@@ -78,16 +78,6 @@ TEST(MixedDevices, OfConstantValuesAndOtherKinds) {
   expect_found(line, {1000.0, 128}, a);
   expect_found(line, {1000.0, 128, false, true, SensorKind::delta_angle}, a);
   expect_found(line, {1000.0, 128, false, false}, a);  // a recording of bytes without times
-}
-
-TEST(MixedDevices, TwoWithAClockAlone) {
-  for (const double apart_s : {0.4, -3.0, 5000.0}) {
-    SCOPED_TRACE(apart_s);
-    std::mt19937 random(19);
-    const SendingDevice a{200.0, 0.1, 1e-4, 0.0, 0, 1000.0},
-        b{200.001, -0.4, 1e-4, 2e-3, 0, 1000.0 + apart_s};
-    expect_found(together(a.send(kTen_s, random), b.send(kTen_s, random)), {200.0, 0, true}, a);
-  }
 }
 
 TEST(MixedDevices, ThreeOfThem) {

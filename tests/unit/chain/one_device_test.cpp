@@ -131,6 +131,36 @@ TEST(OneDevice, IsNeverTakenForTwo) {
   for (std::uint32_t seed = 1; seed <= 800; ++seed) expect_one(seed);
 }
 
+// Whatever is lost, held up or overtaken on its way: of one device each frame that none behind it has
+// overtaken is taken, also while it is doubtful whether there are two.
+TEST(OneDevice, KeepsEveryFrameThatWasNotOvertaken) {
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
+    Way way(seed);
+    StreamFacts facts;
+    facts.modulus = way.of({0U, 128U, 256U, 65'536U});
+    facts.clocked = facts.modulus == 0 || way.one_in(3);
+    facts.stated_hz = way.of({50.0, 200.0, 1000.0});
+    SendingDevice device;
+    device.rate_hz = facts.stated_hz;
+    device.count = 1000;
+    device.stamp_s = way.between(0.0, 1000.0);
+    SentFrames frames = device.send(20.0, way.random());
+    if (way.one_in(2)) way.lose(frames);
+    if (!way.one_in(4)) way.change_places(frames, device.rate_hz);
+    if (way.one_in(3)) frames = read_every(way.of({0.004, 0.016}), frames);
+    std::uint64_t highest = 0, in_turn = 0;
+    for (const SentFrame& frame : frames) {
+      if (frame.count <= highest) continue;
+      highest = frame.count;
+      ++in_turn;
+    }
+    const StreamResult got = run_stream(frames, facts);
+    EXPECT_EQ(frames.size() - got.counts.repeated, in_turn)
+        << "seed " << seed << ", modulus " << facts.modulus << (facts.clocked ? ", clocked" : "") << ", "
+        << facts.stated_hz << " Hz, " << frames.size() << " frames";
+  }
+}
+
 // By a second way each frame comes again, later: the angle is that of the frames, once.
 TEST(OneDevice, WhoseFramesComeTwiceHasItsAngleOnce) {
   for (const double late : {3.4, 20.4, 100.4, 150.4, 240.4}) {
