@@ -37,7 +37,7 @@ struct Simulate {
     expect_capture_name("--output", output, &encoding);
     expect_ending("--truth", truth,
                   has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
-                  std::string(".json, ") + kColumnEndings);
+                  std::string(".json, ").append(kColumnEndings));
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
     simulate::Simulation made;
     try {
