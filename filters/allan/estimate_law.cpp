@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "filters/linear/symmetric.h"
+
 namespace ifog {
 namespace {
 
@@ -26,9 +28,9 @@ void add_modes(Deviation kind, std::size_t m, std::size_t places, std::size_t st
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) covariance(i, j) = lag[std::abs(i - j)];
   covariance *= share / static_cast<double>(places);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance, Eigen::EigenvaluesOnly);
-  const double least = 1e-6 * solver.eigenvalues().maxCoeff();
-  for (const double weight : solver.eigenvalues())
+  const Eigen::VectorXd weights = symmetric_eigenvalues(covariance);
+  const double least = 1e-6 * weights.maxCoeff();
+  for (const double weight : weights)
     if (weight > least) law.push_back({weight, 1.0});
 }
 

@@ -14,6 +14,7 @@
 #include "filters/allan/curve_limits.h"
 #include "filters/allan/described_bands.h"
 #include "filters/allan/noise_likelihood.h"
+#include "filters/linear/normal_equations.h"
 #include "filters/units/field_units.h"
 
 namespace ifog {
@@ -76,11 +77,9 @@ TermVariances errors(const NoiseLikelihood& likelihood, const TermVariances& fit
   for (std::size_t t = 0; t < kTerms; ++t)
     if (fit[t] > 0.0) open.push_back(static_cast<Eigen::Index>(t));
   const Eigen::Matrix4d information = likelihood.information(fit);
-  Eigen::MatrixXd some = information(open, open);
-  // Terms differ by many powers of ten.
-  const Eigen::VectorXd scale = some.diagonal().cwiseSqrt().cwiseInverse();
-  some = scale.asDiagonal() * some * scale.asDiagonal();
-  const Eigen::MatrixXd covariance = scale.asDiagonal() * some.inverse() * scale.asDiagonal();
+  const auto n = static_cast<Eigen::Index>(open.size());
+  const Eigen::MatrixXd covariance =
+      NormalEquations(information(open, open), Eigen::VectorXd::Zero(n)).inverse();
   TermVariances error{};
   for (std::size_t i = 0; i < open.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "filters/linear/normal_equations.h"
+#include "filters/linear/projection.h"
+#include "filters/linear/symmetric.h"
+
 namespace ifog {
 namespace {
 
@@ -33,11 +37,8 @@ Eigen::Vector4d scoring_step(const Eigen::Vector4d& x, const Eigen::Vector4d& sl
       else if (allowed[t])
         d[row(t)] = -x[row(t)];
     }
-    const Eigen::VectorXd wanted = (slope - information * d)(face);
     // Terms differ by many powers of ten.
-    const Eigen::VectorXd scale = information.diagonal()(face).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * information(face, face) * scale.asDiagonal();
-    d(face) = scale.cwiseProduct(scaled.ldlt().solve(scale.cwiseProduct(wanted)));
+    d(face) = NormalEquations(information(face, face), (slope - information * d)(face)).coefficients();
     if (!d.allFinite() || ((x + d)(face).array() < 0.0).any()) continue;
     const double gain = slope.dot(d) - 0.5 * d.dot(information * d);
     if (gain <= most) continue;
@@ -61,10 +62,7 @@ NoiseLikelihood::NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp) : ram
     Part part{slow.value, slow.ramp, slow.covariance};
     if (ramp == Ramp::kProjected && !slow.ramp.isZero()) {
       // An orthonormal basis of what is at right angles to the ramp.
-      const Eigen::Index n = slow.ramp.size() - 1;
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(slow.ramp);
-      const Eigen::MatrixXd q = qr.householderQ();
-      const Eigen::MatrixXd beside = q.rightCols(n);
+      const Eigen::MatrixXd beside = Projection::beside(slow.ramp);
       part.value = beside.transpose() * slow.value;
       for (Eigen::MatrixXd& c : part.covariance) c = (beside.transpose() * c * beside).eval();
     }
@@ -77,7 +75,7 @@ NoiseLikelihood::RampEstimate NoiseLikelihood::ramp_at(const Eigen::Vector4d& x)
   for (const Part& part : parts_) {
     Eigen::MatrixXd c = Eigen::MatrixXd::Zero(part.value.size(), part.value.size());
     for (std::size_t t = 0; t < kTerms; ++t) c += x[row(t)] * unit_[t] * part.covariance[t];
-    const Eigen::VectorXd g = c.llt().solve(part.ramp);
+    const Eigen::VectorXd g = CholeskyFactor(c).solve(part.ramp);
     along += g.dot(part.value);
     weight += g.dot(part.ramp);
   }
@@ -92,13 +90,13 @@ void NoiseLikelihood::add_slow(const Eigen::Vector4d& x, TermSet open, State& st
     Eigen::MatrixXd c = Eigen::MatrixXd::Zero(z.size(), z.size());
     for (std::size_t t = 0; t < kTerms; ++t)
       if (x[row(t)] > 0.0) c += x[row(t)] * unit_[t] * part.covariance[t];
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(c);
-    if (cholesky.info() != Eigen::Success) {
+    const CholeskyFactor cholesky(c);
+    if (!cholesky.exists()) {
       state.log_likelihood = -std::numeric_limits<double>::infinity();
       return;
     }
     const Eigen::VectorXd y = cholesky.solve(z);
-    state.log_likelihood -= cholesky.matrixLLT().diagonal().array().log().sum() + 0.5 * y.dot(z);
+    state.log_likelihood -= cholesky.log_determinant() + 0.5 * y.dot(z);
     if (open.none()) continue;
     std::array<Eigen::MatrixXd, kTerms> share;  // C⁻¹ times each term's covariance
     for (std::size_t t = 0; t < kTerms; ++t) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "filters/linear/symmetric.h"
+
 namespace ifog {
 namespace {
 
@@ -56,14 +58,13 @@ Eigen::MatrixXd covariance(std::size_t angles, const TermVariances& terms) {
 
 // Of the form over its mean: eigenvalues of F^½·C·F^½.
 std::vector<WeightedChiSquared> law_of(const Eigen::MatrixXd& form, const Eigen::MatrixXd& c, double mean) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(form);
-  const Eigen::MatrixXd half = root.eigenvectors() *
-                               root.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                               root.eigenvectors().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(half * c * half / mean, Eigen::EigenvaluesOnly);
+  const SymmetricEigen root = symmetric_eigen(form);
+  const Eigen::MatrixXd half =
+      root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * root.vectors.transpose();
+  const Eigen::VectorXd modes = symmetric_eigenvalues(half * c * half / mean);
   std::vector<WeightedChiSquared> law;
-  const double least = 1e-6 * modes.eigenvalues().maxCoeff();
-  for (const double weight : modes.eigenvalues())
+  const double least = 1e-6 * modes.maxCoeff();
+  for (const double weight : modes)
     if (weight > least) law.push_back({weight, 1.0});
   return law;
 }

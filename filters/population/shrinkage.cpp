@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/population/shrinkage.h"
 
+#include "filters/linear/normal_equations.h"
+
 namespace ifog {
 
 JointEstimate shrunk_together(const JointEstimate& own, std::span<const KnownCoefficient> known) {
@@ -20,14 +22,8 @@ JointEstimate shrunk_together(const JointEstimate& own, std::span<const KnownCoe
   }
   Eigen::MatrixXd together = picks * own.covariance * picks.transpose();
   together.diagonal() += spread;
-  // Units differ by many powers of ten.
-  const Eigen::VectorXd scale = together.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  (scale.asDiagonal() * together * scale.asDiagonal())
-                                      .ldlt()
-                                      .solve(Eigen::MatrixXd::Identity(count, count)) *
-                                  scale.asDiagonal();
-  const Eigen::MatrixXd gain = own.covariance * picks.transpose() * inverse;
+  const NormalEquations weighed(together, expected - picks * own.values);
+  const Eigen::MatrixXd gain = own.covariance * picks.transpose() * weighed.inverse();
   JointEstimate out;
   out.values = own.values + gain * (expected - picks * own.values);
   out.covariance =

@@ -6,6 +6,7 @@
 #include <nlopt.hpp>
 #include <stdexcept>
 
+#include "filters/linear/symmetric.h"
 #include "filters/state_models/state_model.h"
 
 namespace ifog {
@@ -26,9 +27,8 @@ class Whitened {
       // No step beyond the reach, however little the spectrum tells.
       full(i, i) += 1.0 / (r * r);
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(full);
-    directions_ =
-        solver.eigenvectors() * solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
+    const SymmetricEigen eigen = symmetric_eigen(full);
+    directions_ = eigen.vectors * eigen.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
   }
 
   [[nodiscard]] std::vector<double> theta(std::span<const double> unit) const {
@@ -141,12 +141,12 @@ Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::Mat
     }
   const auto size = static_cast<Eigen::Index>(n);
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(size, size);
-  const Eigen::LDLT<Eigen::MatrixXd> solver(hessian);
-  if (m == 0 || !solver.isPositive()) {
+  const SymmetricSolver solver(hessian);
+  if (m == 0 || !solver.is_positive()) {
     known.assign(n, false);
     return full;
   }
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(m, m));
+  const Eigen::MatrixXd inverse = solver.inverse();
   for (Eigen::Index a = 0; a < m; ++a)
     for (Eigen::Index b = 0; b < m; ++b)
       full(static_cast<Eigen::Index>(index[static_cast<std::size_t>(a)]),

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "filters/linear/symmetric.h"
+
 namespace ifog {
 namespace {
 
@@ -86,7 +88,7 @@ void descend(Objective& objective, const Candidate& candidate, WhittleOptimum& a
       Eigen::MatrixXd damped = information;
       damped.diagonal() += damping * information.diagonal();
       damped.diagonal().array() += 1e-6;
-      const Eigen::VectorXd move = damped.ldlt().solve(-gradient);
+      const Eigen::VectorXd move = SymmetricSolver(damped).solve(-gradient);
       WhittleOptimum next = at;
       for (Eigen::Index i = 0; i < n; ++i) {
         const auto p = static_cast<std::size_t>(i);

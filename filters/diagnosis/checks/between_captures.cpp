@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "filters/distributions/chi_squared.h"
+#include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
@@ -54,7 +55,7 @@ ByCapture compare(const BlockData& data, const std::vector<Candidate>& effects, 
     found.value.push_back(value[i]);
     found.std_error.push_back(std::sqrt(own(i, i)));
   }
-  const Eigen::LDLT<Eigen::MatrixXd> weight(own);
+  const SymmetricSolver weight(own);
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(count);
   const double common = weight.solve(one).dot(value) / weight.solve(one).dot(one);
   const Eigen::VectorXd away = value - common * one;

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/projection.h"
+#include "filters/linear/least_squares.h"
+#include "filters/linear/projection.h"
 #include "filters/model_file/channel_names.h"
 
 namespace ifog {

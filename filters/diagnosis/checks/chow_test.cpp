@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "filters/linear/least_squares.h"
+
 namespace ifog {
 namespace {
 

@@ -6,7 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "filters/diagnosis/regression/projection.h"
+#include "filters/linear/least_squares.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
@@ -32,9 +33,7 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
   Eigen::VectorXd scale = x.colwise().norm().transpose();
   for (Eigen::Index j = 0; j < p; ++j) scale[j] = scale[j] > 1e-3 * full[j] ? 1.0 / scale[j] : 0.0;
   const Eigen::MatrixXd scaled = x * scale.asDiagonal();
-  const Eigen::VectorXd c =
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(scaled).solve(white.col(0));
-  return scale.asDiagonal() * c;
+  return scale.asDiagonal() * shortest_coefficients(scaled, white.col(0));
 }
 
 // Between the middles of a record's blocks, for what is linear there.

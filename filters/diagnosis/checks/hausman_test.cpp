@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "filters/diagnosis/regression/projection.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {

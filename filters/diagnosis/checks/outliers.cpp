@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/linear/least_squares.h"
+
 namespace ifog {
 namespace {
 

@@ -6,7 +6,9 @@
 #include <limits>
 #include <set>
 
-#include "filters/diagnosis/regression/projection.h"
+#include "filters/linear/least_squares.h"
+#include "filters/linear/projection.h"
+#include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
@@ -69,10 +71,11 @@ Whitened whitened(const BlockGrid& grid, const Split& split, const NoiseFit& noi
 // What the coefficients of the other records are worth in this one.
 bool prediction_fails(const Whitened& of, DeniedEffects& found) {
   if (of.others.squaredNorm() < kMoves * of.here.squaredNorm()) return false;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> by_others(of.others);
+  const LeastSquares by_others(of.others);
   if (by_others.rank() < of.others.cols()) return false;
-  const Eigen::VectorXd c = by_others.solve(of.error);
-  const Eigen::MatrixXd covariance = of.variance * (of.others.transpose() * of.others).inverse();
+  const Eigen::VectorXd c = by_others.coefficients(of.error);
+  const Eigen::MatrixXd covariance =
+      of.variance * SymmetricSolver(of.others.transpose() * of.others).inverse();
   const Eigen::VectorXd predicted = of.here * c;
   const double square = predicted.squaredNorm();
   const double doubt = ((of.here.transpose() * of.here) * covariance).trace();

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "filters/diagnosis/checks/hausman_test.h"
-#include "filters/diagnosis/regression/projection.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "filters/linear/normal_equations.h"
+
 namespace ifog {
 namespace {
 
@@ -13,10 +15,7 @@ double square_left(const Eigen::VectorXd& y, const Columns& free, const Columns&
   Eigen::MatrixXd gram = columns.transpose() * columns;
   gram.diagonal().tail(doubt.cols()).array() += prior;
   const Eigen::VectorXd right = columns.transpose() * y;
-  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
-  const Eigen::VectorXd moment = scale.asDiagonal() * right;
-  return y.squaredNorm() - moment.dot(Eigen::LDLT<Eigen::MatrixXd>(scaled).solve(moment));
+  return y.squaredNorm() - NormalEquations(gram, right).explained();
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
+#include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
@@ -93,7 +94,7 @@ Eigen::VectorXd solved(const Sums& sums) {
   const double ridge = 1e-9 * sums.gram.trace() / static_cast<double>(sums.gram.rows());
   Eigen::MatrixXd gram = sums.gram;
   gram.diagonal().array() += ridge;
-  return gram.ldlt().solve(sums.moment);
+  return SymmetricSolver(gram).solve(sums.moment);
 }
 
 double explained(const Sums& sums, const Eigen::VectorXd& table) {
@@ -188,8 +189,7 @@ Effect table_effect(const std::string& channel, double period, const Sums& all,
     square += y * y / static_cast<double>(knots + 1);
   }
   const double variance = (all.square - explained(all, table)) / all.samples;
-  const Eigen::MatrixXd covariance =
-      variance * all.gram.ldlt().solve(Eigen::MatrixXd::Identity(knots, knots));
+  const Eigen::MatrixXd covariance = variance * SymmetricSolver(all.gram).inverse();
   const double rms = std::sqrt(square);
   effect.parameters = {{"angle_rms", rms, std::sqrt(covariance.diagonal().mean()), "rad"}};
   effect.meaning = meaning_of(effect);

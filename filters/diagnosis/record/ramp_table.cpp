@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "filters/diagnosis/record/carrier.h"
+#include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
@@ -85,7 +86,7 @@ double order_of(Eigen::Index column) {
 double stiffness(const TableSums& sums, double variance) {
   const Eigen::Index columns = std::min<Eigen::Index>(sums.moment.size(), 2 * kFirstHarmonics);
   const Eigen::VectorXd first =
-      sums.gram.topLeftCorner(columns, columns).ldlt().solve(sums.moment.head(columns));
+      SymmetricSolver(sums.gram.topLeftCorner(columns, columns)).solve(sums.moment.head(columns));
   double square = 0.0;
   for (Eigen::Index i = 0; i < columns; ++i) {
     const double order = order_of(i);
@@ -102,7 +103,7 @@ Eigen::VectorXd solved(const TableSums& sums, Eigen::Index columns, double stiff
     // A stroboscopic one has no column of its own.
     if (!(sums.gram(i, i) > 0.0)) gram(i, i) = 1.0;
   }
-  return gram.ldlt().solve(sums.moment.head(columns));
+  return SymmetricSolver(gram).solve(sums.moment.head(columns));
 }
 
 double explained(const TableSums& sums, const Eigen::VectorXd& table) {
@@ -227,8 +228,8 @@ std::optional<RampTable> fit_ramp_table(const UnbrokenPart& part, const RampComb
   Eigen::MatrixXd gram = all.gram.topLeftCorner(columns, columns);
   for (Eigen::Index i = 0; i < columns; ++i)
     gram(i, i) += gram(i, i) > 0.0 ? stiff * std::pow(order_of(i), 2.0) : 1e300;
-  const Eigen::MatrixXd inverse = gram.ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
-  table.angle_error = std::sqrt(0.5 * square / static_cast<double>(part.size()) * inverse.trace());
+  table.angle_error =
+      std::sqrt(0.5 * square / static_cast<double>(part.size()) * SymmetricSolver(gram).inverse().trace());
   measure_phase(part, square, table);
   return table;
 }

@@ -16,6 +16,7 @@
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/fractional_shift.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -197,16 +198,11 @@ Fit least_squares(const std::vector<Series>& columns, const std::vector<std::uin
   }
   gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
   const Eigen::Index p = width - 1;
-  const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(scaled);
-  const Eigen::VectorXd right = scale.asDiagonal() * gram.col(0).tail(p);
-  const Eigen::VectorXd found = factor.solve(right);
-  fit.coefficients = scale.asDiagonal() * found;
-  fit.square = std::max(gram(0, 0) - found.dot(right), 1e-12 * gram(0, 0));
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(p, p));
+  const NormalEquations equations = NormalEquations::of_measured_first(gram);
+  fit.coefficients = equations.coefficients();
+  fit.square = std::max(gram(0, 0) - equations.explained(), 1e-12 * gram(0, 0));
   const double freedom = std::max(1.0, static_cast<double>(fit.rows) - static_cast<double>(p));
-  fit.last_variance = fit.square / freedom * inverse(p - 1, p - 1) * scale[p - 1] * scale[p - 1];
+  fit.last_variance = fit.square / freedom * equations.inverse()(p - 1, p - 1);
   return fit;
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "filters/linear/normal_equations.h"
+
 namespace ifog {
 
 Columns constants(const BlockGrid& grid) {
@@ -35,10 +37,6 @@ Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effe
   return column;
 }
 
-Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured) {
-  return measured - columns * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns).solve(measured);
-}
-
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
   std::vector<int> fold(grid.size());
   for (const BlockRange& record : grid.records) {
@@ -58,17 +56,13 @@ Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Colu
   filter.apply(white);
   const Eigen::Index p = columns.cols() - 1;
   const Eigen::MatrixXd gram = white.transpose() * white;
-  const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd a = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(a);
-  const Eigen::VectorXd scaled = factor.solve(scale.asDiagonal() * gram.col(0).tail(p));
+  const NormalEquations fit = NormalEquations::of_measured_first(gram);
   if (covariance) {
-    const double left = std::max(gram(0, 0) - scaled.dot(scale.asDiagonal() * gram.col(0).tail(p)), 0.0);
+    const double left = std::max(gram(0, 0) - fit.explained(), 0.0);
     const double variance = left / std::max(1.0, static_cast<double>(grid.used()) - static_cast<double>(p));
-    *covariance =
-        variance * (scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) * scale.asDiagonal());
+    *covariance = variance * fit.inverse();
   }
-  return scale.asDiagonal() * scaled;
+  return fit.coefficients();
 }
 
 }  // namespace ifog

@@ -17,9 +17,6 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects);
 // Where among them the first column of effect `at` is.
 Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at);
 
-// What a plain least-squares fit of the columns leaves of the measured.
-Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured);
-
 // Which of `folds` each block belongs to: short contiguous pieces in turn, so that every fold sees the whole
 // record.
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);

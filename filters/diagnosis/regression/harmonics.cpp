@@ -11,6 +11,7 @@
 
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_climb.h"
+#include "filters/linear/least_squares.h"
 
 namespace ifog {
 namespace {

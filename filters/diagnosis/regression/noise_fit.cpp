@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/regression/harmonics.h"
 #include "filters/diagnosis/regression/noise_climb.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -28,12 +29,7 @@ WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const C
   const Eigen::Index p = columns.cols() - 1;
   const Eigen::MatrixXd gram = white.transpose() * white;
   double square = gram(0, 0);
-  if (p > 0) {
-    const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd a = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
-    const Eigen::VectorXd b = scale.asDiagonal() * gram.col(0).tail(p);
-    square -= b.dot(Eigen::LDLT<Eigen::MatrixXd>(a).solve(b));
-  }
+  if (p > 0) square -= NormalEquations::of_measured_first(gram).explained();
   const auto n = static_cast<double>(grid.used());
   square = std::max(square, 1e-12 * gram(0, 0) + 1e-300);
   WhitenedFit fit;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "filters/diagnosis/regression/design.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -41,23 +42,15 @@ Solved solve_at(const BlockGrid& grid, const Columns& columns, const Eigen::Vect
   for (Eigen::Index i = 0; i < p; ++i) {
     if (std::isfinite(known[i])) gram(1 + i, 1 + i) += innovation / (known[i] * known[i]);
   }
-  const Eigen::VectorXd scale = gram.diagonal().tail(p).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd a = scale.asDiagonal() * gram.bottomRightCorner(p, p) * scale.asDiagonal();
-  const Eigen::VectorXd b = scale.asDiagonal() * gram.col(0).tail(p);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(a);
-  const Eigen::VectorXd solution = factor.solve(b);
+  const NormalEquations fit = NormalEquations::of_measured_first(gram);
   const auto n = static_cast<double>(grid.used());
   const double free = std::max(1.0, n - static_cast<double>(p));
-  const double square = std::max(gram(0, 0) - b.dot(solution), 1e-12 * gram(0, 0) + 1e-300);
+  const double square = std::max(gram(0, 0) - fit.explained(), 1e-12 * gram(0, 0) + 1e-300);
   Solved solved;
-  solved.values = scale.asDiagonal() * solution;
-  solved.covariance =
-      square / free *
-      (scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(p, p)) * scale.asDiagonal());
+  solved.values = fit.coefficients();
+  solved.covariance = square / free * fit.inverse();
   solved.white_variance = square / free / filter.innovation_variance();
-  double log_determinant = -2.0 * scale.array().log().sum();
-  for (const double d : factor.vectorD()) log_determinant += std::log(std::max(d, 1e-15));
-  solved.log_likelihood = -0.5 * free * std::log(square) - 0.5 * log_determinant;
+  solved.log_likelihood = -0.5 * free * std::log(square) - 0.5 * fit.log_determinant();
   return solved;
 }
 

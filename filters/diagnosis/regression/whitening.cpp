@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/linear/symmetric.h"
+
 namespace ifog {
 namespace {
 
@@ -114,9 +116,9 @@ Columns Whitening::doubt_at_start() const {
     power = (power * power).eval();
   }
   const Eigen::MatrixXd steady = steady_covariance(states.step, states.drive, states.seen);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> unknown(stationary - steady.bottomRightCorner(k, k));
-  const Eigen::VectorXd size = unknown.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::MatrixXd starts = unknown.eigenvectors() * size.asDiagonal();
+  const SymmetricEigen unknown = symmetric_eigen(stationary - steady.bottomRightCorner(k, k));
+  const Eigen::VectorXd size = unknown.values.cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd starts = unknown.vectors * size.asDiagonal();
   const Eigen::Map<const Eigen::VectorXd> gain(gain_.data(), m);
   Columns doubt = Columns::Zero(n, k * grid_.constants());
   Eigen::Index column = 0;

@@ -15,11 +15,9 @@
 #include <vector>
 
 #include "filters/diagnosis/record/blocks.h"
+#include "filters/linear/columns.h"
 
 namespace ifog {
-
-using Columns =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // block by block in memory
 
 // An angle whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that
 // of a resonance driven by white noise. A block's mean is the angle turned in it over its length: what sways

@@ -8,8 +8,8 @@
 
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
-#include "filters/diagnosis/regression/projection.h"
 #include "filters/diagnosis/search/effective_tries.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "filters/diagnosis/search/effective_tries.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -20,13 +21,9 @@ constexpr double kHopeless = -30.0;
 constexpr double kLoopParameters = 3.0;  // its size, its width, and the channel's linear effect
 
 double log_likelihood(const Eigen::MatrixXd& gram, const std::vector<Eigen::Index>& columns, double n) {
-  const auto p = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd a = gram(columns, columns);
-  Eigen::VectorXd b = gram(columns, {Eigen::Index{0}});
-  const Eigen::VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  a = scale.asDiagonal() * a * scale.asDiagonal();
-  b = scale.asDiagonal() * b;
-  const double square = gram(0, 0) - (p > 0 ? b.dot(Eigen::LDLT<Eigen::MatrixXd>(a).solve(b)) : 0.0);
+  double square = gram(0, 0);
+  if (!columns.empty())
+    square -= NormalEquations(gram(columns, columns), gram(columns, {Eigen::Index{0}})).explained();
   return -0.5 * n * std::log(std::max(square, 1e-12 * gram(0, 0) + 1e-300) / n);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filters/distributions/chi_squared.h"
+#include "filters/linear/symmetric.h"
 #include "filters/random/philox.h"
 
 namespace ifog {
@@ -38,7 +39,7 @@ double independent_columns(const Columns& projected) {
   for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
   Eigen::MatrixXd correlation = scale.asDiagonal() * (projected.transpose() * projected) * scale.asDiagonal();
   correlation.diagonal().array() += 1e-6;  // columns can be alike to rounding
-  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
+  const CholeskyFactor factor(correlation);
   Eigen::MatrixXd draws(m, kDraws);
   for (Eigen::Index d = 0; d < kDraws; ++d) {
     for (Eigen::Index i = 0; i < m; i += 2) {
@@ -47,7 +48,7 @@ double independent_columns(const Columns& projected) {
       if (i + 1 < m) draws(i + 1, d) = b;
     }
   }
-  draws = (factor.matrixL() * draws).eval();
+  draws = factor.times(draws);
   std::vector<double> largest(kDraws);
   for (Eigen::Index d = 0; d < kDraws; ++d)
     largest[static_cast<std::size_t>(d)] = draws.col(d).cwiseAbs2().maxCoeff();

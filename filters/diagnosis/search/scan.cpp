@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/diagnosis/regression/projection.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/search.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {

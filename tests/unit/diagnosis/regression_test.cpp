@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/projection.h"
 #include "filters/diagnosis/regression/uncertainty.h"
+#include "filters/linear/projection.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
 namespace ifog {

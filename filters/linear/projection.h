@@ -2,7 +2,7 @@
 // Takes columns out of others: what ordinary least squares on them leaves.
 #pragma once
 
-#include "filters/diagnosis/regression/whitening.h"
+#include "filters/linear/columns.h"
 
 namespace ifog {
 
@@ -15,6 +15,9 @@ class Projection {
   // In place; as many rows as the columns have.
   void take_out_of(Eigen::VectorXd& values) const;
   void take_out_of(Columns& values) const;
+
+  // What is at right angles to one column of n rows: n × (n - 1), orthonormal.
+  static Eigen::MatrixXd beside(const Eigen::VectorXd& column);
 
  private:
   Eigen::MatrixXd basis_;  // orthonormal

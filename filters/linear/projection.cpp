@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/regression/projection.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 
@@ -14,6 +14,11 @@ void Projection::take_out_of(Eigen::VectorXd& values) const {
 void Projection::take_out_of(Columns& values) const {
   const Eigen::MatrixXd shadow = basis_.transpose() * values;
   values.noalias() -= basis_ * shadow;
+}
+
+Eigen::MatrixXd Projection::beside(const Eigen::VectorXd& column) {
+  const Eigen::MatrixXd whole = Eigen::HouseholderQR<Eigen::MatrixXd>(column).householderQ();
+  return whole.rightCols(column.size() - 1);
 }
 
 }  // namespace ifog

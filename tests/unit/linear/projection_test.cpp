@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/linear/projection.h"
+
+#include <gtest/gtest.h>
+
+namespace ifog {
+namespace {
+
+TEST(Projection, TakesOutAMeanAndALine) {
+  Eigen::MatrixXd x(5, 2);
+  Eigen::VectorXd y(5);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const double t = static_cast<double>(i) - 2.0;
+    x.row(i) << 1.0, t;
+    y[i] = 3.0 - 7.0 * t + (t * t - 2.0);  // t² - 2 is at right angles to 1 and t
+  }
+  Projection(x).take_out_of(y);
+  EXPECT_LT((y - Eigen::VectorXd((Eigen::VectorXd(5) << 2, -1, -2, -1, 2).finished())).norm(), 1e-13);
+}
+
+TEST(Projection, WhatIsBesideAColumnIsOrthonormalAndWhole) {
+  const Eigen::Vector4d column(1.0, -2.0, 0.0, 5.0);
+  const Eigen::MatrixXd beside = Projection::beside(column);
+  ASSERT_EQ(beside.cols(), 3);
+  EXPECT_LT((beside.transpose() * beside - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((beside.transpose() * column).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace ifog
