@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
@@ -31,10 +32,14 @@ constexpr double kSettled = 1e-3;       // of a step
 constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPowers = 4;  // of the reference: constant to cubic
+constexpr double kThere = 0.99;     // of an angle's values
 using Series = std::vector<double>;
 
 struct Pair {
   Series rate, reference;
+  // What repeats with a table's angle. Where the table swings, the rate's change runs against the angle, and
+  // a delay would be found in what a field or a tilt does.
+  std::vector<Series> beside;
   double step_s = 0.0;
 };
 
@@ -101,6 +106,25 @@ Series means(std::span<const double> series, std::size_t count) {
   return out;
 }
 
+// Cosine and sine of each channel that is an angle and hardly has a gap.
+std::vector<Series> turns_of(const Record& record, double period_s, std::size_t count) {
+  std::vector<Series> turns;
+  for (const RecordChannel& channel : record.channels) {
+    const double period = channel.period;
+    const auto there = std::count_if(channel.values.begin(), channel.values.end(),
+                                     [](double value) { return std::isfinite(value); });
+    if (!(period > 0.0) || static_cast<double>(there) < kThere * static_cast<double>(channel.values.size()))
+      continue;
+    for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
+      Samples turn(channel.values.size());
+      for (std::size_t i = 0; i < turn.size(); ++i)
+        turn[i] = std::cos(2.0 * std::numbers::pi / period * channel.values[i] - phase);
+      turns.push_back(means(on_even_grid(record, period_s, turn), count));
+    }
+  }
+  return turns;
+}
+
 std::optional<Pair> pair_of(const Record& record) {
   if (record.reference_radps.empty() || record.time_s.size() < kLeast) return std::nullopt;
   double period_s = 0.0;
@@ -112,6 +136,7 @@ std::optional<Pair> pair_of(const Record& record) {
     const std::size_t count = (rate.size() + kMost - 1) / kMost;
     pair.rate = means(rate, count);
     pair.reference = means(on_even_grid(record, period_s, record.reference_radps), count);
+    pair.beside = turns_of(record, period_s, count);
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // no even clock, or hardly anything on it
@@ -214,9 +239,11 @@ std::vector<std::uint8_t> complete_rows(const std::vector<Series>& columns) {
   return rows;
 }
 
-std::vector<Series> columns_of(const Series& rate, const Regressors& regressors) {
-  std::vector<Series> columns{rate};
+// Rate, powers of the reference, what is beside them, and last the slope.
+std::vector<Series> columns_of(const Pair& pair, const Regressors& regressors) {
+  std::vector<Series> columns{pair.rate};
   columns.insert(columns.end(), regressors.powers.begin(), regressors.powers.end());
+  columns.insert(columns.end(), pair.beside.begin(), pair.beside.end());
   if (!regressors.slope.empty()) columns.push_back(regressors.slope);
   return columns;
 }
@@ -228,14 +255,14 @@ std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregre
   return white;
 }
 
-// Of the noise that is left where the reference is moved so.
+// Of the noise that is left where the reference is moved so. columns: the last is its slope.
 Autoregression noise_beside(const std::vector<Series>& columns) {
-  std::vector<Series> without(columns.begin(), columns.begin() + 1 + kPowers);
+  const std::vector<Series> without(columns.begin(), columns.end() - 1);
   const Fit plain = least_squares(without, complete_rows(without));
   Series left = columns.front();
-  for (std::size_t p = 0; p < kPowers; ++p)
+  for (std::size_t p = 1; p < without.size(); ++p)
     for (std::size_t i = 0; i < left.size(); ++i)
-      left[i] -= plain.coefficients[static_cast<Eigen::Index>(p)] * columns[1 + p][i];
+      left[i] -= plain.coefficients[static_cast<Eigen::Index>(p - 1)] * without[p][i];
   return Autoregression(left);
 }
 
@@ -251,19 +278,19 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
   delay.steps = steps;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Series> columns =
-        columns_of(pair.rate, regressors_at(pair.reference, scale, delay.steps, true));
+        columns_of(pair, regressors_at(pair.reference, scale, delay.steps, true));
     if (columns.front().size() < kLeast) return std::nullopt;
     const Autoregression noise = noise_beside(columns);
     const std::vector<Series> white = whitened(columns, noise);
     std::vector<std::uint8_t> rows = complete_rows(white);
     const Fit fit = least_squares(white, rows);
     const double of_reference = fit.coefficients[1] / scale;
-    const double step = fit.coefficients[kPowers] / of_reference;
+    const double step = fit.coefficients[fit.coefficients.size() - 1] / of_reference;
     if (fit.rows < kLeast || !std::isfinite(step) || of_reference <= 0.0) return std::nullopt;
     delay.error = std::sqrt(fit.last_variance) / of_reference;
     if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
       const std::vector<Series> as_logged =
-          whitened(columns_of(pair.rate, regressors_at(pair.reference, scale, 0.0, false)), noise);
+          whitened(columns_of(pair, regressors_at(pair.reference, scale, 0.0, false)), noise);
       const std::vector<std::uint8_t> known = complete_rows(as_logged);
       for (std::size_t i = 0; i < rows.size(); ++i)
         if (!known[i]) rows[i] = 0;

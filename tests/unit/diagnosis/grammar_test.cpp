@@ -226,17 +226,19 @@ TEST(Grammar, ASwitchLetsATemperatureThrough) {
   EXPECT_LT(found.after.at("rms_10s_radps"), 0.6 * found.before.at("rms_10s_radps"));
 }
 
+// On a table that has turned so far: once a turn, and the table's angle.
+template <class Turned>
+void once_a_turn(Sensor& s, Turned turned, double cosine, double sine) {
+  s.turn([&](double t) { return (turned(t + 0.1) - turned(t - 0.1)) / 0.2; });
+  s.add("table_rad", [&](double t) { return std::fmod(turned(t), 2.0 * M_PI); });
+  for (std::size_t i = 0; i < s.time.size(); ++i)
+    s.rate[i] += cosine * std::cos(turned(s.time[i])) + sine * std::sin(turned(s.time[i]));
+}
+
 TEST(Grammar, OnceATurnIsTracedToTheTablesAngle) {
   Sensor s(9);
-  std::vector<double> angle;
-  s.turn([](double t) { return 0.2 + 0.1 * std::sin(2.0 * M_PI * t / 200.0); });
-  for (std::size_t i = 0; i < s.time.size(); ++i) {
-    const double t = s.time[i];
-    const double turned = 0.2 * t + 0.1 * 200.0 / (2.0 * M_PI) * (1.0 - std::cos(2.0 * M_PI * t / 200.0));
-    angle.push_back(std::fmod(turned, 2.0 * M_PI));
-    s.rate[i] += 4e-7 * std::cos(turned) - 3e-7 * std::sin(turned);
-  }
-  s.columns.emplace_back("table_rad", angle);
+  once_a_turn(
+      s, [](double t) { return 0.2 * t + 20.0 / M_PI * std::sin(M_PI * t / 200.0); }, 4e-7, -3e-7);
   const Diagnosis found = diagnose({s.record()}, {});
   EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
   expect_coefficient(effect_of(found, "cosine", "table_rad"), 4e-7);
@@ -244,17 +246,25 @@ TEST(Grammar, OnceATurnIsTracedToTheTablesAngle) {
   EXPECT_TRUE(found.ranges.empty()) << "an angle leaves no range";
 }
 
+// A quarter of a turn, in unlike swings, through the place where the angle wraps. A late reference would do
+// much the same.
+TEST(Grammar, OnceATurnIsSeenOverAnArc) {
+  Sensor s(9);
+  const auto turned = [](double t) {
+    return 6.2 + 0.45 * std::sin(2.0 * M_PI * t / 210.0) + 0.33 * std::sin(2.0 * M_PI * t / 83.0);
+  };
+  once_a_turn(s, turned, 4e-6, -3e-6);
+  const Diagnosis found = diagnose({s.record()}, {});
+  EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
+  expect_coefficient(effect_of(found, "cosine", "table_rad"), 4e-6);
+  expect_coefficient(effect_of(found, "sine", "table_rad"), -3e-6);
+}
+
 // A tenth of a turn, back and forth: whatever follows the angle there says nothing of the rest of the circle.
 TEST(Grammar, OfAnArcNothingIsSaidOfTheTurn) {
   Sensor s(9);
-  std::vector<double> angle;
-  s.turn([](double t) { return 0.01 * std::cos(2.0 * M_PI * t / 200.0); });
-  for (std::size_t i = 0; i < s.time.size(); ++i) {
-    const double turned = 6.0 + 0.318 * std::sin(2.0 * M_PI * s.time[i] / 200.0);
-    angle.push_back(std::fmod(turned, 2.0 * M_PI));
-    s.rate[i] += 4e-6 * std::cos(turned);
-  }
-  s.columns.emplace_back("table_rad", angle);
+  once_a_turn(
+      s, [](double t) { return 6.0 + 0.318 * std::sin(2.0 * M_PI * t / 200.0); }, 4e-6, 0.0);
   const Diagnosis found = diagnose({s.record()}, {});
   EXPECT_EQ(effect_of(found, "cosine", "table_rad"), nullptr) << all_in_words(found);
   EXPECT_EQ(effect_of(found, "sine", "table_rad"), nullptr) << all_in_words(found);
