@@ -20,6 +20,7 @@ namespace {
 constexpr double kFarthest = 0.3;
 // Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
 constexpr double kWellKnown = 5.0;
+constexpr double kKnownRound = 0.2;  // error of a harmonic of an arc, of its size
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
@@ -284,6 +285,24 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
   return covariance;
 }
 
+// Whether what repeats with the angle is known all round: it was seen all round, or over an arc that tells
+// its cosine and its sine so well that the circle follows.
+bool known_all_round(const FineChannel& angle, const std::vector<FoundEffect>& effects) {
+  if (angle.high - angle.low >= angle.period) return true;
+  double size = 0.0, doubt = 0.0;
+  int halves = 0;
+  for (const FoundEffect& found : effects) {
+    if (found.effect.channel != angle.name) continue;
+    if (found.effect.form != name_of(Form::kCosine) && found.effect.form != name_of(Form::kSine))
+      return false;
+    const ModelParameter& coefficient = found.effect.parameters.front();
+    halves += found.effect.form == name_of(Form::kCosine) ? 1 : -1;
+    size += coefficient.value * coefficient.value;
+    doubt += coefficient.std_error * coefficient.std_error;
+  }
+  return halves == 0 && doubt < kKnownRound * kKnownRound * size;
+}
+
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
   std::vector<ChannelRange> ranges;
   const bool ramp = std::any_of(effects.begin(), effects.end(), [](const FoundEffect& found) {
@@ -294,8 +313,7 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
         {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
   for (const FineChannel& channel : data.channels) {
     const auto uses = [&](const FoundEffect& found) {
-      // An angle that went all round has no range.
-      if (found.effect.shown_only || (channel.period > 0.0 && channel.high - channel.low >= channel.period))
+      if (found.effect.shown_only || (channel.period > 0.0 && known_all_round(channel, effects)))
         return false;
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
     };
