@@ -8,6 +8,7 @@
 #include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
+#include "filters/linear/least_squares.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
 namespace ifog {

@@ -3,8 +3,31 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace ifog {
 namespace {
+
+// Normal equations: the second way to the same residual.
+TEST(Projection, LeavesTheResidualOfLeastSquares) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd x(200, 3);
+  Columns several(200, 2);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) x(i, j) = normal(random);
+    for (Eigen::Index j = 0; j < 2; ++j) several(i, j) = normal(random) + x(i, j);
+  }
+  Eigen::VectorXd one = several.col(0);
+  const Eigen::MatrixXd expected =
+      several - x * (x.transpose() * x).ldlt().solve(x.transpose() * Eigen::MatrixXd(several));
+  const Projection projection(x);
+  projection.take_out_of(several);
+  projection.take_out_of(one);
+  EXPECT_LT((several - expected).norm(), 1e-10);
+  EXPECT_LT((one - expected.col(0)).norm(), 1e-10);
+  EXPECT_LT((x.transpose() * one).norm(), 1e-10);
+}
 
 TEST(Projection, TakesOutAMeanAndALine) {
   Eigen::MatrixXd x(5, 2);
