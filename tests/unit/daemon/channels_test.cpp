@@ -350,6 +350,12 @@ TEST(ChannelSources, ALateMessageNeverReplacesANewerOne) {
   // A sender from next year, which is then set right.
   send(24.0, now_us + 8760 * hour_us);
   EXPECT_EQ(await(*hull, 24.0).value, 24.0);
+  // It grows old from when it came, also where it is sent again and again.
+  for (int times = 1; times <= 3; ++times) {
+    std::this_thread::sleep_for(200ms);
+    EXPECT_GE(look(*hull).age_s, 0.19F * static_cast<float>(times));
+    send(24.0, now_us + 8760 * hour_us);
+  }
   send(25.0, now_us);
   EXPECT_EQ(await(*hull, 25.0).value, 25.0);
   // Without a date it is from now.
