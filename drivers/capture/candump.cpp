@@ -174,14 +174,14 @@ bool parse_byte(Cursor& in, std::uint8_t& byte) {
   return n == 2 || n == 8;
 }
 
-// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{F}" for a length of 8.
+// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{8}", 9 … F for a length of 8.
 CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
   std::uint64_t length = 0;
   std::size_t digits = 0;
   std::uint32_t raw = 0;
   if (in.literal('{')) {
     if (!in.hex(raw) || !in.literal('}')) return CandumpLine::malformed;
-    length = kClassicBytes;
+    length = std::min<std::uint64_t>(raw, kClassicBytes);
   } else if (!in.literal('[') || !in.decimal(length, digits) || !in.literal(']')) {
     return CandumpLine::malformed;
   }
