@@ -129,10 +129,10 @@ class LcmChannel {
       return in_.refuse({.kind = ChannelFault::Kind::late});
     const bool again = dated && last_ns_ > 0 && std::abs(measured_ns - last_ns_) <= kSameTime_ns;
     if (dated && !again) last_ns_ = measured_ns;
-    // What was measured in the future was measured now: else it would never grow old. What is refused is not
-    // held, whatever its date: those before it are not late for it.
-    const bool held =
-        in_.put(value, arrival_clock_ns() - std::max<std::int64_t>(0, now_ns - measured_ns), again);
+    // What was measured in the future was measured when it came first: else it would never grow old. What is
+    // refused is not held, whatever its date: those before it are not late for it.
+    if (!again) at_ns_ = arrival_clock_ns() - std::max<std::int64_t>(0, now_ns - measured_ns);
+    const bool held = in_.put(value, at_ns_, again);
     if (held && dated && !again) held_ns_ = measured_ns;
   }
 
@@ -144,6 +144,7 @@ class LcmChannel {
   LcmField field_;
   std::int64_t last_ns_ = 0,
                held_ns_ = 0;  // by its own clock, of the last and of the value held; 0: none that tells
+  std::int64_t at_ns_ = 0;    // of the last, on the clock of arrivals
 };
 
 // All signals wanted from one CAN interface.

@@ -2,7 +2,11 @@
 #include "drivers/capture/candump.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
+
+#include "drivers/capture/date_time.h"
 
 namespace ifog {
 namespace {
@@ -10,6 +14,7 @@ namespace {
 constexpr std::uint32_t kExtendedFlag = 0x80000000U,
                         kErrorFlag = 0x20000000U;  // linux/can.h, as candump prints them
 constexpr std::size_t kClassicBytes = 8, kFdBytes = 64;
+constexpr std::size_t kEpochDigits = 10;
 
 // Reads a line from its left, a token at a time.
 class Cursor {
@@ -59,6 +64,20 @@ class Cursor {
     rest_.remove_prefix(1);
     return true;
   }
+  // What is before that, or nothing where it does not come.
+  std::string_view until(char c) {
+    const std::size_t end = rest_.find(c);
+    if (end == std::string_view::npos) return {};
+    const std::string_view found = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return found;
+  }
+  bool text(std::string_view what) {
+    if (!rest_.starts_with(what)) return false;
+    rest_.remove_prefix(what.size());
+    return true;
+  }
+  [[nodiscard]] bool has(std::size_t at, char c) const { return rest_.size() > at && rest_[at] == c; }
   [[nodiscard]] bool at(char c) const { return !rest_.empty() && rest_.front() == c; }
   [[nodiscard]] bool done() const { return rest_.empty(); }
 
@@ -66,11 +85,28 @@ class Cursor {
   std::string_view rest_;
 };
 
+// "2026-05-01 12:00:00.123456)" of candump -t A.
+bool parse_date(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
+  std::array<char, kLongestDate> digits{};
+  Cursor date(date_in_digits(in.until(')'), digits));
+  std::uint64_t seconds = 0, fraction = 0;
+  std::size_t places = 0;
+  if (!date.decimal(seconds, second_digits) || !date.literal('.') || !date.decimal(fraction, places) ||
+      places > 9 || !date.done() || !in.literal(')'))
+    return false;
+  for (; places < 9; ++places) fraction *= 10;
+  second_digits = kEpochDigits;
+  time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
+  return true;
+}
+
 bool parse_time(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   std::uint64_t seconds = 0, fraction = 0;
   std::size_t digits = 0;
   constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
-  if (!in.literal('(') || !in.decimal(seconds, second_digits) || seconds > kMostSeconds) return false;
+  if (!in.literal('(')) return false;
+  if (in.has(4, '-')) return parse_date(in, time_ns, second_digits);
+  if (!in.decimal(seconds, second_digits) || seconds > kMostSeconds) return false;
   if (!in.literal('.') || !in.decimal(fraction, digits) || digits > 9 || !in.literal(')')) return false;
   for (; digits < 9; ++digits) fraction *= 10;
   time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
@@ -122,14 +158,30 @@ CandumpLine parse_log(Cursor& in, ifog_can_frame& frame) {
   return remote ? CandumpLine::remote : CandumpLine::frame;
 }
 
-// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{F}" for a length of 8.
+constexpr char kSwapped = '`';  // between the bytes, last first, of candump -S
+
+// Two digits, or eight of candump -i.
+bool parse_byte(Cursor& in, std::uint8_t& byte) {
+  std::uint32_t value = 0, bits = 0, digit = 0;
+  int n = 0;
+  for (bool binary = true; in.hex(digit); ++n) {
+    binary = binary && digit <= 1;
+    if (n == 8 || (n >= 2 && !binary)) return false;
+    value = value << 4U | digit;
+    bits = bits << 1U | digit;
+  }
+  byte = static_cast<std::uint8_t>(n == 8 ? bits : value);
+  return n == 2 || n == 8;
+}
+
+// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{8}", 9 … F for a length of 8.
 CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
   std::uint64_t length = 0;
   std::size_t digits = 0;
-  std::uint32_t high = 0, low = 0;
+  std::uint32_t raw = 0;
   if (in.literal('{')) {
-    if (!in.hex(high) || !in.literal('}')) return CandumpLine::malformed;
-    length = kClassicBytes;
+    if (!in.hex(raw) || !in.literal('}')) return CandumpLine::malformed;
+    length = std::min<std::uint64_t>(raw, kClassicBytes);
   } else if (!in.literal('[') || !in.decimal(length, digits) || !in.literal(']')) {
     return CandumpLine::malformed;
   }
@@ -140,14 +192,41 @@ CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
     const bool remote = in.word() == "remote" && in.blanks() && in.word() == "request";
     return remote ? CandumpLine::remote : CandumpLine::malformed;
   }
-  for (std::size_t i = 0; i < length; ++i) {
-    if ((i > 0 && !in.blanks()) || !in.hex(high) || !in.hex(low)) return CandumpLine::malformed;
-    frame.data[i] = static_cast<std::uint8_t>(high << 4U | low);
+  const std::span data(frame.data, static_cast<std::size_t>(length));
+  bool swapped = false;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (i == 1) swapped = in.at(kSwapped);
+    if ((i > 0 && !(swapped ? in.literal(kSwapped) : in.blanks())) || !parse_byte(in, data[i]))
+      return CandumpLine::malformed;
   }
+  if (swapped) std::reverse(data.begin(), data.end());
   frame.length = static_cast<std::uint8_t>(length);
   if (in.done()) return CandumpLine::frame;
   if (length > 0 && !in.blanks()) return CandumpLine::malformed;
-  return in.at('\'') || in.word() == "ERRORFRAME" ? CandumpLine::frame : CandumpLine::malformed;
+  const bool characters = in.at('\'') || in.at(kSwapped);
+  return characters || in.word() == "ERRORFRAME" ? CandumpLine::frame : CandumpLine::malformed;
+}
+
+// "DROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 12)" of candump -d.
+bool parse_drops(Cursor in, CandumpEntry& entry) {
+  std::size_t digits = 0;
+  if (!in.text("DROPCOUNT: dropped ") || !in.decimal(entry.dropped, digits) || !in.text(" CAN frame"))
+    return false;
+  in.literal('s');
+  if (!in.text(" on '")) return false;
+  entry.interface = in.until('\'');
+  return in.text("' socket (total drops ");
+}
+
+// Behind the interface: "123 [0016] (00|81:00:12345678) …" on the screen, "00123#81:00:12345678#…" in a log.
+bool is_xl(Cursor in) {
+  std::uint32_t digit = 0;
+  std::uint64_t length = 0;
+  std::size_t ids = 0, digits = 0;
+  while (in.hex(digit)) ++ids;
+  if (ids == 5 && in.literal('#')) return in.hex(digit) && in.hex(digit) && in.at(':');
+  return ids == 3 && in.blanks() && in.literal('[') && in.decimal(length, digits) && digits == 4 &&
+         in.text("] (");
 }
 
 // "RX - -" or "TX B E" of candump -x.
@@ -172,7 +251,9 @@ CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexc
   ifog_can_frame& frame = entry.frame;
   frame = ifog_can_frame{};
   entry.stamp = CandumpStamp::none;
+  entry.dropped = 0;
   Cursor in(line);
+  if (in.at('D') && parse_drops(in, entry)) return CandumpLine::drops;
   (void)in.blanks();
   std::size_t digits = 0;
   const bool timed = in.at('(');
@@ -180,10 +261,13 @@ CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexc
   entry.interface = in.word();
   if (entry.interface.empty() || !in.blanks() || !pass_direction(in)) return CandumpLine::malformed;
 
+  if (is_xl(in)) {
+    if (timed) entry.stamp = digits >= kEpochDigits ? CandumpStamp::absolute : CandumpStamp::since;
+    return CandumpLine::xl;
+  }
   bool error = false;
   if (!parse_id(in, frame, error)) return CandumpLine::malformed;
   CandumpLine kind = CandumpLine::malformed;
-  constexpr std::size_t kEpochDigits = 10;
   if (in.literal('#')) {
     if (!timed) return CandumpLine::malformed;
     entry.stamp = CandumpStamp::absolute;

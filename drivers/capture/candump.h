@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can-utils' candump writes, one frame a line, in both its formats.
 //   candump -l, -L   "(1436509052.249713) can0 123#1122AABB". CAN FD: "123##5AABB", the digit being the flags
-//   (1
-//                    bit-rate switch, 2 error state)
-//   on the screen    "  can0  123   [4]  11 22 AA BB", with a time in front (-t a, d, z), "RX - -" behind the
-//   interface
-//                    (-x) and the bytes as characters at the end (-a). CAN FD: the length has two digits,
-//                    "[08]"
+//                    (1 bit-rate switch, 2 error state)
+//   on the screen    "  can0  123   [4]  11 22 AA BB", with a time in front (-t a, d, z, and A, a date, taken
+//                    for UTC as it does not say its zone), "RX - -" behind the interface (-x), the bytes as
+//                    bits (-i), last first with "`" between them (-S), or as characters, too, at the end
+//                    (-a). CAN FD: the length has two digits, "[08]"
 // Extended ids have 8 digits. Remote frames ("123#R4", "remote request") and error frames (id with bit 29
 // set) are told apart from data.
 #pragma once
@@ -25,7 +24,9 @@
 
 namespace ifog {
 
-enum class CandumpLine { frame, remote, error, blank, malformed };
+// drops: frames that the kernel lost before candump could read them, of candump -d; xl: a CAN XL frame, which
+// no driver reads.
+enum class CandumpLine { frame, remote, error, drops, xl, blank, malformed };
 
 inline constexpr const char* kCandumpExpected =
     "expected '(seconds.micros) interface id#data' or 'interface id [length] bytes'";
@@ -40,6 +41,7 @@ struct CandumpEntry {
   ifog_can_frame frame{};  // arrival_ns is the line's time, 0 without one
   CandumpStamp stamp = CandumpStamp::none;
   std::string_view interface;  // into the line
+  std::uint64_t dropped = 0;   // of a line that tells drops
 };
 
 // One line without its end; blank and '#' lines are `blank`. Does not allocate. `entry` is set unless blank
@@ -90,8 +92,9 @@ class CandumpBuses {
 
 // What of a log was no frame of data.
 struct CandumpLosses {
-  std::size_t remote = 0, error = 0;  // frames passed over
-  bool cut_off = false;               // the last line has no end and is no whole frame: it was left out
+  std::size_t remote = 0, error = 0, xl = 0;  // frames passed over
+  std::uint64_t dropped = 0;                  // that the kernel lost before candump
+  bool cut_off = false;  // the last line has no end and is no whole frame: it was left out
 };
 
 struct Candump : CandumpLosses {

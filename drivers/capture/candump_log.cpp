@@ -32,7 +32,8 @@ class ShortTimes {
   std::optional<bool> look(std::string_view line) {
     CandumpEntry entry;
     const CandumpLine kind = parse_candump_line(line, entry);
-    if (kind == CandumpLine::blank || kind == CandumpLine::malformed) return std::nullopt;
+    if (kind == CandumpLine::blank || kind == CandumpLine::malformed || kind == CandumpLine::drops)
+      return std::nullopt;
     if (entry.stamp != CandumpStamp::since) return false;
     if (n_ > 0 && entry.frame.arrival_ns < before_) return true;
     if (n_ > 1 && entry.frame.arrival_ns != before_) all_same_ = false;
@@ -95,12 +96,17 @@ class Frames {
       return Is::end;
     }
     if (kind == CandumpLine::blank) return Is::nothing;
+    if (kind == CandumpLine::drops) {
+      if (interface_.empty() || entry_.interface == interface_) losses_.dropped += entry_.dropped;
+      return Is::nothing;
+    }
     any_ = true;
     // Every line's time counts: a difference is to the frame before, whatever its interface.
     entry_.frame.arrival_ns = clock_.time_ns(entry_);
     if (!interface_.empty() && entry_.interface != interface_) return Is::nothing;
     if (kind == CandumpLine::remote) ++losses_.remote;
     if (kind == CandumpLine::error) ++losses_.error;
+    if (kind == CandumpLine::xl) ++losses_.xl;
     if (kind != CandumpLine::frame) return Is::nothing;
     lengths_[{entry_.frame.id, entry_.frame.flags}] = entry_.frame.length;
     return Is::frame;
@@ -161,7 +167,7 @@ std::optional<std::int64_t> zero_of_stamps(std::string_view beginning) {
   for (bool ended = false; next_line(beginning, line, ended);) {
     CandumpEntry entry;
     const CandumpLine kind = parse_candump_line(line, entry);
-    if (kind == CandumpLine::blank || kind == CandumpLine::malformed) continue;
+    if (kind == CandumpLine::blank || kind == CandumpLine::malformed || kind == CandumpLine::drops) continue;
     if (entry.stamp == CandumpStamp::none) return std::nullopt;
     return entry.stamp == CandumpStamp::since ? kShortStampsFrom_ns : 0;
   }

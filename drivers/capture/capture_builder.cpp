@@ -126,13 +126,19 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   last_ = sample;
 }
 
-std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible) {
+std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
+                                               std::size_t untold) {
   std::vector<std::string> lines;
   const auto say = [&](std::size_t samples, const char* what) {
     if (samples != 0) lines.push_back(std::to_string(samples) + " samples " + what + ", taken for missing");
   };
   say(at_full_scale, "at or beyond the sensor's full scale");
   say(implausible, "with a rate that no sensor measures");
+  if (untold != 0)
+    lines.push_back(
+        std::to_string(untold) +
+        " of the missing samples are so by the device's clock alone: where that was set, none is, "
+        "and no counter or time of arrival tells");
   return lines;
 }
 

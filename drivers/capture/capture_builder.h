@@ -50,6 +50,7 @@ class CaptureBuilder {
 
   [[nodiscard]] std::size_t impossible() const { return impossible_; }  // values left out so
   [[nodiscard]] std::size_t missing() const { return times_.missing(); }
+  [[nodiscard]] std::size_t untold() const { return times_.untold(); }
   [[nodiscard]] std::size_t restarts() const { return times_.restarts(); }
   [[nodiscard]] std::size_t clock_sets() const { return times_.clock_sets(); }
   [[nodiscard]] std::size_t repeated() const { return times_.repeated(); }
@@ -71,9 +72,11 @@ class CaptureBuilder {
   std::vector<Measurable> channel_range_;
 };
 
-// In the words of every command: samples whose rate reaches the full scale, and whose rate no sensor
-// measures. One line each, none for none.
-std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible);
+// In the words of every command: samples whose rate reaches the full scale, whose rate no sensor measures,
+// and of the missing ones those of which nothing says whether the clock was set instead. One line each, none
+// for none.
+std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
+                                               std::size_t untold);
 
 // Hands what a builder has made to a sink, some thousand rows at a time.
 class BuiltRows {

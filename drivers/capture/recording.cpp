@@ -124,6 +124,8 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
         });
     counts.remote_frames = lost.remote;
     counts.error_frames = lost.error;
+    counts.xl_frames = lost.xl;
+    counts.dropped_frames = lost.dropped;
     counts.cut_off = lost.cut_off;
   } else {
     std::vector<char> bytes(kPiece);
@@ -152,6 +154,8 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
   say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
   say(counts.remote_frames, "CAN remote frames passed over");
   say(counts.error_frames, "CAN error frames passed over");
+  say(counts.xl_frames, "CAN XL frames passed over");
+  say(counts.dropped_frames, "CAN frames were dropped before candump could read them, as the log says");
   return lines;
 }
 

@@ -167,6 +167,7 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
       step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
   count_ += steps;
   if (steps > 1) missing_ += steps - 1;
+  if (steps > 1 && step.untold) untold_ += steps - 1;
   if (timed_anew) ++restarted_;
   device_ns_ = step.time_ns;
   anew = anew || (timed_anew && clock_ == Clock::device);

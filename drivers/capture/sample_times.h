@@ -57,6 +57,8 @@ class SampleTimes {
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   // Samples that were not there by the device's counter, or by its clock where it has none.
   [[nodiscard]] std::size_t missing() const { return missing_; }
+  // Of those: or the device's clock was set, and neither a counter nor times of arrival tell which.
+  [[nodiscard]] std::size_t untold() const { return untold_; }
   // Times the counter or the clock jumped back, without a discontinuity: the device was switched off and on.
   [[nodiscard]] std::size_t restarts() const { return restarted_; }
   // Times the device's clock was set while its counter went on: time goes on by that.
@@ -84,7 +86,8 @@ class SampleTimes {
   std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
   std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
-  std::size_t taken_ = 0, missing_ = 0, repeated_ = 0, mixed_ = 0, restarted_ = 0, clock_sets_ = 0;
+  std::size_t taken_ = 0, missing_ = 0, untold_ = 0, repeated_ = 0, mixed_ = 0, restarted_ = 0,
+              clock_sets_ = 0;
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;

@@ -141,15 +141,15 @@ class DeviceCount {
     doubt_ = {};
     last_ = frame;
   }
-  // Came again, or after one that follows it: the count goes back by little, and on from there to here there
-  // was no time. By little of a round, too: several frames of one read come with no time between them. The
-  // very next of the count is never one, whatever its values are.
+  // Came again, or after one that follows it: the count goes back by little, also of a round, and on from
+  // there to here there was no time, as within a read. The very next of the count is never one.
   [[nodiscard]] bool out_of_turn(const Timed& frame, std::uint64_t difference) const noexcept {
     using Had = RecentFrames::Had;
     const std::uint64_t back = modulus_ - difference;
-    if (frame.reopened || difference <= 1 || back >= kMostBack) return false;
-    if (frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
-      return false;  // nothing is late behind it
+    if (difference <= 1 || back >= kMostBack) return false;
+    // Nothing is late behind a silence, and opened again behind a pause it may be a device that began anew.
+    const bool anew = frame.reopened && !(frame.quiet_s >= 0.0 && frame.quiet_s < kAgain_s);
+    if (anew || frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_)) return false;
     const bool timed = frame.elapsed_s >= 0.0;
     const double elapsed_s = frame.elapsed_s + late_.now_s();
     const double forward_s = static_cast<double>(difference) * nominal_s_;

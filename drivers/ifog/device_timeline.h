@@ -47,6 +47,7 @@ class DeviceTimeline {
     bool undecided = false;    // likewise
     bool by_count = false;     // dt_s is by the counter, or the rate, and not what time_ns has moved on by
     bool clock_set = false;    // that is because the device's clock was set while it measured on
+    bool untold = false;       // samples are missing, or it was set: nothing that is known tells which
     std::int64_t time_ns = 0;  // of the device's clock, carried on over its wraps
   };
 
@@ -212,6 +213,7 @@ class DeviceTimeline {
     step.late_s = counted.late_s;
     step.same_gap = counted.same_gap;
     step.undecided = counted.undecided;
+    step.untold = frame.clocked && now.elapsed_s < 0.0 && step.samples > modulus_;
     return step;
   }
 
@@ -248,6 +250,8 @@ class DeviceTimeline {
       step.dt_s = passed.dt_s;
     }
     step.gap = step.samples > 1 || frame.reopened;
+    // A stamp that jumps is all that there is of samples that are missing and of a clock that was set.
+    step.untold = step.samples > 1 && (now.elapsed_s < 0.0 || !prompt_.at_its_pace());
     return step;
   }
   // A clock alone that jumps back while the device measures on, or ahead of when its samples come.

@@ -20,11 +20,14 @@ class PromptArrivals {
   }
   // The last sample, against the promptest of late: what else may come at once.
   [[nodiscard]] double behind_s() const noexcept { return behind_s_; }
+  // They come as fast as they were taken: else times of arrival say nothing of when that was.
+  [[nodiscard]] bool at_its_pace() const noexcept {
+    return dt_sum_s_ > 0.0 && elapsed_sum_s_ > kPace * dt_sum_s_;
+  }
   // A step by its clock puts the next sample before its time by more than slack_s. Of what is read at another
   // pace than it was taken nobody knows.
   [[nodiscard]] bool ahead(double passed_s, double elapsed_s, double slack_s) const noexcept {
-    const bool at_its_pace = dt_sum_s_ > 0.0 && elapsed_sum_s_ > kPace * dt_sum_s_;
-    return at_its_pace && passed_s > elapsed_s + behind_s_ + slack_s;
+    return at_its_pace() && passed_s > elapsed_s + behind_s_ + slack_s;
   }
 
  private:

@@ -285,7 +285,7 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
   std::string_view line;
   while (!pending_ && !refused_ && next_line(line, until_ns)) {
     const CandumpLine kind = parse_candump_line(line, entry_);
-    if (kind != CandumpLine::blank && kind != CandumpLine::malformed) {
+    if (kind != CandumpLine::blank && kind != CandumpLine::malformed && kind != CandumpLine::drops) {
       const bool known = clock_.differences();
       entry_.frame.arrival_ns = clock_.time_ns(entry_);
       if (clock_.differences() != known)
@@ -301,6 +301,11 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
       case CandumpLine::malformed:
         report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_, line);
         break;
+      case CandumpLine::drops:
+        if (settings().interface.empty() || entry_.interface == settings().interface)
+          kernel_drops_.add(entry_.dropped);
+        break;
+      case CandumpLine::xl:
       case CandumpLine::remote:
       case CandumpLine::blank:
         break;

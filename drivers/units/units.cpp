@@ -20,20 +20,36 @@ constexpr std::array kAngles{Unit{"rad", 1.0},
                              Unit{"radian", 1.0},
                              Unit{"radians", 1.0},
                              Unit{"mrad", 1e-3},
+                             Unit{"radiant", 1.0},
                              Unit{"millirad", 1e-3},
+                             Unit{"milliradian", 1e-3},
+                             Unit{"milliradians", 1e-3},
                              Unit{"urad", 1e-6},
                              Unit{"microrad", 1e-6},
+                             Unit{"microradian", 1e-6},
+                             Unit{"microradians", 1e-6},
                              Unit{"nrad", 1e-9},
                              Unit{"deg", kDegree},
                              Unit{"degs", kDegree},
                              Unit{"degree", kDegree},
                              Unit{"degrees", kDegree},
+                             Unit{"degre", kDegree},
+                             Unit{"degres", kDegree},
+                             Unit{"degreofarc", kDegree},
+                             Unit{"degdeg", kDegree},  // the sign and the word
                              Unit{"cdeg", kDegree * 1e-2},
                              Unit{"mdeg", kDegree * 1e-3},
                              Unit{"millideg", kDegree * 1e-3},
+                             Unit{"millidegree", kDegree * 1e-3},
+                             Unit{"millidegrees", kDegree * 1e-3},
                              Unit{"udeg", kDegree * 1e-6},
                              Unit{"arcmin", kDegree / 60.0},
+                             Unit{"arcminute", kDegree / 60.0},
+                             Unit{"arcminutes", kDegree / 60.0},
                              Unit{"arcsec", kDegree / 3600.0},
+                             Unit{"arcsecond", kDegree / 3600.0},
+                             Unit{"arcseconds", kDegree / 3600.0},
+                             Unit{"mas", kDegree / 3600.0e3},
                              Unit{"gon", kTurn / 400.0},
                              Unit{"rev", kTurn},
                              Unit{"revs", kTurn},
@@ -41,27 +57,25 @@ constexpr std::array kAngles{Unit{"rad", 1.0},
                              Unit{"revolutions", kTurn},
                              Unit{"turn", kTurn},
                              Unit{"turns", kTurn},
-                             Unit{"unit_degreofarc", kDegree}};
+                             Unit{"umdr", kTurn}};
 
 // What stands for a turn where the time is a minute and only there. By ISO 80000-3 "1/min" is a rotational
-// frequency, while "1/s" may be an angular velocity as well; r and U (Umdrehung) are revolutions.
-constexpr std::array<std::string_view, 4> kPerMinute{"1", "", "r", "u"};
+// frequency, while "1/s" may be an angular velocity as well; r, U (Umdrehung) and tr (tour) are revolutions.
+constexpr std::array<std::string_view, 5> kPerMinute{"1", "", "r", "u", "tr"};
 
-constexpr std::array kRates{Unit{"dps", kDegree},
-                            Unit{"mdps", kDegree * 1e-3},
-                            Unit{"dph", kDegree / 3600.0},
-                            Unit{"degps", kDegree},
-                            Unit{"radps", 1.0},
-                            Unit{"rpm", kTurn / 60.0},
-                            Unit{"upm", kTurn / 60.0},
-                            Unit{"unit_degreofarcpersecon", kDegree},
-                            Unit{"unit_minutinver", kTurn / 60.0}};
+constexpr std::array kRates{
+    Unit{"dps", kDegree},         Unit{"mdps", kDegree * 1e-3},    Unit{"dph", kDegree / 3600.0},
+    Unit{"udps", kDegree * 1e-6}, Unit{"degps", kDegree},          Unit{"radps", 1.0},
+    Unit{"mradps", 1e-3},         Unit{"rpm", kTurn / 60.0},       Unit{"krpm", kTurn / 60.0e-3},
+    Unit{"upm", kTurn / 60.0},    Unit{"minutinver", kTurn / 60.0}};
 
 constexpr std::array kTimes{
-    Unit{"s", 1.0},       Unit{"sec", 1.0},   Unit{"secs", 1.0},  Unit{"second", 1.0},
-    Unit{"seconds", 1.0}, Unit{"sek", 1.0},   Unit{"ms", 1e-3},   Unit{"msec", 1e-3},
-    Unit{"us", 1e-6},     Unit{"usec", 1e-6}, Unit{"ns", 1e-9},   Unit{"min", 60.0},
-    Unit{"minute", 60.0}, Unit{"h", 3600.0},  Unit{"hr", 3600.0}, Unit{"hour", 3600.0}};
+    Unit{"s", 1.0},       Unit{"sec", 1.0},     Unit{"secs", 1.0},    Unit{"second", 1.0},
+    Unit{"seconds", 1.0}, Unit{"sek", 1.0},     Unit{"ms", 1e-3},     Unit{"msec", 1e-3},
+    Unit{"us", 1e-6},     Unit{"usec", 1e-6},   Unit{"ns", 1e-9},     Unit{"min", 60.0},
+    Unit{"minute", 60.0}, Unit{"h", 3600.0},    Unit{"hr", 3600.0},   Unit{"hour", 3600.0},
+    Unit{"secon", 1.0},   Unit{"sekunde", 1.0}, Unit{"mins", 60.0},   Unit{"minutes", 60.0},
+    Unit{"std", 3600.0},  Unit{"hrs", 3600.0},  Unit{"hours", 3600.0}};
 
 template <std::size_t N>
 std::optional<double> find(const std::array<Unit, N>& units, std::string_view text) {
@@ -87,6 +101,25 @@ constexpr std::array kSpellings{
     Spelling{"\xC2\xB7", "*"},                // a middle dot
     Spelling{"\xE2\x8B\x85", "*"},            // the dot operator
     Spelling{"\xE2\x81\xBB\xC2\xB9", "^-1"},  // as superscripts
+    Spelling{"\xCB\x9A", "deg"},              // the ring above
+    Spelling{"\xE2\x81\xB0", "deg"},          // a superscript nought
+    Spelling{"&deg;", "deg"},
+    Spelling{"&#176;", "deg"},
+    Spelling{"\xE5\xBA\xA6", "deg"},                      // 度, of arc
+    Spelling{"\xE5\xBC\xA7\xE5\xBA\xA6", "rad"},          // 弧度
+    Spelling{"\xE7\xA7\x92", "s"},                        // 秒
+    Spelling{"\xD0\xB3\xD1\x80\xD0\xB0\xD0\xB4", "deg"},  // град
+    Spelling{"\xD1\x80\xD0\xB0\xD0\xB4", "rad"},          // рад
+    Spelling{"\xD1\x81", "s"},                            // с
+    Spelling{"\xE2\x80\xB2", "arcmin"},                   // the prime and the double prime
+    Spelling{"\xE2\x80\xB3", "arcsec"},
+    Spelling{"\xC3\xA9", "e"},  // é
+    Spelling{"\xC2\xA0", " "},  // a blank that no line breaks at
+    Spelling{"**", "^"},
+    Spelling{"(-1)", "-1"},
+    Spelling{"{-1}", "-1"},
+    Spelling{"\xF8", "deg"},  // code pages 437 and 850
+    Spelling{"\xE9", "e"},
     Spelling{"\xB0", "deg"},
     Spelling{"\xBA", "deg"},
     Spelling{"\xB5", "u"},
@@ -122,7 +155,8 @@ std::string plain(std::string_view text) {
                : c;
     text.remove_prefix(1);
   }
-  return out;
+  constexpr std::string_view kPrefix = "unit_";
+  return out.starts_with(kPrefix) ? out.substr(kPrefix.size()) : out;
 }
 
 struct Quotient {

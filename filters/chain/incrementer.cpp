@@ -276,6 +276,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     for (PlausibleValue& channel : frame_channel_) channel.forget();
     counts_.gaps += now.same_gap ? 0 : 1;
     counts_.missing += now.samples - 1;
+    counts_.untold += now.untold ? now.samples - 1 : 0;
     clock_.restart();
   }
   const bool in_a_row = now.gap && !now.restarted && frame.clocked && !frame.counts;

@@ -29,6 +29,7 @@ struct IncrementerCounts {
   std::uint64_t samples = 0;   // increments made
   std::uint64_t gaps = 0;      // places where samples are missing
   std::uint64_t missing = 0;   // samples missing
+  std::uint64_t untold = 0;    // of those: or the device's clock was set, and nothing tells which
   std::uint64_t repeated = 0;  // samples left out because they came twice, or after one that follows
   std::uint64_t mixed = 0;     // of those: they come with another device's, and neither is taken
   std::uint64_t restarts = 0;  // device counter or clock jumped back: it was switched off and on

@@ -80,7 +80,8 @@ void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     const double walked = grown * walk_share(a);
     if (has(m.valid, a))
-      unmeasured_.measure(a, published_.gain, variance[a]);
+      unmeasured_.measure(a, published_.gain, variance[a], m.in.rate_radps[a] - published_.rate[a],
+                          noise_[a].now() * m.noise_scale);
     else if (m.valid == 0 && motion_ == Motion::at_rest)  // the filter is not measured either
       unmeasured_.miss_with_all(a, walked);
     else if (has(started_, a))

@@ -31,12 +31,14 @@ class Unmeasured {
   void miss_with_all(std::size_t axis, double grown) noexcept {
     if (lost_[axis].now) lost_[axis].variance += grown;
   }
-  // It has one, and takes it in with this gain. variance: as the filter has it.
-  void measure(std::size_t axis, double gain, double variance) noexcept {
+  // It has one, and takes it in with this gain. variance: as the filter has it; beside, noise: what the rate
+  // then is beside the measurement, and the variance of that one. Whatever was not known before, the rate is
+  // off by no more than these two make.
+  void measure(std::size_t axis, double gain, double variance, double beside, double noise) noexcept {
     Lost& lost = lost_[axis];
     if (!(lost.variance > 0.0)) return;
     if (lost.now) lost = {false, std::max(0.0, lost.variance + lost.moved - variance), 0.0, {}, {}};
-    lost.variance *= (1.0 - gain) * (1.0 - gain);
+    lost.variance = std::min(lost.variance * (1.0 - gain) * (1.0 - gain), beside * beside + noise);
     if (lost.variance < 1e-3 * variance) lost.variance = 0.0;
   }
   void forget(std::size_t axis) noexcept { lost_[axis] = {}; }

@@ -43,6 +43,14 @@ class Faults:
                 raise Failure(f"the log does not say {text!r} within {seconds} s: {said.strip()[-1200:]}")
             time.sleep(0.3)
 
+    def counts(self, lines, counter, expected, seconds=10):
+        """Waits until the counter has moved by so much, told in a line or, over the end of a second, in two."""
+        deadline = time.monotonic() + seconds
+        while (moved := sum(map(int, re.findall(re.escape(counter) + r" \+(\d+)", said := lines())))) < expected and time.monotonic() < deadline:
+            time.sleep(0.3)
+        if moved != expected:
+            raise Failure(f"the log tells {counter} +{moved} within {seconds} s, expected {expected}: {said.strip()[-1200:]}")
+
     def restart(self):
         self.machine.run("systemctl restart ifogd", 60)
         time.sleep(1)
@@ -120,7 +128,7 @@ class Faults:
         that can be sent: CAN_ERR_FLAG with CAN_ERR_BUSOFF, and with CAN_ERR_RESTARTED after it."""
         pid, lines = self.restart(), self.journal_since()
         self.machine.run("cansend vcan0 20000040#0000000000000000; cansend vcan0 20000100#0000000000000000")
-        self.says(lines, "can_error_frames +2")
+        self.counts(lines, "can_error_frames", 2)
         self.all_come("can", 200)
         self.same_process(pid)
         return "2 error frames counted, every sample afterwards"

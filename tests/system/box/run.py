@@ -296,7 +296,8 @@ class Box(Faults, Again, Loop):
             # The daemon has the line again when the kernel counts its open file.
             self.machine.run("for i in $(seq 300); do ls -l /proc/$(pidof ifogd)/fd | grep -q /dev/ttyUSB0 && break; sleep 0.1; done")
             counts = self.counting("usb")
-            self.lines["usb"].send(200, 200).join(60)
+            # At the rate that is stated: of a sensor that sends at another, rounds of its counter are of another length.
+            self.lines["usb"].send(200, self.hertz).join(60)
             time.sleep(1)
             got = counts()["usb"]
             if complaints(200, got):

@@ -154,6 +154,12 @@ class Odd:
         self.check("nothing was adopted" in self.ran("revert", "ta-il_2", code=1), "and of a sensor of which nothing was adopted")
         # The same proposal once more: it was made against no model, and none is in use.
         self.propose_again()
+        # What it did stands, and that nobody could be told has failed.
+        self.check("cannot write" in self.ran("adopt", "nose", "--json", "/dev/full", code=1) and self.model_in_use()["nose"] == self.proposed,
+                   "adopted, and its --json had no room")
+        self.check("cannot write" in self.ran("revert", "nose", "--json", "/dev/full", code=1) and self.model_in_use()["nose"] == "",
+                   "taken back, and its --json had no room")
+        self.propose_again()
         self.ran("adopt", "nose")
         self.ran("revert", "nose")
         self.check(self.model_in_use()["nose"] == "", "adopted and taken back once more")

@@ -176,7 +176,14 @@ TEST(CandumpParser, ReadsTheScreenFormat) {
                           "  can0",
                           "  can0  12   [1]  11",
                           "  can0  123   [2]  1122",
-                          "  can0  123   [1]  00010001",
+                          "  can0  123   [1]  00010002",
+                          "  can0  123   [1]  0001000",
+                          "  can0  123   [1]  000100010",
+                          "  can0  123   [2]  11`",
+                          "  can0  123   [3]  11`22 33",
+                          " (2026-13-01 10:20:30.000001)  can0  123   [1]  11",
+                          " (2026-05-01 10:20:30.000001  can0  123   [1]  11",
+                          "DROPCOUNT: dropped x CAN frames on 'can0' socket (total drops 5)",
                           "  can0  123   [1]  11   x",
                           "  can0  123   [65]  11",
                           "  can0  123   []  11",
@@ -187,6 +194,53 @@ TEST(CandumpParser, ReadsTheScreenFormat) {
                           "  can0  123   [1]  1`",
                           "can0 123#11"})
     EXPECT_EQ(ifog::parse_candump_line(bad, e), CandumpLine::malformed) << bad;
+}
+
+// As lib.c of can-utils (2026) writes them: every view of the same bytes, of every kind of frame.
+TEST(CandumpParser, ReadsEveryViewOfTheScreen) {
+  CandumpEntry e;
+  for (const char* time : {"", " (1777630830.000001)", " (2026-05-01 10:20:30.000001)", " (000.000001)",
+                           " (1777630830.000001000)"})
+    for (const char* interface : {"can0", "       vcan0", "any", "a_long_interface"})
+      for (const char* direction : {"", "  RX - -", "  TX B E", "  TX B -"})
+        for (const char* data :
+             {"   [3]  11 22 AB", "   {3}  11 22 AB", "  [03]  11 22 AB", "   [3]  AB`22`11",
+              "   [3]  11 22 AB                     '.\".'", "   [3]  AB`22`11                     `.\".`",
+              "   [3]  00010001 00100010 10101011", "   [3]  10101011`00100010`00010001"})
+          for (const bool extended : {false, true}) {
+            std::string line = std::string(time) + "  " + interface + direction + "  " +
+                               (extended ? "12345678" : "123") + data;
+            ASSERT_EQ(ifog::parse_candump_line(line, e), CandumpLine::frame) << line;
+            EXPECT_EQ(e.frame.id, extended ? 0x12345678U : 0x123U) << line;
+            ASSERT_EQ(e.frame.length, 3U) << line;
+            EXPECT_EQ(e.frame.data[0], 0x11) << line;
+            EXPECT_EQ(e.frame.data[1], 0x22) << line;
+            EXPECT_EQ(e.frame.data[2], 0xAB) << line;
+            const std::string name = interface;
+            EXPECT_EQ(e.interface, name.substr(name.find_first_not_of(' '))) << line;
+            if (std::string(time).size() > 14) {
+              EXPECT_EQ(e.frame.arrival_ns, 1'777'630'830'000'001'000) << line;
+              EXPECT_EQ(e.stamp, ifog::CandumpStamp::absolute);
+            }
+          }
+  // Standard ids are indented once an extended one has come.
+  ASSERT_EQ(ifog::parse_candump_line("  can0       123   [1]  11", e), CandumpLine::frame);
+  EXPECT_EQ(ifog::parse_candump_line("  can0  123 [0016] (00|81:00:12345678) 11 22", e), CandumpLine::xl);
+  EXPECT_EQ(ifog::parse_candump_line("(1.0) can0 00123#81:00:12345678#1122", e), CandumpLine::xl);
+}
+
+TEST(CandumpParser, WhatCandumpSaysWasDroppedIsCounted) {
+  CandumpEntry e;
+  ASSERT_EQ(ifog::parse_candump_line("DROPCOUNT: dropped 1 CAN frame on 'can0' socket (total drops 1)", e),
+            CandumpLine::drops);
+  EXPECT_EQ(e.dropped, 1U);
+  EXPECT_EQ(e.interface, "can0");
+  const std::string text =
+      "(1.0) can0 123#11\nDROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 5)\n(2.0) can0 "
+      "123#12\nDROPCOUNT: dropped 7 CAN frames on 'can1' socket (total drops 7)\n(3.0) can0 123#13\n";
+  EXPECT_EQ(ifog::parse_candump(text, "log").frames.size(), 3U);
+  EXPECT_EQ(ifog::parse_candump(text, "log").dropped, 12U);
+  EXPECT_EQ(ifog::parse_candump(text, "log", "can0").dropped, 5U);
 }
 
 class CandumpScreen : public testing::Test {

@@ -309,6 +309,34 @@ TEST(ChannelSources, AnLcmMessageOfEitherType) {
   lcm_destroy(lcm);
 }
 
+// A name is a name: LCM would take it for a regular expression.
+TEST(ChannelSources, AnLcmChannelIsTheOneOfThatName) {
+  if (const std::string why = enter_private_network(); !why.empty())
+    GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
+  const std::vector<std::pair<std::string, std::string>> names = {{"HULL+1", "HULLL1"},
+                                                                  {"HULL.2", "HULLx2"},
+                                                                  {"(HULL)3", "HULL3"},
+                                                                  {"HULL[4]", "HULL4"},
+                                                                  {"HULL5$", "HULL5"}};
+  for (const auto& [name, other] : names) {
+    ChannelConfig one = config(ChannelConfig::Source::lcm);
+    one.lcm_channel = name;
+    const auto hull = std::make_shared<ChannelTable>(1);
+    ChannelSources sources({{one, hull, 0}}, kUrl);
+    sources.start();
+    lcm_t* const lcm = lcm_create(kUrl);
+    ASSERT_NE(lcm, nullptr);
+    const std::vector<std::uint8_t> its = encoded(channel("coil_degC", 21.0)),
+                                    others = encoded(channel("coil_degC", 99.0));
+    lcm_publish(lcm, name.c_str(), its.data(), static_cast<unsigned>(its.size()));
+    EXPECT_EQ(await(*hull, 21.0).value, 21.0) << name;
+    lcm_publish(lcm, other.c_str(), others.data(), static_cast<unsigned>(others.size()));
+    std::this_thread::sleep_for(100ms);
+    EXPECT_EQ(look(*hull).value, 21.0) << other << " is heard as " << name;
+    lcm_destroy(lcm);
+  }
+}
+
 // By the sender's own dates, unless its clock was set back from a time that is still to come.
 TEST(ChannelSources, ALateMessageNeverReplacesANewerOne) {
   if (const std::string why = enter_private_network(); !why.empty())
@@ -350,6 +378,12 @@ TEST(ChannelSources, ALateMessageNeverReplacesANewerOne) {
   // A sender from next year, which is then set right.
   send(24.0, now_us + 8760 * hour_us);
   EXPECT_EQ(await(*hull, 24.0).value, 24.0);
+  // It grows old from when it came, also where it is sent again and again.
+  for (int times = 1; times <= 3; ++times) {
+    std::this_thread::sleep_for(200ms);
+    EXPECT_GE(look(*hull).age_s, 0.19F * static_cast<float>(times));
+    send(24.0, now_us + 8760 * hour_us);
+  }
   send(25.0, now_us);
   EXPECT_EQ(await(*hull, 25.0).value, 25.0);
   // Without a date it is from now.

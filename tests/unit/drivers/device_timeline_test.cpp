@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <vector>
 
 #include "daemon/sensor/facts.h"
 #include "drivers/capture/capture_builder.h"
@@ -248,6 +249,41 @@ INSTANTIATE_TEST_SUITE_P(Drivers, Disturbed, testing::ValuesIn(cases()),
                            return devices()[of.param.device].name + "_" + std::to_string(of.param.device) +
                                   (of.param.constant ? "_constant" : "");
                          });
+
+// An interface that went for some milliseconds: what was overtaken before it is late behind it, too, however
+// often it comes. Behind a pause in which a device can begin anew it may be of one that has.
+TEST(DeviceTimeline, AnInterruptionOfMillisecondsBeginsNoDeviceAnew) {
+  for (const std::int64_t pause_ns : {1'000'000, 100'000'000, 600'000'000}) {
+    DeviceTimeline timeline(1U << 16U, 1000.0, true);
+    const auto frame = [](std::uint32_t number, std::int64_t arrival_ns, const double& value) {
+      DeviceTimeline::Frame out;
+      out.counts = true;
+      out.sequence = number;
+      out.arrival_ns = arrival_ns;
+      out.values = {&value, 1};
+      return out;
+    };
+    std::vector<double> values(400);
+    for (std::size_t n = 0; n < values.size(); ++n) values[n] = 1e-3 * static_cast<double>(n * 37 % 401);
+    const std::int64_t begin_ns = 1'000'000'000'000;
+    timeline.first(frame(0, begin_ns, values[0]));
+    std::int64_t now_ns = begin_ns;
+    for (std::uint32_t n = 1; n < 300; ++n) {
+      now_ns += 1'000'000;
+      if (n == 298) continue;  // it comes behind the next
+      EXPECT_FALSE(timeline.next(frame(n, now_ns, values[n])).out_of_turn) << n;
+    }
+    EXPECT_TRUE(timeline.next(frame(298, now_ns, values[298])).out_of_turn);
+    now_ns += pause_ns;
+    DeviceTimeline::Frame again = frame(298, now_ns, values[298]);
+    again.reopened = true;
+    const DeviceTimeline::Step step = timeline.next(again);
+    EXPECT_EQ(step.out_of_turn, pause_ns < 250'000'000) << pause_ns;
+    if (!step.out_of_turn) continue;
+    const DeviceTimeline::Step on = timeline.next(frame(300, now_ns + 1'000'000, values[300]));
+    EXPECT_FALSE(on.out_of_turn || on.restarted);
+  }
+}
 
 // Rounds of the stamp that nobody saw, by the times of arrival; and none for what is only late.
 TEST(RollingStamp, ThreeHoursOfSilenceAreTwoRoundsOf71Minutes) {

@@ -175,6 +175,9 @@ void expect_truth(const Stream& stream, double set_s = 0.0) {
   EXPECT_EQ(chain.counts().sensor_clock_sets, set_s == 0.0 ? 0U : 1U);
   EXPECT_EQ(chain.counts().gaps == 0, missing == 0);
   EXPECT_EQ(builder.missing(), missing);
+  if (stream.comes != Comes::untimed) {
+    EXPECT_EQ(chain.counts().untold + builder.untold(), 0U);
+  }
   EXPECT_EQ(builder.restarts(), 0U);
   EXPECT_EQ(builder.repeated(), sent.size() - taken);
   const Capture made = builder.finish();
@@ -240,6 +243,39 @@ TEST(TimelineTruth, AClockThatIsSetByLittleOrAloneMakesNeitherTimeNorAngle) {
             SCOPED_TRACE(testing::Message() << stream << ", set by " << set_s);
             expect_truth(stream, set_s);
           }
+}
+
+// Of a recording without times of arrival, and of one that is read at another pace than it was made, a clock
+// alone that leaps forward is samples that are missing or a clock that was set: no angle is made, what is
+// missing is told with that doubt, and where arrivals tell there is none.
+TEST(TimelineTruth, WhereNothingTellsAClockThatWasSetFromALossThatIsSaid) {
+  for (const bool at_once : {false, true})
+    for (const bool lost : {false, true}) {
+      const Comes comes = at_once ? Comes::one_by_one : Comes::untimed;
+      const Stream stream{
+          0, 200.0, 4'294'967'296'000, 1000, 0.0, comes, lost ? Trouble::lost : Trouble::none};
+      std::vector<Sent> sent = make(stream, lost ? 0.0 : 3.0, 11);
+      std::uint64_t missing = lost ? 0 : 600;
+      double truth = 0.0, turned = 0.0;
+      Incrementer chain(sensor_facts(description_of(stream), 0.0, 0));
+      CaptureBuilder builder(description_of(stream));
+      for (std::size_t i = 0; i < sent.size(); ++i) {
+        if (at_once) sent[i].sample.arrival_ns = kArrive_ns + static_cast<std::int64_t>(i) * 1000;
+        missing += sent[i].missing;
+        truth += sent[i].sample.value[0] / stream.rate_hz;
+        Reading reading;
+        read_sample(sent[i].sample, 0, reading);
+        Increment increment;
+        if (chain.next(reading, increment)) turned += increment.delta_theta_rad[0];
+        builder.add(sent[i].sample);
+      }
+      SCOPED_TRACE(testing::Message() << (at_once ? "at once" : "untimed") << (lost ? ", lost" : ", set"));
+      EXPECT_EQ(chain.counts().missing, missing);
+      EXPECT_EQ(chain.counts().untold, missing);
+      EXPECT_EQ(builder.missing(), missing);
+      EXPECT_EQ(builder.untold(), missing);
+      EXPECT_NEAR(turned, truth, 1e-6);
+    }
 }
 
 constexpr const char* kName[] = {"None", "Lost", "Twice", "Exchanged", "HeldUp", "ClockSet"};

@@ -239,6 +239,48 @@ TEST(Holes, AnAxisThatIsNotMeasuredWhileAnotherJumpsStaysWhereItIs) {
   }
 }
 
+// What is not a number, on an axis while another jumps, leaves nothing behind: its variance stays that of
+// what is known, and a step of it afterwards is followed like any.
+TEST(Holes, AnAxisWithoutANumberWhileAnotherJumpsFollowsItsOwnStepAfterwards) {
+  for (const double missing : {kMissing, HUGE_VAL, -HUGE_VAL})
+    for (const int from : {2090, 2099, 2100, 2101, 2110})
+      for (const int length : {1, 10, 200}) {
+        ifog::FilterSettings settings;
+        settings.process_noise = 1e-13;
+        settings.measurement_noise = kNoise * kNoise;
+        ifog::Estimator estimator(settings, 2, kPeriod);
+        std::mt19937_64 random(5);
+        std::normal_distribution<double> normal;
+        ifog::EstimatorOutput out;
+        double usual = 0.0;  // variance
+        for (int i = 0; i < 4000; ++i) {
+          ifog::EstimatorInput in;
+          in.sequence = static_cast<std::uint64_t>(i);
+          in.dt_s = kPeriod;
+          in.covered_s = {kPeriod, kPeriod, 0.0};
+          in.valid_axes = 3;  // the device calls it good
+          const double step = i >= 3000 ? 50.0 * kNoise : 0.0;
+          in.rate_radps = {(i >= 2100 ? 0.05 : 0.0) + kNoise * normal(random), step + kNoise * normal(random),
+                           0.0};
+          if (i >= from && i < from + length) in.rate_radps[1] = missing;
+          estimator.step(in, out);
+          if (i == 2050) usual = out.variance_rad2ps2[1];
+          const double variance = out.variance_rad2ps2[1];
+          ASSERT_TRUE(std::isfinite(out.denoised_radps[1])) << i;
+          ASSERT_GT(variance, 0.0) << i;
+          // Little is known of an axis that is not measured while another jumps, and of its own step at
+          // first.
+          if (i < from || (i > from + length + 500 && i < 3000) || i > 3500) {
+            ASSERT_LT(variance, 2.0 * kNoise * kNoise) << i << ", " << from << ", " << length;
+          }
+          if (i == 3010) {
+            ASSERT_NEAR(out.denoised_radps[1], step, 0.1 * step) << from << ", " << length;
+          }
+        }
+        EXPECT_GT(out.variance_rad2ps2[1], 0.2 * usual);
+      }
+}
+
 // One sample in twenty, whenever: the noise is heard in what lies together.
 TEST(Holes, AMissingSampleIsAsGoodAsAnUnusableOne) {
   for (const double amplitude : {0.5, 5.0}) {

@@ -180,7 +180,8 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
   if (builder.impossible() != 0)
     warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", path.c_str(),
          builder.impossible());
-  for (const std::string& line : not_measured_in_words(builder.at_full_scale(), builder.implausible()))
+  for (const std::string& line :
+       not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
     warn("%s: %s\n", path.c_str(), line.c_str());
 }
 

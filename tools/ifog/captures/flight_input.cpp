@@ -198,7 +198,8 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
   if (builder.impossible() != 0)
     warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", file_.path().c_str(),
          builder.impossible());
-  for (const std::string& line : not_measured_in_words(builder.at_full_scale(), builder.implausible()))
+  for (const std::string& line :
+       not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
     warn("%s: %s\n", file_.path().c_str(), line.c_str());
 }
 

@@ -148,7 +148,8 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
       warn("%s: %s repeats one value in %zu of %zu rows: the axis is stuck there\n", name.c_str(),
            column.c_str(), axis.stuck, rows.written());
   }
-  for (const std::string& line : not_measured_in_words(result.counts.saturated, result.counts.implausible))
+  const IncrementerCounts& counts = result.counts;
+  for (const std::string& line : not_measured_in_words(counts.saturated, counts.implausible, counts.untold))
     warn("%s: %s\n", name.c_str(), line.c_str());
   if (result.model.empty()) return;
   const auto of_model = [&](std::uint64_t samples, const char* what) {
@@ -242,8 +243,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
 
-// What the chain left out as invalid takes no part; what it compensated does, so that the same effects are
-// removed.
+// What the chain left out as invalid takes no part; what it compensated does: the same effects are removed.
 void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   if (!result.noise_known)
     throw std::runtime_error(

@@ -149,7 +149,7 @@ class FleetRun {
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       const auto how = ended.find(gyro);
       std::string why = done && done->failed ? *done->failed
-                        : how != ended.end() ? how->second + ", see " + results_.log(gyro)
+                        : how != ended.end() ? how->second + results_.told_in_log(gyro)
                                              : "its captures change while they are read";
       population_.failed.push_back({gyro, std::move(why)});
     }
@@ -202,7 +202,7 @@ class FleetRun {
     auto measured = gather_measured(results_, manifest_, options_, diagnosed_, type_, failed);
     for (Population::Failure& each : failed)
       if (const auto how = ended.find(each.gyro); how != ended.end())
-        each.why += ": " + how->second + ", see " + results_.log(each.gyro);
+        each.why += ": " + how->second + results_.told_in_log(each.gyro);
     return measured;
   }
 

@@ -57,6 +57,8 @@ class Results {
   [[nodiscard]] const std::string& folder() const { return folder_; }
   [[nodiscard]] std::string path(const std::string& file) const;
   [[nodiscard]] std::string log(std::size_t gyro) const;
+  // Where it is to be read why a process of the gyro failed: `, see LOG`, or why nothing could be said there.
+  [[nodiscard]] std::string told_in_log(std::size_t gyro) const;
   // Makes the gyro's folder.
   [[nodiscard]] std::string path(const FleetGyro& gyro, const std::string& file) const;
 

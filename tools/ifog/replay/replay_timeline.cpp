@@ -43,8 +43,9 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
 
 ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
   Candump log = parse_candump(file.text(), source.path, source.input.channel);
-  if (log.remote + log.error > 0)
-    warn("%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(), log.remote, log.error);
+  if (log.remote + log.error + log.xl > 0)
+    warn("%s: %zu remote, %zu error and %zu CAN XL frames are not sent\n", source.path.c_str(), log.remote,
+         log.error, log.xl);
   if (log.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
   ReplayTimeline timeline;
   if (source.prefer_can && log.interfaces.size() > 1) {

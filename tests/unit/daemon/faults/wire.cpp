@@ -2,6 +2,7 @@
 #include "tests/unit/daemon/faults/wire.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -44,29 +45,42 @@ Wire::Wire(std::mt19937& random, bool can, int samples) : random_(random), can_(
       add_bytes(static_cast<std::uint32_t>(n));
 }
 
+Wire::Fates Wire::draw_fates() {
+  Fates out;
+  const int first = below(100);
+  if (first >= kFates) return out;
+  out.set(static_cast<std::size_t>(first));
+  if (below(2) == 0) out.set(static_cast<std::size_t>(below(kFates)));
+  return out;
+}
+
 void Wire::add_bytes(std::uint32_t number) {
   ifog_sample sample{};
   sample.flags = IFOG_SAMPLE_SEQUENCE;
   sample.sequence = number % kKvhModulus;
   sample.valid_axes = 7;
   for (double& value : sample.value) value = rate();
-  const int fate = below(100);
-  if (fate == 0) sample.value[0] = below(2) != 0 ? 1e30 : -8.6;  // beyond full scale
-  if (fate == 1) sample.valid_axes = 6;
+  const Fates fates = draw_fates();
+  if (fates[kImpossible]) sample.value[0] = below(2) != 0 ? 1e30 : -8.6;  // beyond full scale
+  if (fates[kInvalid]) sample.valid_axes = 6;
   std::vector<std::uint8_t> made;
   driver_.encode_bytes(sample, made);
-  if (fate == 2) return;  // lost on the way
-  if (fate == 3)          // damaged: a checksum of 32 bits finds every single bit
-    made[static_cast<std::size_t>(below(kFrame))] ^= static_cast<std::uint8_t>(1U << below(8));
-  // Cut off by the whole checksum at least: the next frame may begin with the one byte that is missing.
-  if (fate == 4) made.resize(static_cast<std::size_t>(below(kFrame - 4) + 1));
-  if (fate == 5)
-    for (int n = below(200); n >= 0; --n) bytes.push_back(static_cast<std::uint8_t>(below(256)));
-  for (int copies = fate == 6 ? 2 : 1; copies > 0; --copies) {
-    if (fate != 3 && fate != 4)
-      intact_.push_back({bytes.size(), bytes.size() + kFrame, sample.sequence, fate > 1,
+  const int copies = fates[kTwice] ? 2 : 1;
+  for (int copy = 0; copy < copies; ++copy) {
+    const bool first = copy == 0;
+    if (fates[kNoise] && copy + 1 == copies)
+      for (int n = below(200); n >= 0; --n) bytes.push_back(static_cast<std::uint8_t>(below(256)));
+    if (fates[kLost] && first) continue;
+    std::vector<std::uint8_t> sent = made;
+    if (fates[kDamaged] && first)  // a checksum of 32 bits finds every single bit
+      sent[static_cast<std::size_t>(below(kFrame))] ^= static_cast<std::uint8_t>(1U << below(8));
+    // Cut off by the whole checksum at least: the next frame may begin with the one byte that is missing.
+    if (fates[kShort] && first) sent.resize(static_cast<std::size_t>(below(kFrame - 4) + 1));
+    if (!first || (!fates[kDamaged] && !fates[kShort]))
+      intact_.push_back({bytes.size(), bytes.size() + kFrame, sample.sequence,
+                         !fates[kImpossible] && !fates[kInvalid],
                          static_cast<double>(static_cast<float>(sample.value[0]))});
-    bytes.insert(bytes.end(), made.begin(), made.end());
+    bytes.insert(bytes.end(), sent.begin(), sent.end());
   }
 }
 
@@ -85,32 +99,51 @@ void Wire::add_frames(std::uint32_t number) {
   const std::uint32_t sequence = number % kCanModulus;
   ifog_can_frame frame = can_frame(kRateId, arrival_ns);
   auto value = static_cast<float>(rate());
-  const int fate = below(100);
-  constexpr std::array kImpossible{1e30F, -20.5F, std::numeric_limits<float>::quiet_NaN()};
-  if (fate <= 1) value = kImpossible.at(static_cast<std::size_t>(below(3)));
+  const Fates fates = draw_fates();
+  constexpr std::array kNoRate{1e30F, -20.5F, std::numeric_limits<float>::quiet_NaN()};
+  const bool valid = !fates[kImpossible] && !fates[kInvalid];
+  if (!valid) value = kNoRate.at(static_cast<std::size_t>(below(3)));
   put(frame, 0, value);
   frame.data[4] = static_cast<std::uint8_t>(sequence & 0xFFU);
   frame.data[5] = static_cast<std::uint8_t>(sequence >> 8U);
-  if (fate == 2) return;  // lost on the way
-  if (fate == 3) {        // too short for its counter
-    frame.length = static_cast<std::uint8_t>(below(6));
-    frames.push_back(frame);
-    fate_.push_back(Fate::refused);
-    return;
+  const int copies = fates[kTwice] ? 2 : 1;
+  for (int copy = 0; copy < copies; ++copy) {
+    const bool first = copy == 0;
+    if (fates[kNoise] && copy + 1 == copies)
+      for (int n = below(100); n >= 0; --n) add_other_frame(arrival_ns);
+    if (fates[kDamaged] && copy + 1 == copies) {  // the device's temperature, at times one that cannot be
+      ifog_can_frame environment = can_frame(kEnvironmentId, arrival_ns);
+      put(environment, 0, below(4) == 0 ? 1e6F : static_cast<float>(20 + below(10)));
+      frames.push_back(environment);
+      fate_.push_back(Fate::good);
+    }
+    if (fates[kLost] && first) continue;
+    if (fates[kShort] && first) {  // for its counter
+      ifog_can_frame part = frame;
+      part.length = static_cast<std::uint8_t>(below(6));
+      frames.push_back(part);
+      fate_.push_back(Fate::refused);
+      continue;
+    }
+    const Held held{frame, {0, 0, sequence, valid, static_cast<double>(value)}};
+    if (fates[kOvertaken])
+      held_.push_back(held);
+    else
+      add_frame(held, arrival_ns);
   }
-  if (fate == 4)
-    for (int n = below(100); n >= 0; --n) add_other_frame(arrival_ns);
-  if (fate == 5) {  // the device's temperature, at times one that cannot be
-    ifog_can_frame environment = can_frame(kEnvironmentId, arrival_ns);
-    put(environment, 0, below(4) == 0 ? 1e6F : static_cast<float>(20 + below(10)));
-    frames.push_back(environment);
-    fate_.push_back(Fate::good);
-  }
-  for (int copies = fate == 6 ? 2 : 1; copies > 0; --copies) {
-    intact_.push_back({frames.size(), frames.size() + 1, sequence, fate > 1, static_cast<double>(value)});
-    frames.push_back(frame);
-    fate_.push_back(Fate::good);
-  }
+  if (fates[kOvertaken]) return;
+  for (const Held& late : held_) add_frame(late, arrival_ns);
+  held_.clear();
+}
+
+void Wire::add_frame(const Held& held, std::int64_t arrival_ns) {
+  Sent sent = held.sent;
+  sent.begin = frames.size();
+  sent.end = sent.begin + 1;
+  intact_.push_back(sent);
+  frames.push_back(held.frame);
+  frames.back().arrival_ns = arrival_ns;
+  fate_.push_back(Fate::good);
 }
 
 std::int64_t Wire::arrival_ns(std::size_t n) const {
@@ -126,7 +159,8 @@ Truth Wire::truth(const std::vector<std::size_t>& cuts, std::size_t given) const
                                      [&](std::size_t cut) { return sent.begin < cut && cut < sent.end; });
     if (sent.end > given || severed) continue;
     ++out.decoded;
-    if (sent.sequence == last) {
+    // A counter of a bus does not go round in a run, and one that was overtaken comes too late.
+    if (can_ ? sent.sequence <= last : sent.sequence == last) {
       ++out.repeated;
       continue;
     }

@@ -3,6 +3,7 @@
 // It is put together from the frames that went in, and knows nothing of how they are found again.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -50,6 +51,17 @@ class Wire {
  private:
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
   double rate() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random_); }
+  // What befalls a sample: of every twelve one, half of those two at once. On a bus `damaged` is a frame of
+  // the sensor's temperature before it; a line overtakes nothing.
+  enum OfSample : std::uint8_t { kImpossible, kInvalid, kLost, kDamaged, kShort, kNoise, kTwice, kOvertaken };
+  static constexpr int kFates = 8;
+  using Fates = std::bitset<kFates>;
+  struct Held {
+    ifog_can_frame frame;
+    Sent sent;
+  };
+  Fates draw_fates();
+  void add_frame(const Held& held, std::int64_t arrival_ns);
   void add_bytes(std::uint32_t number);
   void add_frames(std::uint32_t number);
   void add_other_frame(std::int64_t arrival_ns);
@@ -59,6 +71,7 @@ class Wire {
   bool can_;
   DriverInstance driver_;
   std::vector<Sent> intact_;
+  std::vector<Held> held_;  // overtaken by the next
   std::vector<Fate> fate_;  // of each CAN frame
 };
 

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""One cell among thousands that no sensor measures, in every column and through every command that reads: each comes to its end in time, every number
+that it gives is finite, and it is what is found where that cell is empty. Oracle: the same capture without the cell.
+
+usage: huge.py PATH_OF_IFOG SOURCE_DIR
+"""
+import json
+import math
+import random
+import sys
+
+from run import columns, main_of, ran
+
+ROWS, RATE_HZ = 4000, 50
+HUGE = ("1e200", "-1e200", "1e308", "1e30", "9e15", "nan")
+INFINITE = ("inf", "-inf", "1e999")
+COLUMNS = ("rate_radps", "temperature_degC", "ramp_counts", "something")
+WHERE = (0, 7, 1999, ROWS - 1)
+
+
+def numbers_of(value, path=""):
+    """Every number of a document, by where it stands."""
+    if isinstance(value, dict):
+        return {k: v for key, each in value.items() if key not in ("capture", "captures", "created", "sha256") for k, v in numbers_of(each, f"{path}.{key}").items()}
+    if isinstance(value, list):
+        return {k: v for i, each in enumerate(value) for k, v in numbers_of(each, f"{path}[{i}]").items()}
+    return {path: value} if isinstance(value, float | int) and not isinstance(value, bool) else {}
+
+
+class Checks:
+    def __init__(self, folder):
+        self.folder = folder
+        dice = random.Random(11)
+        self.rows = []
+        for i in range(ROWS):
+            warm = 25.0 + 3.0 * math.sin(i / 300.0)
+            self.rows.append([repr(i / RATE_HZ), repr(1e-5 + 2e-6 * (warm - 25.0) + dice.gauss(0, 3e-6)), repr(warm), str(i * 37 % 4096), repr(dice.gauss(0, 1))])
+
+    def write(self, name, cells):
+        path = self.folder / name
+        rows = [list(row) for row in self.rows]
+        for row, column, text in cells:
+            rows[row][1 + COLUMNS.index(column)] = text
+        path.write_text("\n".join([",".join(("time_s", *COLUMNS)), *map(",".join, rows)]) + "\n")
+        return path
+
+    def answers(self, command, path):
+        out = self.folder / "out.json"
+        out.unlink(missing_ok=True)
+        more = {"denoise": ["--output", self.folder / "d.csv"], "tune": ["--samples", "2000", "--state", "random-walk"]}.get(command, [])
+        result = ran(command, path, *more, "--json", out)  # within its time
+        assert result.returncode == 0, f"{command} {path.name}: exit {result.returncode}: {result.stderr}"
+        text = out.read_text()
+        found = numbers_of(json.loads(text))
+        assert found and all(math.isfinite(each) for each in found.values()) and "NaN" not in text and "Infinity" not in text, f"{command} {path.name}"
+        if command == "denoise":
+            for name, values in columns(self.folder / "d.csv").items():
+                assert not [each for each in values if abs(each) > 1e6], f"{path.name}: {name}"
+        return found
+
+    def same(self, command, column, text, found, expected):
+        assert found.keys() == expected.keys(), f"{command}, {text} in {column}: other keys than with the cell empty"
+        for path, value in expected.items():
+            assert math.isclose(found[path], value, rel_tol=1e-9, abs_tol=1e-300), f"{command}, {text} in {column}: {path} is {found[path]}, expected {value}"
+
+    def check_one_cell(self):
+        """Where it is huge as where it is empty."""
+        empty = {column: self.write(f"{column}_empty.csv", [(1999, column, "")]) for column in COLUMNS}
+        for column in COLUMNS:
+            for command in ("allan", "tune", "compare", "diagnose", "denoise"):
+                expected = self.answers(command, empty[column])
+                for text in HUGE if command == "diagnose" and column == "rate_radps" else HUGE[:1]:
+                    self.same(command, column, text, self.answers(command, self.write("huge.csv", [(1999, column, text)])), expected)
+
+    def check_what_is_infinite_is_refused_by_its_line(self):
+        for column in COLUMNS:
+            for text in INFINITE:
+                for command in ("allan", "diagnose"):
+                    result = ran(command, self.write("huge.csv", [(1999, column, text)]))
+                    said = result.stderr.strip()
+                    assert result.returncode == 1 and len(said.splitlines()) == 1 and f"huge.csv:2001: {column} " in said, f"{command}, {text}: {said}"
+
+    def check_the_first_the_last_and_while_the_noise_is_learned(self):
+        for row in WHERE:
+            for command in ("diagnose", "denoise", "tune"):
+                self.answers(command, self.write("huge.csv", [(row, column, "1e200") for column in COLUMNS]))
+
+    def check_a_column_of_them(self):
+        """A rate of which more than a hundredth cannot be is refused; a channel of which nothing is left is none."""
+        for column in COLUMNS:
+            path = self.write("column.csv", [(row, column, "1e200") for row in range(0, ROWS, 2)])
+            for command in ("diagnose", "denoise"):
+                result = ran(command, path, *(["--output", self.folder / "d.csv"] if command == "denoise" else []))
+                expected = 1 if column == "rate_radps" else 0
+                assert result.returncode == expected, f"{command}, {column}: exit {result.returncode}: {result.stderr}"
+                assert expected == 0 or len(result.stderr.strip().splitlines()) == 1, result.stderr
+
+
+if __name__ == "__main__":
+    sys.exit(main_of(Checks))
