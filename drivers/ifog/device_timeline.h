@@ -96,8 +96,6 @@ class DeviceTimeline {
   [[nodiscard]] bool clock_stood() const noexcept { return clock_steps_.stood(); }
   // Frames of two devices come, and none is taken.
   [[nodiscard]] bool mixed() const noexcept { return mixed_.two(); }
-  // Of the arrivals, ns; 0: none was known.
-  [[nodiscard]] std::int64_t latest_arrival_ns() const noexcept { return arrivals_.latest_ns(); }
 
  private:
   static constexpr double kShortStep_s = 1.0;   // of a clock that is set while it runs

@@ -22,7 +22,7 @@ struct JointEstimate {
 };
 
 // Normal estimates and normal priors: the conditional expectation and its covariance, with the error of the
-// type's mean carried along. Each place at most once. For one coefficient the same as shrunk().
+// type's mean carried along. Each place at most once.
 JointEstimate shrunk_together(const JointEstimate& own, std::span<const KnownCoefficient> known);
 
 }  // namespace ifog

@@ -197,11 +197,4 @@ double chance_without(const TypePrior& prior, const Estimate& estimate) {
          normal_above(-(lowest - away) / estimate.std_error);
 }
 
-Estimate shrunk(const TypePrior& prior, const Estimate& estimate) {
-  const double own = square(estimate.std_error), type = square(prior.spread);
-  const double to_mean = own / (own + type);
-  return {estimate.value + to_mean * (prior.mean - estimate.value),
-          std::sqrt(own * type / (own + type) + square(to_mean * prior.mean_std_error))};
-}
-
 }  // namespace ifog

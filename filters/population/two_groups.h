@@ -40,7 +40,4 @@ double probability(const TypePrior& prior, const Estimate& estimate);
 // likelihoods, which takes in sign and size that the type has).
 double chance_without(const TypePrior& prior, const Estimate& estimate);
 
-// The coefficient of a member that has the effect: what its own captures and the population say together.
-Estimate shrunk(const TypePrior& prior, const Estimate& estimate);
-
 }  // namespace ifog

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "filters/population/shrinkage.h"
+#include "tests/unit/population/one_coefficient.h"
 
 namespace ifog {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "filters/population/population.h"
+#include "tests/unit/population/one_coefficient.h"
 
 namespace ifog {
 namespace {
