@@ -32,8 +32,11 @@ class UnnamedFile {
 
   // first: the place of the first of the numbers in the file, counted in numbers.
   void write(std::size_t first, std::span<const double> numbers) {
-    const char* at = reinterpret_cast<const char*>(numbers.data());
-    std::size_t left = numbers.size_bytes(), offset = first * sizeof(double);
+    write(first * sizeof(double), numbers.data(), numbers.size_bytes());
+  }
+  // offset, left: bytes.
+  void write(std::size_t offset, const void* from, std::size_t left) {
+    const char* at = static_cast<const char*>(from);
     while (left > 0) {
       const ssize_t n = ::pwrite(fd_, at, left, static_cast<off_t>(offset));
       if (n < 0 && errno == EINTR) continue;
@@ -46,8 +49,10 @@ class UnnamedFile {
 
   // to: as many as are wanted, all of them there. Several threads may read at once.
   void read(std::size_t first, std::span<double> to) const {
-    char* at = reinterpret_cast<char*>(to.data());
-    std::size_t left = to.size_bytes(), offset = first * sizeof(double);
+    read(first * sizeof(double), to.data(), to.size_bytes());
+  }
+  void read(std::size_t offset, void* to, std::size_t left) const {
+    char* at = static_cast<char*>(to);
     while (left > 0) {
       const ssize_t n = ::pread(fd_, at, left, static_cast<off_t>(offset));
       if (n < 0 && errno == EINTR) continue;

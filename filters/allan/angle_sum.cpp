@@ -2,6 +2,7 @@
 #include "filters/allan/angle_sum.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "filters/allan/two_sum.h"
@@ -49,18 +50,29 @@ AngleSum::AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> st
 }
 
 void AngleSum::find_mean(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
+  constexpr std::size_t kLanes = 4;  // no addition waits for the one before
+  std::array<double, kLanes> sum{}, rest{};
   std::size_t total = 0;
-  double sum = 0.0, rest = 0.0, error = 0.0;
   for (const Stretch& s : stretches) {
     total += s.size();
     for_each_piece(rate_radps, s.begin, s.end, [&](std::span<const double> rates, std::size_t) {
-      for (const double rate : rates) {
-        two_sum(sum, rate, sum, error);
-        rest += error;
-      }
+      std::size_t i = 0;
+      double error = 0.0;
+      const auto add = [&](std::size_t lane, double rate) {
+        two_sum(sum[lane], rate, sum[lane], error);
+        rest[lane] += error;
+      };
+      for (; i + kLanes <= rates.size(); i += kLanes)
+        for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, rates[i + lane]);
+      for (; i < rates.size(); ++i) add(0, rates[i]);
     });
   }
-  mean_ = total > 0 ? (sum + rest) / static_cast<double>(total) : 0.0;
+  double all = 0.0, left = 0.0, error = 0.0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    two_sum(all, sum[lane], all, error);
+    left += error + rest[lane];
+  }
+  mean_ = total > 0 ? (all + left) / static_cast<double>(total) : 0.0;
 }
 
 template <typename Add>

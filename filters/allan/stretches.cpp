@@ -2,7 +2,9 @@
 #include "filters/allan/stretches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -99,6 +101,50 @@ Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
   return out;
 }
 
+// The shortest and the longest step: where even that is no gap, none is.
+struct Extremes {
+  double least_s = std::numeric_limits<double>::infinity(), most_s = -least_s;
+
+  [[nodiscard]] bool gapless(double period_s) const { return most_s <= kGap * period_s; }
+  // From the period. Of a number less another the rounded absolute is largest at one end or the other.
+  [[nodiscard]] double jitter_s(double period_s) const {
+    return std::max(std::abs(least_s - period_s), std::abs(most_s - period_s));
+  }
+};
+
+Extremes extremes_of(const SeriesView& time_s) {
+  Extremes found;
+  std::vector<double> room;
+  const std::size_t samples = time_s.size();
+  for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
+    const std::span<const double> some =
+        time_s.piece(begin, std::min(kSeriesPiece + 1, samples - begin), room);
+    constexpr std::size_t kLanes = 4;  // no comparison waits for the one before
+    std::array<double, kLanes> least, most;
+    least.fill(found.least_s);
+    most.fill(found.most_s);
+    for (std::size_t i = 0; i + 1 < some.size(); ++i) {
+      const double step = some[i + 1] - some[i];
+      least[i % kLanes] = step < least[i % kLanes] ? step : least[i % kLanes];
+      most[i % kLanes] = step > most[i % kLanes] ? step : most[i % kLanes];
+    }
+    found.least_s = *std::min_element(least.begin(), least.end());
+    found.most_s = *std::max_element(most.begin(), most.end());
+  }
+  return found;
+}
+
+// Some steps, evenly chosen.
+std::vector<double> some_steps(const SeriesView& time_s, std::size_t stride) {
+  std::vector<double> some, room;
+  some.reserve((time_s.size() - 1) / stride + 1);
+  for (std::size_t i = 0; i + 1 < time_s.size(); i += stride) {
+    const std::span<const double> two = time_s.piece(i, 2, room);
+    some.push_back(two[1] - two[0]);
+  }
+  return some;
+}
+
 // Of stamps that scatter; near: what their steps one by one say.
 double scattered_period(const SeriesView& time_s, double near_s) {
   Period out{.period_s = near_s};
@@ -140,12 +186,8 @@ SampleClock sample_clock(const SeriesView& time_s) {
   if (time_s.size() < 2) throw std::invalid_argument("a sample time needs two samples");
   const std::size_t count = time_s.size() - 1;
   // The median of a hundred thousand steps is as good as that of all.
-  std::vector<double> some;
-  const std::size_t stride = count / 100'000 + 1;
-  some.reserve(count / stride + 1);
-  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
-    if (i % stride == 0) some.push_back(steps.step(i));
-  });
+  std::vector<double> some = some_steps(time_s, count / 100'000 + 1);
+  const Extremes steps = extremes_of(time_s);
   double period = middle_of(some);
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
@@ -155,23 +197,29 @@ SampleClock sample_clock(const SeriesView& time_s) {
     period = even_s;
   } else {
     // Coarse stamps make the median one tick too short or too long; a second round with the mean settles it.
-    for (int round = 0; round < 2; ++round) period = mean_period(time_s, period, false).period_s;
+    for (int round = 0; round < 2; ++round)
+      period = steps.gapless(period) ? (time_s.at(count) - time_s.at(0)) / static_cast<double>(count)
+                                     : mean_period(time_s, period, false).period_s;
     for (double& step : some) step = std::abs(step - period);
     clock.scatter = 1.4826 * middle_of(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
     if (clock.scatters()) period = scattered_period(time_s, period);
   }
   clock.period_s = period;
+  if (!clock.scatters() && steps.gapless(period)) {
+    clock.worst_jitter_s = steps.jitter_s(period);
+    return clock;
+  }
 
   const std::vector<Hole> gaps = holes(time_s, clock);
   clock.gaps = gaps.size();
   if (!gaps.empty()) clock.first_gap = gaps.front().after;
   for (const Hole& gap : gaps) clock.missing += gap.lost;
   auto gap = gaps.begin();
-  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
+  for_each_step(time_s, [&](const Steps& all, std::size_t i) {
     if (gap != gaps.end() && gap->after == i)
       ++gap;
     else
-      clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(steps.step(i) - period));
+      clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(all.step(i) - period));
   });
   return clock;
 }

@@ -2,6 +2,7 @@
 // One capture of the sensor, as a diagnosis takes it.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,13 @@ struct RecordOrigin {
   [[nodiscard]] double since(double told_s) const { return told_s - whole_s - beyond_s; }
 };
 
+// Of these times.
+struct KnownClock {
+  std::span<const double> time_s;
+  SampleClock clock;
+  double usual_step_s = 0.0;
+};
+
 struct Record {
   std::string name;
   std::span<const double> time_s;             // strictly increasing
@@ -36,8 +44,9 @@ struct Record {
   std::vector<RecordChannel> channels;
   // Rates of the same sensor, by the names of their columns: it rests when all of them do.
   std::vector<RecordChannel> other_axes;
-  std::vector<Stretch> at_rest;  // samples, in order; empty: not looked for, all
-  RecordOrigin origin;           // that time_s is counted from
+  std::vector<Stretch> at_rest;             // samples, in order; empty: not looked for, all
+  RecordOrigin origin;                      // that time_s is counted from
+  std::shared_ptr<const KnownClock> clock;  // null: not looked at; of other times: says nothing of these
 };
 
 // Of the channel of that name; empty when the record has none.

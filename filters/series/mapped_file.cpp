@@ -11,14 +11,21 @@
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <cstdlib>
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#ifndef MADV_POPULATE_READ
+#define MADV_POPULATE_READ 22  // Linux 5.14; before, the call does nothing
+#endif
 
 namespace ifog {
 namespace {
@@ -48,10 +55,11 @@ class Resident {
     if (thread_.joinable()) thread_.join();
   }
 
-  void add(const void* at, std::size_t bytes) {
+  // file: what is mapped, to write; none: it will not be written.
+  void add(const void* at, std::size_t bytes, std::optional<UnnamedFile> file) {
     {
       const std::lock_guard lock(guard_);
-      mapped_.emplace(at, bytes);
+      mapped_.emplace(at, Mapped{bytes, std::move(file)});
       if (!thread_.joinable()) begin();
     }
     changed_.notify_one();
@@ -60,6 +68,18 @@ class Resident {
   void remove(const void* at) {
     const std::lock_guard lock(guard_);
     mapped_.erase(at);
+  }
+
+  struct Place {
+    UnnamedFile* file;
+    std::size_t offset;  // bytes
+  };
+  // Of what add() was told of and is still there, a file to write.
+  Place place_of(const void* at) {
+    const std::lock_guard lock(guard_);
+    const auto mapped = std::prev(mapped_.upper_bound(at));
+    return {&*mapped->second.file,
+            static_cast<std::size_t>(static_cast<const char*>(at) - static_cast<const char*>(mapped->first))};
   }
 
  private:
@@ -81,14 +101,19 @@ class Resident {
         changed_.wait_for(lock, kLook, [this] { return ends_; });
       // Of a file that is shared, not private, this loses nothing: what was written is in the kernel's cache.
       if (resident_bytes(statm) > kMostResident)
-        for (const auto& [at, bytes] : mapped_) ::madvise(const_cast<void*>(at), bytes, MADV_DONTNEED);
+        for (const auto& [at, mapped] : mapped_)
+          ::madvise(const_cast<void*>(at), mapped.bytes, MADV_DONTNEED);
     }
     if (statm >= 0) ::close(statm);
   }
 
   std::mutex guard_;
   std::condition_variable changed_;
-  std::map<const void*, std::size_t> mapped_;
+  struct Mapped {
+    std::size_t bytes;
+    std::optional<UnnamedFile> file;
+  };
+  std::map<const void*, Mapped> mapped_;
   std::thread thread_;
   bool ends_ = false;
 };
@@ -98,11 +123,11 @@ Resident& resident() {
   return all;
 }
 
-void* mapped(int fd, std::size_t bytes, int protection) {
+void* mapped(int fd, std::size_t bytes, int protection, std::optional<UnnamedFile> written = {}) {
   void* const at = ::mmap(nullptr, bytes, protection, MAP_SHARED, fd, 0);
   if (at == MAP_FAILED) UnnamedFile::fail("cannot map");
   try {
-    resident().add(at, bytes);
+    resident().add(at, bytes, std::move(written));
   } catch (...) {
     ::munmap(at, bytes);
     throw;
@@ -174,7 +199,8 @@ Spares& spares() {
 void* map_new(std::size_t bytes) {
   UnnamedFile file;
   file.reserve(bytes);
-  return mapped(file.descriptor(), bytes, PROT_READ | PROT_WRITE);
+  const int fd = file.descriptor();
+  return mapped(fd, bytes, PROT_READ | PROT_WRITE, std::move(file));
 }
 
 }  // namespace
@@ -192,6 +218,16 @@ void* map_new_file(std::size_t bytes) {
 
 void unmap_new_file(void* at, std::size_t bytes) noexcept { spares().keep({at, room_for(bytes)}); }
 
+void write_new_file(void* to, const void* from, std::size_t bytes) {
+  const Resident::Place place = resident().place_of(to);
+  place.file->write(place.offset, from, bytes);
+}
+
+void read_new_file(void* to, const void* from, std::size_t bytes) {
+  const Resident::Place place = resident().place_of(from);
+  place.file->read(place.offset, to, bytes);
+}
+
 const void* map_file(const UnnamedFile& file, std::size_t bytes) {
   return mapped(file.descriptor(), bytes, PROT_READ);
 }
@@ -199,6 +235,13 @@ const void* map_file(const UnnamedFile& file, std::size_t bytes) {
 void unmap_file(const void* at, std::size_t bytes) noexcept {
   resident().remove(at);
   ::munmap(const_cast<void*>(at), bytes);
+}
+
+void expect_reading(const void* at, std::size_t bytes) noexcept {
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(at) / page * page;
+  const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(at) + bytes;
+  ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_POPULATE_READ);
 }
 
 }  // namespace ifog

@@ -21,9 +21,16 @@ inline constexpr std::size_t kMostSpare = 4;
 [[nodiscard]] void* map_new_file(std::size_t bytes);
 // What that gave.
 void unmap_new_file(void* at, std::size_t bytes) noexcept;
+// As memcpy, `to` being in memory that map_new_file() gave: by way of the file, for writing a page that is
+// not in memory costs ten times as much when it is found missing. Throws likewise.
+void write_new_file(void* to, const void* from, std::size_t bytes);
+// Likewise, `from` being in such memory.
+void read_new_file(void* to, const void* from, std::size_t bytes);
 // The first bytes of a file that is there, to read. The file may be closed afterwards. Throws likewise.
 [[nodiscard]] const void* map_file(const UnnamedFile& file, std::size_t bytes);
 // What that gave.
 void unmap_file(const void* at, std::size_t bytes) noexcept;
+// Memory of a file that is about to be read: its pages are looked up together. Of other memory nothing.
+void expect_reading(const void* at, std::size_t bytes) noexcept;
 
 }  // namespace ifog

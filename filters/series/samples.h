@@ -24,6 +24,8 @@ struct FiledAllocator {
   static constexpr std::size_t kInMemory = std::size_t{16} << 20U;  // bytes of one vector
 
   FiledAllocator() = default;
+  // unset: what a vector is made of is whatever was there.
+  explicit FiledAllocator(bool unset) : unset_(unset) {}
   template <typename Other>
   FiledAllocator(const FiledAllocator<Other>&) {}
 
@@ -38,7 +40,16 @@ struct FiledAllocator {
     else
       unmap_new_file(at, n * sizeof(T));
   }
+  template <typename Other, typename... Arguments>
+  void construct(Other* at, Arguments&&... arguments) {
+    if (sizeof...(Arguments) > 0 || !unset_)
+      ::new (static_cast<void*>(at)) Other(std::forward<Arguments>(arguments)...);
+  }
+  [[nodiscard]] FiledAllocator select_on_container_copy_construction() const { return FiledAllocator(); }
   friend bool operator==(const FiledAllocator&, const FiledAllocator&) { return true; }
+
+ private:
+  bool unset_ = false;
 };
 
 template <typename T>
@@ -50,6 +61,13 @@ class Samples : public FiledVector<double> {
   Samples() = default;
   Samples(const std::vector<double>& values) : Samples(values.begin(), values.end()) {}
   explicit Samples(std::span<const double> values) : Samples(values.begin(), values.end()) {}
+
+  // So many, whatever is in them: to be written, all of them (samples_writer.h).
+  [[nodiscard]] static Samples unset(std::size_t size) {
+    Samples samples;
+    static_cast<FiledVector<double>&>(samples) = FiledVector<double>(size, FiledAllocator<double>(true));
+    return samples;
+  }
 
   friend bool operator==(const Samples& one, const Samples& other) { return std::ranges::equal(one, other); }
 };

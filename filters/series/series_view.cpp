@@ -7,9 +7,12 @@
 #include <cstdint>
 
 #include "filters/series/long_series.h"
+#include "filters/series/mapped_file.h"
 
 namespace ifog {
 namespace {
+
+constexpr std::size_t kLookedUp = std::size_t{16} << 20U;  // bytes
 
 // use(step) for all steps.
 template <typename Use>
@@ -33,7 +36,12 @@ SeriesView::SeriesView(const LongSeries& values) : long_(&values), size_(values.
 
 std::span<const double> SeriesView::piece(std::size_t first, std::size_t count,
                                           std::vector<double>& room) const {
-  if (long_ == nullptr) return values_.subspan(first, count);
+  if (long_ == nullptr) {
+    const std::span<const double> some = values_.subspan(first, count);
+    // Where there are so many they are a file's.
+    if (values_.size_bytes() > kLookedUp) expect_reading(some.data(), some.size_bytes());
+    return some;
+  }
   if (room.size() < count) room.resize(count);
   const std::span<double> to(room.data(), count);
   long_->read(first_ + first, to);

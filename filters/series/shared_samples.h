@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "filters/series/samples.h"
+#include "filters/series/samples_writer.h"
 
 namespace ifog {
 
@@ -18,30 +20,44 @@ class SharedSamples {
   SharedSamples(Samples values) : values_(std::make_shared<Samples>(std::move(values))) {}
   SharedSamples(const std::vector<double>& values) : SharedSamples(Samples(values)) {}
 
-  [[nodiscard]] const Samples& values() const { return *values_; }
-  [[nodiscard]] std::size_t size() const { return values_->size(); }
-  [[nodiscard]] bool empty() const { return values_->empty(); }
-  [[nodiscard]] const double* data() const { return values_->data(); }
+  // Numbers of somebody else, that outlive this and do not change.
+  [[nodiscard]] static SharedSamples of(std::span<const double> others) {
+    SharedSamples samples(nullptr);
+    samples.others_ = others;
+    return samples;
+  }
+
+  [[nodiscard]] Samples values() const { return copied({data(), size()}); }
+  [[nodiscard]] std::size_t size() const { return values_ ? values_->size() : others_.size(); }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  [[nodiscard]] const double* data() const { return values_ ? values_->data() : others_.data(); }
   [[nodiscard]] const double* begin() const { return data(); }
   [[nodiscard]] const double* end() const { return data() + size(); }
-  [[nodiscard]] double operator[](std::size_t i) const { return (*values_)[i]; }
+  [[nodiscard]] double operator[](std::size_t i) const { return data()[i]; }
   // True: the same memory, not only the same numbers.
-  [[nodiscard]] bool is(const SharedSamples& other) const { return values_ == other.values_; }
+  [[nodiscard]] bool is(const SharedSamples& other) const {
+    return values_ == other.values_ && others_.data() == other.others_.data();
+  }
 
   // To change: a copy, where others share them.
   [[nodiscard]] Samples& own() {
-    if (values_.use_count() > 1) values_ = std::make_shared<Samples>(*values_);
+    if (values_.use_count() != 1) values_ = std::make_shared<Samples>(values());
+    others_ = {};
     return *values_;
   }
   // To write all of them: so many, whatever is in them.
   [[nodiscard]] Samples& anew(std::size_t size) {
-    if (values_.use_count() > 1) values_ = std::make_shared<Samples>();
+    if (values_.use_count() != 1) values_ = std::make_shared<Samples>();
+    others_ = {};
     values_->resize(size);
     return *values_;
   }
 
  private:
-  std::shared_ptr<Samples> values_;  // never null, but where it was moved from
+  explicit SharedSamples(std::nullptr_t) {}
+
+  std::shared_ptr<Samples> values_;  // null: of others
+  std::span<const double> others_;   // without own ones
 };
 
 }  // namespace ifog

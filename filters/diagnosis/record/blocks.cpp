@@ -10,7 +10,9 @@
 #include <string>
 
 #include "filters/allan/stretches.h"
+#include "filters/diagnosis/record/record_clock.h"
 #include "filters/effects/meaning.h"
+#include "filters/series/mapped_file.h"
 
 namespace ifog {
 namespace {
@@ -81,7 +83,7 @@ double median_period(const std::vector<Record>& records) {
 double sample_period(const std::vector<Record>& records) {
   constexpr double kRounded = 1.0, kExact = 1e-9;  // of the median
   const double step_s = median_period(records);
-  const double clock_s = sample_clock(records.front().time_s).period_s;
+  const double clock_s = clock_of(records.front()).period_s;
   const double apart = std::abs(clock_s / step_s - 1.0);
   return apart > kExact && apart < kRounded ? clock_s : step_s;
 }
@@ -171,7 +173,12 @@ void fill(const std::vector<std::size_t>& first, std::span<const double> values,
   const std::size_t begin = means.size();
   bool known = false;  // steps before the first value hold that
   double held = 0.0;
-  for (std::size_t k = 0; k < steps; ++k) {
+  constexpr std::size_t kLookedUp = std::size_t{1} << 17U;
+  for (std::size_t k = 0, looked_up = 0; k < steps; ++k) {
+    if (first[k] >= looked_up) {
+      looked_up = std::min(first[k] + kLookedUp, values.size());
+      expect_reading(values.data() + first[k], (looked_up - first[k]) * sizeof(double));
+    }
     double sum = 0.0, square = 0.0;
     std::uint32_t count = 0;
     for (std::size_t i = first[k]; i < first[k + 1]; ++i) {

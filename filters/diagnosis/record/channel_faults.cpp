@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/series/series_view.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -77,7 +78,12 @@ Usual usual_of(std::span<const double> values) {
 struct Readings {
   explicit Readings(const Record& record, std::span<const double> column)
       : time_s(record.time_s), values(column) {
-    if (std::all_of(column.begin(), column.end(), [](double value) { return std::isfinite(value); })) return;
+    bool whole = true;
+    for_each_piece(column, 0, column.size(), [&](std::span<const double> some, std::size_t) {
+      whole =
+          whole && std::all_of(some.begin(), some.end(), [](double value) { return std::isfinite(value); });
+    });
+    if (whole) return;
     for (std::size_t i = 0; i < column.size(); ++i) {
       if (!std::isfinite(column[i])) continue;
       rows.push_back(i);

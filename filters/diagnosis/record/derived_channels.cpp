@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "filters/effects/meaning.h"
+#include "filters/series/samples_writer.h"
 
 namespace ifog {
 namespace {
@@ -64,15 +66,16 @@ void add_difference(const std::string& one, const std::string& other, DerivedRec
   for (Record& record : derived.records) {
     const std::span<const double> a = values_of(record, one);
     const std::span<const double> b = values_of(record, other);
-    Samples& difference = derived.values.emplace_back(a.size());
+    SamplesWriter difference(a.size());
     double held_a = std::nan("");  // loggers poll their thermometers in turn
     double held_b = std::nan("");
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (std::isfinite(a[i])) held_a = a[i];
       if (std::isfinite(b[i])) held_b = b[i];
-      difference[i] = held_a - held_b;
+      difference.add(held_a - held_b);
     }
-    record.channels.push_back({difference_of(one, other), difference});
+    record.channels.push_back(
+        {difference_of(one, other), derived.values.emplace_back(std::move(difference).done())});
   }
 }
 
@@ -152,15 +155,24 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
   return derived;
 }
 
-DerivedRecords with_derived_channels(const std::vector<Record>& records) {
+DerivedRecords with_differences(const std::vector<Record>& records) {
   DerivedRecords derived{records, {}};
-  if (records.empty()) return derived;
-  add_differences(records, derived);
-  const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
-  if (!std::all_of(records.begin(), records.end(), referenced)) return derived;
-  for (Record& record : derived.records)
-    for (const RecordChannel& axis : record.other_axes) record.channels.push_back(axis);
+  if (!records.empty()) add_differences(records, derived);
   return derived;
+}
+
+DerivedRecords with_derived_channels(const std::vector<Record>& records) {
+  DerivedRecords derived = with_differences(records);
+  derived.records = with_other_axes(std::move(derived.records));
+  return derived;
+}
+
+std::vector<Record> with_other_axes(std::vector<Record> records) {
+  const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
+  if (records.empty() || !std::all_of(records.begin(), records.end(), referenced)) return records;
+  for (Record& record : records)
+    for (const RecordChannel& axis : record.other_axes) record.channels.push_back(axis);
+  return records;
 }
 
 }  // namespace ifog

@@ -33,5 +33,8 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records);
 // named as difference_of() does, and where there is a reference the measured rates of the other axes: without
 // one, what two axes have in common is rotation, and a correction must not take it away.
 DerivedRecords with_derived_channels(const std::vector<Record>& records);
+// The one and the other of these.
+DerivedRecords with_differences(const std::vector<Record>& records);
+std::vector<Record> with_other_axes(std::vector<Record> records);
 
 }  // namespace ifog

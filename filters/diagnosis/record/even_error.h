@@ -25,7 +25,8 @@ struct EvenError {
   SharedSamples logged;   // the same with channels as they were logged, faults and all
 };
 
-// after, held_out and written: still empty. Throws as on_even_grid() does.
+// after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as
+// on_even_grid() does.
 std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
                                    double sample_s);
 

@@ -6,7 +6,41 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/series/mapped_file.h"
+#include "filters/series/series_view.h"
+
 namespace ifog {
+
+namespace {
+
+constexpr std::size_t kPiece = std::size_t{1} << 17U;
+
+double step_of(const Record& record, std::size_t i, double sample_s) {
+  return std::floor((record.time_s[i] - record.time_s.front()) / sample_s + 0.5);
+}
+
+bool is_even(const Record& record, double sample_s) {
+  const std::size_t n = record.time_s.size();
+  if (step_of(record, n - 1, sample_s) != static_cast<double>(n - 1)) return false;
+  for (std::size_t from = 0; from < n; from += kPiece) {
+    const std::size_t to = std::min(from + kPiece, n);
+    expect_reading(record.time_s.data() + from, (to - from) * sizeof(double));
+    bool even = true;  // without a branch
+    for (std::size_t i = from; i < to; ++i)
+      even = even && step_of(record, i, sample_s) == static_cast<double>(i);
+    if (!even) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::span<const double> even_samples(const Record& record, double sample_s, std::span<const double> values,
+                                     Samples& room) {
+  if (values.size() == record.time_s.size() && is_even(record, sample_s)) return values;
+  room = on_even_grid(record, sample_s, values);
+  return room;
+}
 
 Samples on_even_grid(const Record& record, double sample_s, std::span<const double> values) {
   const double span = record.time_s.back() - record.time_s.front();
@@ -35,15 +69,19 @@ double variance_of(std::span<const double> values) {
   double sum = 0.0;
   double square = 0.0;
   double n = 0.0;
-  for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    sum += v;
-    n += 1.0;
-  }
+  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
+    for (const double v : some) {
+      if (!std::isfinite(v)) continue;
+      sum += v;
+      n += 1.0;
+    }
+  });
   if (n < 2.0) return 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
-  }
+  const double mean = sum / n;
+  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
+    for (const double v : some)
+      if (std::isfinite(v)) square += (v - mean) * (v - mean);
+  });
   return square / n;
 }
 

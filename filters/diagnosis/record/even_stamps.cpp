@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "filters/allan/row_times.h"
+#include "filters/diagnosis/record/record_clock.h"
 
 namespace ifog {
 namespace {
@@ -46,7 +47,7 @@ TimedRecords with_even_stamps(const std::vector<Record>& records) {
   timed.times.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
     Record& record = timed.records[r];
-    const SampleClock clock = sample_clock(record.time_s);
+    const SampleClock clock = clock_of(record);
     if (!clock.scatters() || clock.period_s > kLongestPeriod_s || !keeps_a_beat(record.time_s, clock))
       continue;
     RowTimes times(record.time_s, clock);

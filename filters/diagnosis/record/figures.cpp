@@ -8,6 +8,8 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/known_angles.h"
+#include "filters/series/mapped_file.h"
+#include "filters/series/series_view.h"
 
 namespace ifog {
 namespace {
@@ -53,9 +55,10 @@ double heading_drift(std::span<const double> error, double period_s) {
   if (n == 0.0) return kMissing;
   bias /= n;
   double angle = 0.0;
-  for (std::size_t i = aligned; i < error.size(); ++i) {
-    if (std::isfinite(error[i])) angle += (error[i] - bias) * period_s;
-  }
+  for_each_piece(error, aligned, error.size(), [&](std::span<const double> some, std::size_t) {
+    for (const double each : some)
+      if (std::isfinite(each)) angle += (each - bias) * period_s;
+  });
   return std::abs(angle);
 }
 
@@ -83,7 +86,13 @@ Present present(std::span<const double> values) {
 Samples means_over(std::span<const double> error, std::size_t count) {
   Samples means;
   means.reserve(error.size() / count);
+  constexpr std::size_t kLookedUp = std::size_t{1} << 17U;
+  std::size_t looked_up = 0;
   for (std::size_t from = 0; from + count <= error.size(); from += count) {
+    if (from >= looked_up) {
+      looked_up = std::min(from + std::max(count, kLookedUp), error.size());
+      expect_reading(error.data() + from, (looked_up - from) * sizeof(double));
+    }
     means.push_back(present(error.subspan(from, count)).mean_of(count));
   }
   return means;

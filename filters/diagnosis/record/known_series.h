@@ -3,6 +3,7 @@
 // look at what is left each by itself, and what no effect was found in is before and after the same.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -10,6 +11,8 @@
 #include <list>
 #include <span>
 #include <utility>
+
+#include "filters/series/mapped_file.h"
 
 namespace ifog {
 
@@ -27,8 +30,13 @@ inline SeriesMark mark_of(std::span<const double> series) noexcept {
   const auto take = [&](std::uint64_t& lane, double value) {
     lane = std::rotl((lane ^ std::bit_cast<std::uint64_t>(value)) * kOdd, 31);
   };
-  for (; i + 4 <= series.size(); i += 4)
-    for (std::size_t lane = 0; lane < 4; ++lane) take(mark.lanes[lane], series[i + lane]);
+  constexpr std::size_t kPiece = std::size_t{1} << 17U;
+  while (i + 4 <= series.size()) {
+    const std::size_t end = std::min(i + kPiece, series.size() / 4 * 4);
+    expect_reading(series.data() + i, (end - i) * sizeof(double));
+    for (; i < end; i += 4)
+      for (std::size_t lane = 0; lane < 4; ++lane) take(mark.lanes[lane], series[i + lane]);
+  }
   for (; i < series.size(); ++i) take(mark.lanes[i % 4], series[i]);
   return mark;
 }

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdio>
 
-#include "filters/effects/compensate_series.h"
+#include "filters/diagnosis/record/record_clock.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -20,7 +20,7 @@ constexpr double kFewestShare = 0.01;  // of all rows
 std::vector<SampleRange> parts_of(const Record& record, double& longest_s) {
   const std::size_t rows = record.time_s.size();
   std::vector<SampleRange> parts{{0, rows}};
-  const double step_s = usual_step(record.time_s);
+  const double step_s = usual_step_of(record);
   if (step_s > kLongestStep_s) return parts;
   const double least_s = std::max(kLeastHole_s, kLong * step_s * static_cast<double>(rows));
   if (record.time_s.back() - record.time_s.front() < least_s) return parts;

@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/record/record_clock.h"
 
 namespace ifog {
 namespace {
 
-const std::vector<Record>& checked(const std::vector<Record>& captures) {
+std::vector<Record> checked(std::vector<Record> captures) {
   check_columns(captures);
+  for (Record& record : captures) look_at_clock(record);
   return captures;
 }
 
@@ -22,10 +24,13 @@ PreparedChannels::PreparedChannels(const std::vector<Record>& captures, const Ti
     : timed_(with_even_stamps(checked(captures))),
       parted_(share.whole() ? part_at_long_holes(timed_.records) : not_parted(timed_.records)),
       unwrapped_(with_unwrapped_angles(parted_.records)),
-      repaired_(repair_channels(unwrapped_.records, threads)) {}
+      repaired_(repair_channels(unwrapped_.records, threads)),
+      whole_(with_differences(repaired_.records)) {
+  for (Record& record : whole_.records) look_at_clock(record);
+}
 
 std::vector<Record> PreparedChannels::of_axis(const std::vector<Record>& captures) const {
-  return with_rates_of(captures, repaired_.records);
+  return with_rates_of(captures, whole_.records);
 }
 
 std::vector<Record> PreparedChannels::as_logged(const std::vector<Record>& captures) const {
@@ -42,6 +47,7 @@ std::vector<Record> PreparedChannels::with_rates_of(const std::vector<Record>& c
     record.name = channels[i].name;
     record.time_s = channels[i].time_s;
     record.channels = channels[i].channels;
+    record.clock = channels[i].clock;
     records.push_back(std::move(record));
   }
   return records;

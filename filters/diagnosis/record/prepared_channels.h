@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the diagnoses of all axes of a sensor begin with: stamps that scatter set even, captures parted at
-// long holes, angles without their wraps, channels' faults repaired. Nothing of it is of a rate, so it is
-// done once. Each step's records show columns that the step before owns, so all of it stays together.
+// long holes, angles without their wraps, channels' faults repaired, differences of channels beside, the
+// clock looked at. Nothing of it is of a rate, so it is done once. Each step's records show columns that the
+// step before owns, so all of it stays together.
 #pragma once
 
 #include <string>
@@ -44,6 +45,7 @@ class PreparedChannels {
   PartedRecords parted_;
   DerivedRecords unwrapped_;
   RepairedRecords repaired_;
+  DerivedRecords whole_;  // of them, with differences
 };
 
 }  // namespace ifog

@@ -44,7 +44,7 @@ class PreparedRecords {
   std::vector<Record> logged_;  // none where nothing was repaired
   RepairedRecords quiet_;
   AlignedRecords aligned_;
-  DerivedRecords derived_;
+  std::vector<Record> derived_;
   WithoutTurns resting_;
   std::vector<Record> fitted_;
   WithoutRamps without_;

@@ -10,6 +10,7 @@
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
 #include "filters/linear/symmetric.h"
+#include "filters/series/mapped_file.h"
 
 namespace ifog {
 namespace {
@@ -199,10 +200,13 @@ Effect table_effect(const std::string& channel, double period, const Sums& all,
 }  // namespace
 
 double wrap_period(std::span<const double> values) {
+  constexpr std::size_t kLookedUp = std::size_t{1} << 17U;
   constexpr std::size_t kPiece = 4096;  // looked at without a branch; a ramp's counter is never below zero
   double low = 1e300;
   double high = -1e300;
   for (std::size_t at = 0; at < values.size(); at += kPiece) {
+    if (at % kLookedUp == 0)
+      expect_reading(values.data() + at, std::min(kLookedUp, values.size() - at) * sizeof(double));
     for (const double v : values.subspan(at, std::min(kPiece, values.size() - at))) {
       const bool finite = std::abs(v) < std::numeric_limits<double>::infinity();
       low = finite && v < low ? v : low;

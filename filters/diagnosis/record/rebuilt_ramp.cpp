@@ -10,6 +10,7 @@
 #include "filters/diagnosis/record/ramp_between_captures.h"
 #include "filters/diagnosis/record/ramp_comb.h"
 #include "filters/diagnosis/record/ramp_table.h"
+#include "filters/diagnosis/record/record_clock.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/effects/meaning.h"
@@ -101,7 +102,7 @@ void run_over(const std::vector<Record>& records, const RampSettings& settings, 
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
     RampTracker tracker(settings);
-    const double usual_s = usual_step(record.time_s);
+    const double usual_s = usual_step_of(record);
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
       const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
       double error = record.rate_radps[i];

@@ -17,6 +17,7 @@
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/fractional_shift.h"
+#include "filters/diagnosis/record/record_clock.h"
 #include "filters/linear/normal_equations.h"
 
 namespace ifog {
@@ -130,7 +131,7 @@ std::optional<Pair> pair_of(const Record& record) {
   double period_s = 0.0;
   Pair pair;
   try {
-    period_s = sample_clock(record.time_s).period_s;
+    period_s = clock_of(record).period_s;
     if (period_s > kSlowest_s) return std::nullopt;
     const Samples rate = on_even_grid(record, period_s, record.rate_radps);
     const std::size_t count = (rate.size() + kMost - 1) / kMost;
@@ -307,7 +308,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
 
 // By row of the record, the reference as it would have been without delay.
 Samples moved_reference(const Record& record, double delay_s) {
-  const double period_s = sample_clock(record.time_s).period_s;
+  const double period_s = clock_of(record).period_s;
   const Samples even = shifted(on_even_grid(record, period_s, record.reference_radps), delay_s / period_s);
   Samples out(record.time_s.size());
   for (std::size_t i = 0; i < out.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/record/record_clock.h"
 #include "filters/rest/rest.h"
 
 namespace ifog {
@@ -15,7 +16,7 @@ namespace {
 // Of a record without an even clock, such as a list of dwells, nothing can be said.
 std::optional<double> period_of(const Record& record) {
   try {
-    return sample_clock(record.time_s).period_s;
+    return clock_of(record).period_s;
   } catch (const std::invalid_argument&) {
     return {};
   }

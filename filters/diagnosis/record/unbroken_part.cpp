@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "filters/diagnosis/record/figures.h"
-#include "filters/effects/compensate_series.h"
+#include "filters/diagnosis/record/record_clock.h"
 
 namespace ifog {
 namespace {
@@ -44,7 +44,7 @@ bool UnbrokenPart::stroboscopic(double cycles_per_rad, std::size_t harmonic) con
 UnbrokenPart unbroken_part(const Record& record) {
   UnbrokenPart part;
   if (record.time_s.size() < kLeastSamples) return part;
-  part.sample_s = usual_step(record.time_s);
+  part.sample_s = usual_step_of(record);
   Stretch where = longest_without_hole(record, part.sample_s);
   where.end = std::min(where.end, where.begin + kMostSamples);
   if (where.end - where.begin < kLeastSamples) return part;

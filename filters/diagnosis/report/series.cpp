@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "filters/allan/confidence.h"
+#include "filters/series/mapped_file.h"
 
 namespace ifog {
 namespace {
@@ -16,6 +17,8 @@ double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::
   const double samples = grid.block_s / grid.sample_s;
   const auto from = static_cast<std::size_t>(std::lround(static_cast<double>(block) * samples));
   const auto to = static_cast<std::size_t>(std::lround(static_cast<double>(block + 1) * samples));
+  if (from < error.size())
+    expect_reading(error.data() + from, (std::min(to, error.size()) - from) * sizeof(double));
   double sum = 0.0;
   double n = 0.0;
   for (std::size_t i = from; i < std::min(to, error.size()); ++i) {

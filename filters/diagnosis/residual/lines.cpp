@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "filters/diagnosis/residual/periodogram.h"
+#include "filters/series/mapped_file.h"
 
 namespace ifog {
 namespace {
@@ -117,6 +118,7 @@ Sums demodulate(std::span<const double> error, double mean, const Several& of, s
   for (std::size_t p = 0; p < pieces; ++p) {
     const std::size_t from = p * error.size() / pieces;
     const std::size_t to = (p + 1) * error.size() / pieces;
+    expect_reading(error.data() + from, (to - from) * sizeof(double));
     Waves carrier = waves_at(of, static_cast<double>(from)), sum{Several::Zero(), Several::Zero()};
     for (std::size_t begin = from; begin < to; begin += kTable, carrier = carrier.times(on)) {
       const std::span<const double> some = error.subspan(begin, std::min(kTable, to - begin));

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 
-#include "filters/series/samples.h"
+#include "filters/series/samples_writer.h"
 
 namespace ifog {
 namespace {
@@ -24,21 +25,23 @@ constexpr double kLeastCoherence =
 Samples relative_angle(std::span<const double> rate, double mean) {
   // The rate's own noise would smear the carrier, and the phase only follows slow changes: a mean over 64
   // samples.
-  Samples angle(rate.size());
+  SamplesWriter angle(rate.size());
   double smooth = mean;
   double sum = 0.0;
   for (std::size_t i = 0; i < rate.size(); ++i) {
     if (std::isfinite(rate[i])) smooth += (rate[i] - smooth) / 64.0;
     sum += smooth / mean;
-    angle[i] = sum;
+    angle.add(sum);
   }
-  return angle;
+  return std::move(angle).done();
 }
 
 // The error against a carrier of `cycles` a step, summed over short pieces: frequencies close by then cost
 // the pieces only, for within a piece they differ by a small part of a turn.
-double best_power(std::span<const double> error, double mean, std::span<const double> steps, double cycles,
-                  double bins, double& at) {
+// steps(i): how far the carrier has come at sample i.
+template <typename Steps>
+double best_power(std::span<const double> error, double mean, const Steps& steps, double cycles, double bins,
+                  double& at) {
   constexpr std::size_t kPieces = 512;
   const std::size_t n = error.size();
   std::vector<Complex> sums(kPieces);
@@ -47,10 +50,10 @@ double best_power(std::span<const double> error, double mean, std::span<const do
     const std::size_t from = p * n / kPieces;
     const std::size_t to = (p + 1) * n / kPieces;
     if (from == to) continue;
-    middle[p] = steps[(from + to) / 2];
+    middle[p] = steps((from + to) / 2);
     for (std::size_t i = from; i < to; ++i) {
       if (!std::isfinite(error[i])) continue;
-      const double turns = cycles * steps[i];
+      const double turns = cycles * steps(i);
       sums[p] += (error[i] - mean) * std::polar(1.0, -2.0 * std::numbers::pi * (turns - std::floor(turns)));
     }
   }
@@ -86,9 +89,7 @@ std::optional<MovingLine> find_moving_line(std::span<const double> error, std::s
   if (n < 256.0 || mean_rate == 0.0) return std::nullopt;
   mean_rate /= n;
   mean_error /= n;
-  const Samples driven = relative_angle(rate, mean_rate);
-  Samples fixed(rate.size());
-  for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = static_cast<double>(i + 1);
+  Samples driven;  // where it is asked for
   std::optional<MovingLine> found;
   for (std::size_t k = 0; k < std::min<std::size_t>(peaks.size(), 6); ++k) {
     const double width = peaks[k].width_hz * period_s * static_cast<double>(error.size());
@@ -97,8 +98,11 @@ std::optional<MovingLine> find_moving_line(std::span<const double> error, std::s
     const double bins = std::max(3.0, 2.0 * width);
     double at_fixed = cycles;
     double at_driven = cycles;
-    const double still = best_power(error, mean_error, fixed, cycles, bins, at_fixed);
-    const double moving = best_power(error, mean_error, driven, cycles, bins, at_driven);
+    if (driven.empty()) driven = relative_angle(rate, mean_rate);
+    const double still = best_power(
+        error, mean_error, [](std::size_t i) { return static_cast<double>(i + 1); }, cycles, bins, at_fixed);
+    const double moving = best_power(
+        error, mean_error, [&](std::size_t i) { return driven[i]; }, cycles, bins, at_driven);
     const double gain = peaks[k].ratio * (moving / std::max(still, 1e-300) - 1.0);
     if (gain < kLeastGain || (found && gain <= found->gain)) continue;
     found = MovingLine{at_driven / period_s, 0.0, gain};

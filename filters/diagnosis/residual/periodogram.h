@@ -10,8 +10,7 @@
 namespace ifog {
 
 struct Periodogram {
-  // Up to so many samples in one transform in memory. Beyond it is made of many short ones (Bailey, "FFTs in
-  // external or hierarchical memory", J. Supercomputing 4, 1990), which take a few MiB and the rest in files.
+  // Up to so many samples in one transform in memory, beyond in many short ones (paired_transform.h).
   static constexpr std::size_t kMostInMemory = std::size_t{1} << 22U;
 
   Samples power;           // of bins 0 … length / 2, not scaled

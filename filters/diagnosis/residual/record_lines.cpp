@@ -115,7 +115,8 @@ std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
     const std::vector<SpectralLine> peaks =
         find_lines(errors[r].after, errors[r].start_s, sample_s, significance, known);
     if (peaks.empty()) continue;
-    const Samples even = on_even_grid(rates[r], sample_s, rates[r].rate_radps);
+    Samples room;
+    const std::span<const double> even = even_samples(rates[r], sample_s, rates[r].rate_radps, room);
     if (auto moving = find_moving_line(errors[r].after, even, sample_s, peaks)) return moving;
   }
   return std::nullopt;

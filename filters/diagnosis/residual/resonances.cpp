@@ -7,6 +7,8 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "filters/series/mapped_file.h"
+
 namespace ifog {
 namespace {
 
@@ -31,6 +33,7 @@ std::vector<double> averaged_power(std::span<const double> error, std::size_t pi
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   for (std::size_t from = 0; from + piece <= error.size(); from += piece / 2) {
+    expect_reading(error.data() + from, piece * sizeof(double));
     double mean = 0.0;
     double n = 0.0;
     for (std::size_t i = 0; i < piece; ++i) {

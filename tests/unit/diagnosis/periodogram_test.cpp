@@ -35,10 +35,10 @@ double power_of(const std::vector<double>& values, std::size_t length, std::size
 }
 
 TEST(Periodogram, OfManyShortTransformsIsThatOfOne) {
-  // Squares, primes' powers, one row.
-  for (const std::size_t n : {32UL, 54UL, 1250UL, 2UL * 256 * 256, 162000UL, 160001UL}) {
+  // Squares, primes' powers, one row, in files.
+  for (const std::size_t n : {32UL, 54UL, 1250UL, 2UL * 256 * 256, 162000UL, 160001UL, 3000000UL}) {
     const std::vector<double> values = noise(n);
-    const Periodogram one = periodogram(values);
+    const Periodogram one = periodogram(values, n);
     const Periodogram many = periodogram(values, 16);
     ASSERT_EQ(many.length % 2, 0U);
     ASSERT_EQ(many.power.size(), many.length / 2 + 1);

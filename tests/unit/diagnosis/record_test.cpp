@@ -16,6 +16,7 @@
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/prepared_channels.h"
 #include "filters/diagnosis/record/prepared_records.h"
+#include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/unused_channels.h"
 
 namespace ifog {
@@ -147,6 +148,35 @@ TEST(EvenGrid, PutsSamplesWhereTheirTimeIs) {
   const std::vector<double> far = {1.0, 2.0, 3.0, 4000.0};
   record.time_s = far;
   EXPECT_THROW((void)on_even_grid(record, 1.0, rate), std::invalid_argument);
+}
+
+TEST(EvenGrid, WhatIsOnItsStepsIsNotCopied) {
+  Arrays arrays(1000);
+  Samples room;
+  const std::span<const double> even = even_samples(arrays.record(), 0.125, arrays.rate, room);
+  EXPECT_EQ(even.data(), arrays.rate.data());
+  EXPECT_TRUE(room.empty());
+  arrays.time[500] += 0.1;  // nearer to the next step, which then has two
+  const std::span<const double> moved = even_samples(arrays.record(), 0.125, arrays.rate, room);
+  EXPECT_EQ(moved.data(), room.data());
+  ASSERT_EQ(room.size(), 1000U);
+  EXPECT_EQ(room[499], 499.0);
+  EXPECT_TRUE(std::isnan(room[500]));
+  EXPECT_EQ(room[501], 501.0);
+}
+
+TEST(RecordClock, IsThatOfTheTimesItWasLookedAt) {
+  const Arrays arrays(1000);
+  Record record = arrays.record();
+  look_at_clock(record);
+  ASSERT_TRUE(record.clock);
+  EXPECT_EQ(clock_of(record).period_s, 0.125);
+  EXPECT_EQ(usual_step_of(record), 0.125);
+  std::vector<double> slower;
+  for (const double t : arrays.time) slower.push_back(2.0 * t);
+  record.time_s = slower;
+  EXPECT_EQ(clock_of(record).period_s, 0.25);
+  EXPECT_EQ(usual_step_of(record), 0.25);
 }
 
 TEST(EvenError, IsRateLessReferenceLessTheRamps) {

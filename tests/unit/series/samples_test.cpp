@@ -6,13 +6,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <numeric>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "filters/series/long_series.h"
+#include "filters/series/samples_writer.h"
 #include "filters/series/shared_samples.h"
 
 namespace {
@@ -113,6 +116,34 @@ TEST(SharedSamples, AreOneUntilOneIsChanged) {
   EXPECT_EQ(third.size(), 2U);
   EXPECT_EQ(other.values(), (std::vector<double>{4.0, 5.0, 3.0}));
   EXPECT_TRUE(SharedSamples().empty());
+}
+
+TEST(SharedSamples, ThoseOfOthersAreCopiedBeforeTheyAreChanged) {
+  const std::vector<double> others{1.0, 2.0, 3.0};
+  SharedSamples one = SharedSamples::of(others), same = one;
+  EXPECT_EQ(one.data(), others.data());
+  EXPECT_TRUE(same.is(one));
+  same.own()[0] = 5.0;
+  EXPECT_FALSE(same.is(one));
+  EXPECT_EQ(same.values(), (std::vector<double>{5.0, 2.0, 3.0}));
+  EXPECT_EQ(others, (std::vector<double>{1.0, 2.0, 3.0}));
+  one.anew(1)[0] = 7.0;
+  EXPECT_EQ(one.values(), std::vector<double>{7.0});
+}
+
+TEST(SamplesWriter, WritesThemWhereverTheyAre) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{3}, kFew, kFew + 1, 2 * kFew + 12345}) {
+    std::vector<double> values(n);
+    std::iota(values.begin(), values.end(), 1.0);
+    ifog::SamplesWriter writer(n);
+    const std::size_t one_by_one = std::min<std::size_t>(n, 1000);
+    for (std::size_t i = 0; i < one_by_one; ++i) writer.add(values[i]);
+    writer.add(std::span<const double>(values).subspan(one_by_one));
+    Samples written = std::move(writer).done();
+    EXPECT_EQ(written, Samples(values)) << n;
+    written.resize(n + 5);  // what is new is zero, as in any vector
+    EXPECT_EQ(std::accumulate(written.end() - 5, written.end(), 0.0), 0.0);
+  }
 }
 
 // A size that no test before has left in the spare room.

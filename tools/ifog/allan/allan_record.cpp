@@ -28,11 +28,13 @@ constexpr unsigned kTogether = 3;
 
 // No value at all in a column's rows.
 bool is_dead(const SeriesView& values) {
-  bool dead = true;
-  for_each_piece(values, 0, values.size(), [&](std::span<const double> piece, std::size_t) {
-    dead = dead && std::all_of(piece.begin(), piece.end(), [](double value) { return std::isnan(value); });
-  });
-  return dead;
+  std::vector<double> room;
+  for (std::size_t at = 0; at < values.size(); at += kSeriesPiece) {
+    const auto piece = values.piece(at, std::min(kSeriesPiece, values.size() - at), room);
+    if (!std::all_of(piece.begin(), piece.end(), [](double value) { return std::isnan(value); }))
+      return false;
+  }
+  return true;
 }
 
 // Of a row, for who is told of it.
