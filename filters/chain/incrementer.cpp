@@ -250,6 +250,25 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
     out.utime_ns = std::max(out.utime_ns, ns_after(last_.utime_ns, 1000));
 }
 
+void Incrementer::pass_gap(const Step& now, Increment& out) noexcept {
+  out.flags |= kGapBefore;
+  for (PlausibleRate& rate : rate_) rate.forget();
+  if (!belated_)
+    for (PlausibleAngle& angle : angle_) angle.miss();
+  for (PlausibleValue& channel : frame_channel_) channel.forget();
+  counts_.gaps += now.same_gap ? 0 : 1;
+  counts_.missing += now.samples - 1;
+  counts_.untold += now.untold ? now.samples - 1 : 0;
+  clock_.restart();
+}
+
+// An angle counts from power-up: after a restart it says nothing about the turn since the last one.
+void Incrementer::begin_anew() noexcept {
+  ++counts_.restarts;
+  for (PlausibleAngle& angle : angle_) angle.forget();
+  for (OpenTurn& open : open_turn_) open.forget();
+}
+
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   const DeviceTimeline::Frame frame = frame_of(reading);
   Step now;
@@ -268,29 +287,14 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   }
   belated_ = rounds_told(now);
   out.flags = 0;
-  if (started_ && now.gap) {
-    out.flags |= kGapBefore;
-    for (PlausibleRate& rate : rate_) rate.forget();
-    if (!belated_)
-      for (PlausibleAngle& angle : angle_) angle.miss();
-    for (PlausibleValue& channel : frame_channel_) channel.forget();
-    counts_.gaps += now.same_gap ? 0 : 1;
-    counts_.missing += now.samples - 1;
-    counts_.untold += now.untold ? now.samples - 1 : 0;
-    clock_.restart();
-  }
+  if (started_ && now.gap) pass_gap(now, out);
+  if (now.restarted) begin_anew();
   const bool in_a_row = now.gap && !now.restarted && frame.clocked && !frame.counts;
   gaps_in_a_row_ = in_a_row ? gaps_in_a_row_ + 1 : 0;
   row_s_ = in_a_row ? row_s_ + now.dt_s : 0.0;
   if (now.clock_set) {
     out.flags |= kSensorClockSet;
     ++counts_.sensor_clock_sets;
-  }
-  if (now.restarted) {
-    ++counts_.restarts;
-    // An angle counts from power-up: after a restart it says nothing about the turn since the last one.
-    for (PlausibleAngle& angle : angle_) angle.forget();
-    for (OpenTurn& open : open_turn_) open.forget();
   }
   silence_begins_s_ = now.undecided && !undecided_ ? now.late_s : 0.0;
   silence_ends_ = undecided_ && !now.undecided;

@@ -72,6 +72,8 @@ class Incrementer {
   [[nodiscard]] bool rounds_told(const Step& step) const noexcept;
   [[nodiscard]] DeviceTimeline::Frame frame_of(const Reading& reading) const noexcept;
   [[nodiscard]] Step step_by_arrival(const Reading& reading) noexcept;
+  void pass_gap(const Step& step, Increment& out) noexcept;
+  void begin_anew() noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
   [[nodiscard]] double periods_of(const Step& step, bool clocked) noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
