@@ -38,15 +38,14 @@ using Series = std::vector<double>;
 
 struct Pair {
   Series rate, reference;
-  // What repeats with a table's angle. Where the table swings, the rate's change runs against the angle, and
-  // a delay would be found in what a field or a tilt does.
-  std::vector<Series> beside;
+  std::vector<Series> beside;  // what repeats with a table's angle
   double step_s = 0.0;
 };
 
 // What is left of a series is white noise once its next value is predicted from the ones before.
 class Autoregression {
  public:
+  Autoregression() = default;  // of white noise
   explicit Autoregression(const Series& series) {
     double mean = 0.0, count = 0.0;
     for (const double value : series)
@@ -269,7 +268,8 @@ Autoregression noise_beside(const std::vector<Series>& columns) {
 
 struct Delay {
   double steps = 0.0, error = 0.0;
-  double gain = 0.0;  // twice the log-likelihood, over none
+  double gain = 0.0;     // twice the log-likelihood, over none
+  Autoregression noise;  // beside it
 };
 
 std::optional<Delay> refined(const Pair& pair, double steps) {
@@ -298,12 +298,57 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
       const Fit with = least_squares(white, rows);
       const Fit without = least_squares(as_logged, rows);
       delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
+      delay.noise = noise;
+      delay.steps += step;  // what is settled to a part of a sample may be known to less
       return delay;
     }
     delay.steps += std::clamp(step, -1.0, 1.0);
     if (std::abs(delay.steps) > static_cast<double>(longest_lag(pair))) return std::nullopt;
   }
   return std::nullopt;
+}
+
+// Twice the log-likelihood that the lags tried bring by chance, and what is asked beyond it.
+double price_of(const Pair& pair) {
+  return kCertainDelay + 2.0 * std::log(2.0 * static_cast<double>(longest_lag(pair)) + 1.0);
+}
+
+// Where a table swings, the rate's change runs against its angle, so that a late reference looks like what a
+// field or a tilt does once a turn, and this like a late reference. Either, both or neither: each at the same
+// price, in innovations of the noise beside both, over the rows that all of them have. None where it is the
+// turn, or nothing.
+std::optional<Delay> delay_of(const Pair& pair) {
+  const double coarse = coarse_delay(pair);
+  const Pair bare{pair.rate, pair.reference, {}, pair.step_s};
+  const std::optional<Delay> alone = refined(bare, coarse);
+  if (pair.beside.empty()) return alone;
+  const std::optional<Delay> beside = refined(pair, coarse);
+  if (!alone || !beside) return alone;
+  const double scale = std::sqrt(variance_of(pair.reference)), price = price_of(pair);
+  const std::array hypotheses{std::pair{&bare, 0.0}, std::pair{&bare, alone->steps}, std::pair{&pair, 0.0},
+                              std::pair{&pair, beside->steps}};
+  std::array<std::vector<Series>, hypotheses.size()> white;
+  std::vector<std::uint8_t> rows(pair.rate.size(), 1);
+  for (std::size_t h = 0; h < white.size(); ++h) {
+    const auto& [of, steps] = hypotheses[h];
+    white[h] = whitened(columns_of(*of, regressors_at(of->reference, scale, steps, false)), beside->noise);
+    const std::vector<std::uint8_t> there = complete_rows(white[h]);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = rows[i] && there[i] ? 1 : 0;
+  }
+  const std::array<double, hypotheses.size()> prices{0.0, price, price, 2.0 * price};
+  std::array<double, hypotheses.size()> score{};
+  for (std::size_t h = 0; h < score.size(); ++h) {
+    const Fit fit = least_squares(white[h], rows);
+    score[h] = -static_cast<double>(fit.rows) * std::log(fit.square) - prices[h];
+  }
+  switch (std::max_element(score.begin(), score.end()) - score.begin()) {
+    case 1:
+      return alone;
+    case 3:
+      return beside;
+    default:
+      return std::nullopt;
+  }
 }
 
 // By row of the record, the reference as it would have been without delay.
@@ -336,9 +381,8 @@ AlignedRecords align_references(const std::vector<Record>& records) {
   for (Record& record : aligned.records) {
     const std::optional<Pair> pair = pair_of(record);
     if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
-    const std::optional<Delay> delay = refined(*pair, coarse_delay(*pair));
-    const double tries = 2.0 * static_cast<double>(longest_lag(*pair)) + 1.0;
-    if (!delay || delay->gain < kCertainDelay + 2.0 * std::log(tries)) continue;
+    const std::optional<Delay> delay = delay_of(*pair);
+    if (!delay || delay->gain < price_of(*pair)) continue;
     ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};
     record.reference_radps = aligned.references.emplace_back(moved_reference(record, found.delay_s));
     aligned.remarks.push_back(in_words(found, record.reference_name, records.size() > 1));

@@ -19,12 +19,12 @@ struct AlignedRecords {
   std::vector<std::string> remarks;    // one a delay, for people
 };
 
-// The delay within 60 s of greatest likelihood, beside a constant, a cubic of the reference and what repeats
-// with an angle that was logged, in innovations of an autoregressive noise. Sought by generalised
-// cross-correlation (Knapp and Carter 1976: both series whitened as the rate demands), then by Gauss and
-// Newton to a part of a sample. Applied where it gains more likelihood than the lags tried would by chance; a
-// reference that does not move has nothing to tell it by. Left as they are: records without a reference, with
-// an uneven clock, and tables of dwells.
+// The delay within 60 s of greatest likelihood, beside a constant and a cubic of the reference, in
+// innovations of an autoregressive noise. Sought by generalised cross-correlation (Knapp and Carter 1976:
+// both series whitened as the rate demands), then by Gauss and Newton to a part of a sample. Applied where it
+// gains more likelihood than the lags tried would by chance, and more than what repeats with an angle that
+// was logged; a reference that does not move has nothing to tell it by. Left as they are: records without a
+// reference, with an uneven clock, and tables of dwells.
 AlignedRecords align_references(const std::vector<Record>& records);
 
 }  // namespace ifog
