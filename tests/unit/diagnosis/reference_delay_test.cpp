@@ -126,6 +126,49 @@ TEST(ReferenceDelay, TheDiagnosisIsThatOfTheShiftedReference) {
   EXPECT_LT(diagnosis.after.at("residual_rms_radps"), 1.1e-3);
 }
 
+// A table that swings over an arc, so that the change of its rate runs against its angle. What comes once a
+// turn looks like a late reference there, and a late reference like that: each, both and neither.
+TEST(ReferenceDelay, IsToldFromWhatRepeatsWithTheTablesAngle) {
+  for (const double second : {0.0, 0.4}) {  // of the first swing: another one beside it
+    const auto angle = [&](double t) { return 1.1 * (std::sin(0.057 * t) + second * std::sin(0.15 * t)); };
+    const auto rate = [&](double t) {
+      return 1.1 * (0.057 * std::cos(0.057 * t) + second * 0.15 * std::cos(0.15 * t));
+    };
+    for (const double delay_s : {0.0, 0.02, 0.2}) {
+      for (const double turn : {0.0, 3e-6}) {
+        std::mt19937_64 random(11);
+        std::normal_distribution<double> normal;
+        std::vector<double> time, measured, reference, table;
+        for (std::size_t i = 0; i < 9000; ++i) {
+          const double t = 0.2 * static_cast<double>(i);
+          time.push_back(t);
+          table.push_back(angle(t));
+          measured.push_back(rate(t) + turn * std::cos(angle(t) - 1.0) + 1e-6 * normal(random));
+          reference.push_back(rate(t - delay_s));
+        }
+        Record record;
+        record.name = "table";
+        record.time_s = time;
+        record.rate_radps = measured;
+        record.reference_radps = reference;
+        record.channels.push_back({"table_rad", table});
+        record.channels.back().period = 2.0 * M_PI;
+        const AlignedRecords aligned = align_references({record});
+        ASSERT_EQ(aligned.delays.size(), delay_s > 0.0 ? 1U : 0U) << second << ' ' << delay_s << ' ' << turn;
+        if (aligned.delays.empty()) continue;
+        const ReferenceDelay& found = aligned.delays[0];
+        EXPECT_NEAR(found.delay_s, delay_s, 5.0 * found.std_error_s) << second << ' ' << turn;
+        // Where there is no turn, as sure as can be: the noise over the energy of the rate's change.
+        double energy = 0.0;
+        for (const double t : time) energy += std::pow((rate(t + 0.1) - rate(t - 0.1)) / 0.2, 2);
+        if (turn == 0.0) {
+          EXPECT_LT(found.std_error_s, 1.5e-6 / std::sqrt(energy)) << second;
+        }
+      }
+    }
+  }
+}
+
 TEST(FractionalShift, MovesASineAsTheClosedFormDoes) {
   std::vector<double> sine;
   for (int k = 0; k < 400; ++k) sine.push_back(std::sin(0.9 * k));
