@@ -238,10 +238,10 @@ void unmap_file(const void* at, std::size_t bytes) noexcept {
 }
 
 void expect_reading(const void* at, std::size_t bytes) noexcept {
-  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
-  const auto begin = reinterpret_cast<std::uintptr_t>(at) / page * page;
-  const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(at) + bytes;
-  ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_POPULATE_READ);
+  const std::size_t into =
+      reinterpret_cast<std::uintptr_t>(at) % static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  void* const page = static_cast<char*>(const_cast<void*>(at)) - into;
+  ::madvise(page, bytes + into, MADV_POPULATE_READ);
 }
 
 }  // namespace ifog

@@ -37,13 +37,12 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/console/wrong_usage.h"
+#include "tools/ifog/denoise/denoise_picture.h"
 #include "tools/ifog/denoise/denoise_settings.h"
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/model_trial.h"
 #include "tools/ifog/denoise/offline_chain.h"
 #include "tools/report/picture.h"
-#include "tools/report/text.h"
-#include "tools/report/time_axis.h"
 
 namespace ifog::tools {
 namespace {
@@ -98,43 +97,6 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
             {"steady_gain", filter.steady_gain},
             {"seed", filter.seed}}},
           {"axes", axes}};
-}
-
-std::vector<double> in_degrees_per_hour(const Samples& rate_radps) {
-  return report::scaled({rate_radps.begin(), rate_radps.end()}, 1.0 / kDegreePerHour);
-}
-
-// A row an axis, one more where a model corrects it, with one time axis below all of them.
-void draw(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
-          const OfflineResult& result) {
-  std::vector<double> time(columns.time_s.begin(), columns.time_s.end());
-  for (double& t : time) t = origin.told(t);
-  const report::TimeAxis axis_of_time(time.front(), time.back());
-  time = axis_of_time(std::move(time));
-  std::vector<report::PictureRow> rows;
-  const auto row = [&](const std::string& title, const char* noisy, const Samples& values,
-                       const DenoisedAxis& axis, bool last) {
-    // The same range for raw and compensated, so that they compare at a glance.
-    report::Bounds range;
-    for (const double value : axis.raw) range.take(value / kDegreePerHour, false);
-    for (const double value : axis.compensated) range.take(value / kDegreePerHour, false);
-    report::ChartAxis rate{"rate (°/h)", false, {}, {}};
-    if (range.low < range.high) rate.low = range.low, rate.high = range.high;
-    report::Chart chart(title, "The rate before and after the filter, over time.", axis_of_time.axis(last),
-                        rate);
-    chart.line_in_time(report::Role::kRaw, noisy, time, in_degrees_per_hour(values));
-    chart.line_in_time(report::Role::kAfter, "denoised", time, in_degrees_per_hour(axis.denoised));
-    rows.push_back({last ? 320.0 : 270.0, {{std::move(chart)}}});
-  };
-  const bool corrected = !result.model.empty();
-  for (std::size_t a = 0; a < result.axes.size(); ++a) {
-    const bool last = a + 1 == result.axes.size();
-    const DenoisedAxis& axis = columns.axes[a];
-    const std::string name = result.axes[a].empty() ? "" : "axis " + result.axes[a];
-    row(name, "raw", axis.raw, axis, last && !corrected);
-    if (corrected) row("", "compensated", axis.compensated, axis, last);
-  }
-  report::write_picture(path, report::picture_svg("Rate, denoised by " + result.filter.rule, rows));
 }
 
 // What was not usable, in the words of every command.
@@ -270,7 +232,8 @@ void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTa
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
 }
 
-void run(DenoiseOptions options) {
+// What is read and written, before any of it is.
+void name_files(DenoiseOptions& options) {
   if (!options.sensor.empty() && options.config.empty())
     throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
                                      ", expected --config with it, whose sensors have names");
@@ -281,6 +244,10 @@ void run(DenoiseOptions options) {
   will_write("--output", options.output);
   will_write("--json", options.json, kJsonEndings);
   will_write("--plot", options.picture);
+}
+
+void run(DenoiseOptions options) {
+  name_files(options);
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
@@ -335,7 +302,7 @@ void run(DenoiseOptions options) {
   tell(options, rows, result);
   trial.tell(options.capture);
   if (!options.json.empty()) write_json(options.json, summary(options, rows, trial, result));
-  if (!options.picture.empty()) draw(options.picture, rows.columns(), rows.origin(), result);
+  if (!options.picture.empty()) draw_denoised(options.picture, rows.columns(), rows.origin(), result);
 }
 
 }  // namespace

@@ -91,6 +91,39 @@ void tell_innovations(const Watched& watched) {
   if (!watched.noticed.empty()) say("  noticed: %s\n", printable(watched.noticed, kLongestMessage).c_str());
 }
 
+struct Adoption {
+  Proposal proposal;
+  Model model;
+  ModelInUse before;
+  std::unique_ptr<ModelExchange> exchange;
+};
+
+// The waiting proposal into use, with the state in hand.
+Adoption take_into_use(const Field& field, const SensorConfig& sensor,
+                       std::optional<std::uint64_t> recorded_before) {
+  const StateInHand hand(field.state());
+  Adoption now;
+  now.before = model_at(field.model_path(sensor));
+  now.proposal = waiting(field.state(), sensor.name, now.before.name);
+  now.model = proposed_model(field.state(), now.proposal);
+  require_that_it_fits(field, sensor, now.model);
+  now.exchange = std::make_unique<ModelExchange>(field, sensor, now.before.name);
+  History history(field.state(), sensor.name);
+  history.forget_what_never_was(now.before.name);
+  // First what undoes it, then it, and the proposal goes last: wherever this ends, nothing is lost.
+  history.add({"adopt", utc_now(), now.proposal.model, now.before.name, now.proposal.why, now.proposal.gain,
+               "", recorded_before},
+              now.before.model);
+  try {
+    now.exchange->exchange(now.model, now.before.model);
+  } catch (...) {
+    history.take_back();
+    throw;
+  }
+  remove_proposal(field.state(), sensor.name);
+  return now;
+}
+
 void adopt(const AdoptArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
@@ -98,46 +131,23 @@ void adopt(const AdoptArguments& arguments) {
   catch_interrupts();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
-  std::unique_ptr<ModelExchange> exchange;
-  Proposal proposal;
-  Model model;
-  ModelInUse before;
   const std::optional<std::uint64_t> recorded_before = last_recording(sensor);
-  {
-    const StateInHand hand(field.state());
-    before = model_at(field.model_path(sensor));
-    proposal = waiting(field.state(), sensor.name, before.name);
-    model = proposed_model(field.state(), proposal);
-    require_that_it_fits(field, sensor, model);
-    exchange = std::make_unique<ModelExchange>(field, sensor, before.name);
-    History history(field.state(), sensor.name);
-    history.forget_what_never_was(before.name);
-    // First what undoes it, then it, and the proposal goes last: wherever this ends, nothing is lost.
-    history.add(
-        {"adopt", utc_now(), proposal.model, before.name, proposal.why, proposal.gain, "", recorded_before},
-        before.model);
-    try {
-      exchange->exchange(model, before.model);
-    } catch (...) {
-      history.take_back();
-      throw;
-    }
-    remove_proposal(field.state(), sensor.name);
-  }
+  const Adoption now = take_into_use(field, sensor, recorded_before);
+  const Proposal& proposal = now.proposal;
   say("%s: model %s in place of %s: %s\n", sensor.name.c_str(), proposal.model.identity.c_str(),
-      or_none(before.name.identity), printable(proposal.why, kLongestMessage).c_str());
+      or_none(now.before.name.identity), printable(proposal.why, kLongestMessage).c_str());
   const auto unwatched = [&](const std::string& why) {
     if (!arguments.json.empty()) write_json(arguments.json, as_json(proposal, {}, why));
   };
-  if (!exchange->daemon_runs()) {
+  if (!now.exchange->daemon_runs()) {
     const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
     say("  %s\n", why.c_str());
     return unwatched(why);
   }
   say("  the daemon has taken it; promised: %s\n", gain_text(proposal.gain).c_str());
   if (arguments.watch_s <= 0.0) return unwatched("nothing was watched");
-  const Watched watched = watch(exchange->live(), field, sensor, before.model.value_or(Model{}), model,
-                                recorded_before.value_or(0), arguments.watch_s);
+  const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
+                                now.model, recorded_before.value_or(0), arguments.watch_s);
   tell_innovations(watched);
   std::string text = outcome(watched);
   if (!watched.whole)
