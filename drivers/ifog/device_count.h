@@ -90,6 +90,7 @@ class DeviceCount {
     refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
     follow_doubt(frame, step);
     late_.follow(step.late_s, elapsed, held_again(frame));
+    if (frame.reopened) late_.begin_again();
     last_ = frame;
   }
   void keep_time(std::int64_t time_ns) noexcept { last_.time_ns = time_ns; }  // the frame's just taken
@@ -148,8 +149,8 @@ class DeviceCount {
     const std::uint64_t back = modulus_ - difference;
     if (difference <= 1 || back >= kMostBack) return false;
     // Nothing is late behind a silence, and opened again behind a pause it may be a device that began anew.
-    const bool anew = frame.reopened && !(frame.quiet_s >= 0.0 && frame.quiet_s < kAgain_s);
-    if (anew || frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_)) return false;
+    if (opened_behind_pause(frame) || frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
+      return false;
     const bool timed = frame.elapsed_s >= 0.0;
     const double elapsed_s = frame.elapsed_s + late_.now_s();
     const double forward_s = static_cast<double>(difference) * nominal_s_;
@@ -165,6 +166,9 @@ class DeviceCount {
     if (clocked(frame) && passed_s > 0.0 && timed && !ifog::restarted(passed_s, elapsed_s)) return false;
     if (!timed) return had == Had::same || back <= kBackUntimed;
     return elapsed_s < std::max(0.5, had == Had::same ? 1.0 - prompt_s() / forward_s : 0.0) * forward_s;
+  }
+  [[nodiscard]] static bool opened_behind_pause(const Frame& frame) noexcept {
+    return frame.reopened && !(frame.quiet_s >= 0.0 && frame.quiet_s < kAgain_s);
   }
   // What clock and counter of one device are apart by, at most, over such a time.
   [[nodiscard]] double apart_s(double time_s) const noexcept {
@@ -319,8 +323,9 @@ class DeviceCount {
     const double period = period_.by_arrival_s();
     const bool known = frame.elapsed_s >= 0.0;
     const double elapsed_s = frame.elapsed_s + late_.now_s();
-    // The same count again is a round on, or nothing.
-    const bool again = difference == 0 && (frame.digest == last_.digest || frame.quiet_s <= kLate_s);
+    // The same count again is a round on, or nothing; behind an opening nothing comes again.
+    const bool again = difference == 0 && !opened_behind_pause(frame) &&
+                       (frame.digest == last_.digest || frame.quiet_s <= kLate_s);
     step.samples = difference > 0 || again ? difference : modulus_;
     const double counted_s = static_cast<double>(step.samples) * period;
     step.late_s = known ? std::max(0.0, elapsed_s - counted_s) : late_.now_s();
@@ -334,7 +339,7 @@ class DeviceCount {
       const double quiet_s = at_once ? frame.quiet_s : doubt_.quiet_s;
       const double spare_s = std::min(step.late_s, quiet_s);
       const bool goes_on = at_once ? difference == 1 && !unseen(frame) : !doubt_.counts;
-      const double over_s = at_once ? elapsed_s : std::max(elapsed_s, doubt_.since_s);
+      const double over_s = at_once ? frame.elapsed_s : std::max(elapsed_s, doubt_.since_s);
       const double rounds = paused(goes_on, spare_s, over_s) ? 0.0 : rounds_in(spare_s, over_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
       step.same_gap = !at_once && rounds > 0.0 && doubt_.gap;

@@ -38,6 +38,9 @@ class Lateness {
     now_s_ = late_s;
   }
   void forget() noexcept { now_s_ = 0.0; }
+  // Another time to show what becomes of it: of a cable that is pulled again and again no line is left alone
+  // for long enough, and what was lost is to be told all the same.
+  void begin_again() noexcept { episode_s_ = 0.0; }
 
  private:
   static constexpr double kShrinks_s = 0.03;  // by more than this it becomes less

@@ -312,10 +312,12 @@ class Box(Faults, Again, Loop):
             # The daemon has the line again when the kernel counts its open file.
             self.machine.run("for i in $(seq 300); do ls -l /proc/$(pidof ifogd)/fd | grep -q /dev/ttyUSB0 && break; sleep 0.1; done")
             unheard += self.lines["usb"].goes_on(200, self.hertz)
+        # Left alone, for as long as it takes to see that nothing drains.
+        unheard += self.lines["usb"].goes_on(1000, self.hertz)
         time.sleep(1)
         got = counts()["usb"]
         missing = got.pop("missing", 0)
-        wrong = complaints(200 * (self.pulls + 1), got)
+        wrong = complaints(200 * (self.pulls + 1) + 1000, got)
         if wrong or missing != unheard:
             raise Failure(f"{wrong or 'every sample sent'}; {missing} told as missing of {unheard} that were measured while it was pulled")
         self.machine.run("kill $(cat /tmp/returns.pid)")

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// A cable that is pulled again and again, as at a loose connector: the gyro measures on, and every sample
+// that nobody got is to be counted, whatever the counter shows of it and however promptly the line delivers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "drivers/ifog/device_timeline.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::uint64_t kModulus = 128;
+constexpr double kRate_hz = 200.0;
+
+struct Cable {
+  double jitter_s = 0.0;  // between sampling and arrival, evenly from 0
+  double untimed = 0.0;   // share of openings whose first frame had waited, so that its arrival is not known
+  std::int64_t begins = 0;  // the first frame's number
+};
+
+class Gyro {
+ public:
+  Gyro(const Cable& cable, std::uint64_t seed) : cable_(cable), random_(seed), sample_(cable.begins) {}
+
+  // Frames at once behind each other; opened: the first is behind an opening.
+  void send(int frames, bool opened) {
+    for (int i = 0; i < frames; ++i, ++sample_) {
+      const double value = 0.1 * std::sin(0.0157 * static_cast<double>(sample_)), at_s = arrival_s();
+      DeviceTimeline::Frame frame;
+      frame.counts = true;
+      frame.sequence = static_cast<std::uint32_t>(sample_ % static_cast<std::int64_t>(kModulus));
+      frame.reopened = opened && i == 0;
+      const bool untimed = frame.reopened && even_(random_) < cable_.untimed;
+      frame.arrival_ns = untimed ? 0 : static_cast<std::int64_t>(at_s * 1e9);
+      frame.values = {&value, 1};
+      if (sample_ == cable_.begins) {
+        timeline_.first(frame);
+        continue;
+      }
+      const DeviceTimeline::Step step = timeline_.next(frame);
+      ASSERT_FALSE(step.out_of_turn || step.restarted) << "sample " << sample_;
+      told_ += static_cast<std::int64_t>(step.samples) - 1;
+    }
+  }
+  void unheard(std::int64_t samples) {
+    sample_ += samples;
+    lost_ += samples;
+  }
+  [[nodiscard]] std::int64_t told() const { return told_; }
+  [[nodiscard]] std::int64_t lost() const { return lost_; }
+  [[nodiscard]] std::int64_t between(std::int64_t least, std::int64_t most) {
+    return std::uniform_int_distribution<std::int64_t>(least, most)(random_);
+  }
+
+ private:
+  double arrival_s() {
+    const double due_s = 1.0 + static_cast<double>(sample_) / kRate_hz + cable_.jitter_s * even_(random_);
+    return latest_s_ = std::max(due_s, latest_s_ + 1e-6);
+  }
+
+  Cable cable_;
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> even_{0.0, 1.0};
+  std::int64_t sample_, told_ = 0, lost_ = 0;
+  double latest_s_ = 0.0;
+  DeviceTimeline timeline_{kModulus, kRate_hz};
+};
+
+class Pulled : public testing::TestWithParam<Cable> {};
+
+TEST_P(Pulled, AgainAndAgainIsCountedWhole) {
+  Gyro gyro(GetParam(), 5);
+  gyro.send(200, false);
+  for (int pull = 0; pull < 100; ++pull) {
+    // Of a third just so many that the counter shows none of them.
+    gyro.unheard(pull % 3 == 0 ? 128 * gyro.between(1, 5) - 1 : gyro.between(200, 600));
+    gyro.send(200, true);
+  }
+  gyro.send(2000, false);
+  EXPECT_EQ(gyro.told(), gyro.lost());
+}
+
+INSTANTIATE_TEST_SUITE_P(Lines, Pulled,
+                         testing::Values(Cable{0.001, 0.0, 0}, Cable{0.001, 0.3, 17}, Cable{0.005, 0.3, 0},
+                                         Cable{0.02, 0.0, 90}, Cable{0.02, 0.3, 1000}, Cable{0.05, 0.3, 0},
+                                         Cable{0.08, 0.0, 3}),
+                         [](const auto& of) {
+                           const Cable& cable = of.param;
+                           return std::to_string(static_cast<int>(cable.jitter_s * 1e3)) + "ms" +
+                                  (cable.untimed > 0.0 ? "Untimed" : "");
+                         });
+
+}  // namespace
+}  // namespace ifog
