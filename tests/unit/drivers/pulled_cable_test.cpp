@@ -14,10 +14,9 @@
 namespace ifog {
 namespace {
 
-constexpr std::uint64_t kModulus = 128;
-constexpr double kRate_hz = 200.0;
-
 struct Cable {
+  std::int64_t modulus = 128;  // of the gyro's counter
+  double rate_hz = 200.0;
   double jitter_s = 0.0;  // between sampling and arrival, evenly from 0
   double untimed = 0.0;   // share of openings whose first frame had waited, so that its arrival is not known
   std::int64_t begins = 0;  // the first frame's number
@@ -25,7 +24,11 @@ struct Cable {
 
 class Gyro {
  public:
-  Gyro(const Cable& cable, std::uint64_t seed) : cable_(cable), random_(seed), sample_(cable.begins) {}
+  Gyro(const Cable& cable, std::uint64_t seed)
+      : cable_(cable),
+        random_(seed),
+        sample_(cable.begins),
+        timeline_(static_cast<std::uint64_t>(cable.modulus), cable.rate_hz) {}
 
   // Frames at once behind each other; opened: the first is behind an opening.
   void send(int frames, bool opened) {
@@ -33,7 +36,7 @@ class Gyro {
       const double value = 0.1 * std::sin(0.0157 * static_cast<double>(sample_)), at_s = arrival_s();
       DeviceTimeline::Frame frame;
       frame.counts = true;
-      frame.sequence = static_cast<std::uint32_t>(sample_ % static_cast<std::int64_t>(kModulus));
+      frame.sequence = static_cast<std::uint32_t>(sample_ % cable_.modulus);
       frame.reopened = opened && i == 0;
       const bool untimed = frame.reopened && even_(random_) < cable_.untimed;
       frame.arrival_ns = untimed ? 0 : static_cast<std::int64_t>(at_s * 1e9);
@@ -59,7 +62,8 @@ class Gyro {
 
  private:
   double arrival_s() {
-    const double due_s = 1.0 + static_cast<double>(sample_) / kRate_hz + cable_.jitter_s * even_(random_);
+    const double due_s =
+        1.0 + static_cast<double>(sample_) / cable_.rate_hz + cable_.jitter_s * even_(random_);
     return latest_s_ = std::max(due_s, latest_s_ + 1e-6);
   }
 
@@ -68,30 +72,37 @@ class Gyro {
   std::uniform_real_distribution<double> even_{0.0, 1.0};
   std::int64_t sample_, told_ = 0, lost_ = 0;
   double latest_s_ = 0.0;
-  DeviceTimeline timeline_{kModulus, kRate_hz};
+  DeviceTimeline timeline_;
 };
 
 class Pulled : public testing::TestWithParam<Cable> {};
 
 TEST_P(Pulled, AgainAndAgainIsCountedWhole) {
-  Gyro gyro(GetParam(), 5);
-  gyro.send(200, false);
+  const Cable& cable = GetParam();
+  Gyro gyro(cable, 5);
+  const int second = static_cast<int>(cable.rate_hz);
+  gyro.send(second, false);
   for (int pull = 0; pull < 100; ++pull) {
     // Of a third just so many that the counter shows none of them.
-    gyro.unheard(pull % 3 == 0 ? 128 * gyro.between(1, 5) - 1 : gyro.between(200, 600));
-    gyro.send(200, true);
+    const std::int64_t lost = gyro.between(second, 3 * second), round = cable.modulus;
+    gyro.unheard(pull % 3 == 0 ? (lost / round + 1) * round - 1 : lost);
+    gyro.send(second, true);
   }
-  gyro.send(2000, false);
+  gyro.send(10 * second, false);
   EXPECT_EQ(gyro.told(), gyro.lost());
 }
 
-INSTANTIATE_TEST_SUITE_P(Lines, Pulled,
-                         testing::Values(Cable{0.001, 0.0, 0}, Cable{0.001, 0.3, 17}, Cable{0.005, 0.3, 0},
-                                         Cable{0.02, 0.0, 90}, Cable{0.02, 0.3, 1000}, Cable{0.05, 0.3, 0},
-                                         Cable{0.08, 0.0, 3}),
+INSTANTIATE_TEST_SUITE_P(Cables, Pulled,
+                         testing::Values(Cable{128, 200.0, 0.001, 0.0, 0}, Cable{128, 200.0, 0.001, 0.3, 17},
+                                         Cable{128, 200.0, 0.005, 0.3, 0}, Cable{128, 200.0, 0.02, 0.0, 90},
+                                         Cable{128, 200.0, 0.02, 0.3, 1000}, Cable{128, 200.0, 0.05, 0.3, 0},
+                                         Cable{128, 1000.0, 0.002, 0.3, 5}, Cable{16, 50.0, 0.01, 0.3, 9},
+                                         Cable{256, 50.0, 0.01, 0.0, 0}, Cable{65536, 1000.0, 0.01, 0.3, 0}),
                          [](const auto& of) {
                            const Cable& cable = of.param;
-                           return std::to_string(static_cast<int>(cable.jitter_s * 1e3)) + "ms" +
+                           return "Of" + std::to_string(cable.modulus) + "At" +
+                                  std::to_string(static_cast<int>(cable.rate_hz)) + "HzWithin" +
+                                  std::to_string(static_cast<int>(cable.jitter_s * 1e3)) + "ms" +
                                   (cable.untimed > 0.0 ? "Untimed" : "");
                          });
 
