@@ -21,6 +21,7 @@
 #include "drivers/ifog/counted_step.h"
 #include "drivers/ifog/lateness.h"
 #include "drivers/ifog/measured_period.h"
+#include "drivers/ifog/portions.h"
 #include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
 
@@ -87,6 +88,7 @@ class DeviceCount {
     if (step.by_clock) each_by_clock_s_ = step.dt_s / static_cast<double>(counted);
     if (step.by_clock && !step.gap) period_.ticked(static_cast<double>(samples), step.dt_s);
     if (elapsed >= 0.0) prompt_.came(elapsed, step.dt_s);
+    if (samples == 1 && !step.gap && !unseen(frame)) portions_.came(elapsed, nominal_s_);
     refused_ = clocked(frame) && !step.by_clock && passed_s(frame) != 0.0;
     follow_doubt(frame, step);
     late_.follow(step.late_s, elapsed, held_again(frame));
@@ -138,6 +140,7 @@ class DeviceCount {
     took_by_clock_s_ = each_by_clock_s_ = 0.0;
     period_.forget();
     prompt_.forget();
+    portions_ = {};
     refused_ = false;
     doubt_ = {};
     last_ = frame;
@@ -152,11 +155,13 @@ class DeviceCount {
     if (opened_behind_pause(frame) || frame.quiet_s > std::max(kLongSilence_s, 2.0 * nominal_s_))
       return false;
     const bool timed = frame.elapsed_s >= 0.0;
-    const double elapsed_s = frame.elapsed_s + late_.now_s();
+    const Had had = recent_.at_place(place_ - back, frame.digest);
+    // One that is missing just there is late whatever those before it were.
+    const bool next_to_it = had == Had::no && back <= kBackUntimed;
+    const double elapsed_s = frame.elapsed_s + (next_to_it ? 0.0 : late_.now_s());
     const double forward_s = static_cast<double>(difference) * nominal_s_;
     const double passed_s = clocked(frame) ? this->passed_s(frame) : 0.0;
     if (passed_s > 0.5 * forward_s && (!timed || !ifog::restarted(passed_s, elapsed_s))) return false;
-    const Had had = recent_.at_place(place_ - back, frame.digest);
     if (had == Had::same && recent_.tells_values_apart()) return true;
     const double back_s = static_cast<double>(back) * nominal_s_;
     const bool clock_fits = std::abs(passed_s + back_s) <= apart_s(back_s) + frame.grain_s;
@@ -306,7 +311,7 @@ class DeviceCount {
   // Whole rounds of the counter in a time that it does not account for. None that the rate may be wrong by.
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
     const double slack_s = kPrompt_s + period_.doubt() * elapsed_s;
-    if (spare_s <= slack_s) return 0.0;
+    if (spare_s <= slack_s || portions_.is_usual(spare_s)) return 0.0;
     return whole_rounds(spare_s, static_cast<double>(modulus_) * period_.by_arrival_s(), slack_s,
                         std::max(kAdapter_s, scatter_s_));
   }
@@ -397,6 +402,7 @@ class DeviceCount {
   MeasuredPeriod period_;
   double scatter_s_ = 1e-3;
   PromptArrivals prompt_;
+  Portions portions_;
   bool refused_ = false;          // the clock's step to the last frame was not followed
   double took_by_clock_s_ = 0.0;  // the last sample of which the clock said it; 0: none yet
   double each_by_clock_s_ = 0.0;  // each that it counted
