@@ -24,6 +24,7 @@
 #include "drivers/ifog/portions.h"
 #include "drivers/ifog/prompt_arrivals.h"
 #include "drivers/ifog/recent_frames.h"
+#include "drivers/ifog/round_doubt.h"
 
 namespace ifog {
 
@@ -103,9 +104,7 @@ class DeviceCount {
   static constexpr double kLate_s = 1.0;
   static constexpr double kMoved_s = 0.5 * kLate_s;  // what has come to stand, and was more
   static constexpr double kLongSilence_s = 2.0;
-  static constexpr double kDrains = 0.02;  // of the time: what was held up drains by more
-  static constexpr double kPaces = 200.0;  // so many times what times scatter by tell that
-  static constexpr int kPaceFrames = 8;
+  static constexpr double kPaces = 200.0;   // so many times what times scatter by tell that
   static constexpr double kNoChance = 5.0;  // periods: half of the rounds that are lost to one of the pauses
   static constexpr double kAgain_s = 0.25;  // a silence of more is another one; no device begins anew in less
   static constexpr double kRateDoubt = 0.05;  // of the rate that the configuration says
@@ -142,7 +141,7 @@ class DeviceCount {
     prompt_.forget();
     portions_ = {};
     refused_ = false;
-    doubt_ = {};
+    doubt_.forget();
     last_ = frame;
   }
   // Came again, or after one that follows it: the count goes back by little, also of a round, and on from
@@ -287,26 +286,13 @@ class DeviceCount {
   [[nodiscard]] double paced_s() const noexcept {
     return std::clamp(kPaces * scatter_s_, 0.09, Lateness::kStands_s);
   }
-  [[nodiscard]] bool at_pace(const Timed& frame, double late_s) const noexcept {
-    return doubt_.frames >= kPaceFrames && std::abs(late_s - doubt_.late_s) <= kDrains * paced_s() &&
-           doubt_.paced_s + frame.elapsed_s >= paced_s();
-  }
   void follow_doubt(const Frame& frame, const Step& step) noexcept {
     const std::uint64_t difference = this->difference(frame.sequence);
-    if (step.late_s == 0.0 || (late_.now_s() == 0.0 && !doubtful(frame, difference))) {
-      doubt_ = {};
-      return;
-    }
-    const double took_s = static_cast<double>(difference) * nominal_s_;
-    if (doubtful(frame, difference)) doubt_.rounds = true;
-    doubt_.since_s += std::max(0.0, frame.quiet_s);
-    if (difference != 1 || unseen(frame)) doubt_.counts = true;
-    if (frame.quiet_s > took_s + kPrompt_s) doubt_.quiet_s += frame.quiet_s - took_s;
-    doubt_.gap = doubt_.gap || step.gap;
-    const bool drains = std::abs(step.late_s - doubt_.late_s) > kDrains * paced_s();
-    if (drains) doubt_.late_s = step.late_s;
-    doubt_.frames = drains ? 0 : doubt_.frames + 1;
-    doubt_.paced_s = drains ? 0.0 : doubt_.paced_s + std::max(0.0, frame.quiet_s);
+    const bool here = doubtful(frame, difference);
+    if (step.late_s == 0.0 || (late_.now_s() == 0.0 && !here)) return doubt_.forget();
+    doubt_.follow({step.late_s, frame.quiet_s, static_cast<double>(difference) * nominal_s_, here,
+                   difference != 1 || unseen(frame), step.gap},
+                  paced_s());
   }
   // Whole rounds of the counter in a time that it does not account for. None that the rate may be wrong by.
   [[nodiscard]] double rounds_in(double spare_s, double elapsed_s) const noexcept {
@@ -338,16 +324,17 @@ class DeviceCount {
                          (late_.now_s() == 0.0 && doubtful(frame, difference) &&
                           (frame.reopened || !unseen(frame)) && step.late_s <= kLate_s);
     const bool came_to_stand = late_.stands(step.late_s, frame.elapsed_s, held_again(frame));
-    const bool told = doubt_.rounds && (came_to_stand || at_pace(frame, step.late_s));
+    const bool told =
+        doubt_.rounds() && (came_to_stand || doubt_.at_pace(step.late_s, frame.elapsed_s, paced_s()));
     if (known && elapsed_s > 0.0 && (at_once || told)) {
       // While a frame came again and again no round was lost: the device stood still.
-      const double quiet_s = at_once ? frame.quiet_s : doubt_.quiet_s;
+      const double quiet_s = at_once ? frame.quiet_s : doubt_.quiet_s();
       const double spare_s = std::min(step.late_s, quiet_s);
-      const bool goes_on = at_once ? difference == 1 && !unseen(frame) : !doubt_.counts;
-      const double over_s = at_once ? frame.elapsed_s : std::max(elapsed_s, doubt_.since_s);
+      const bool goes_on = at_once ? difference == 1 && !unseen(frame) : !doubt_.counts();
+      const double over_s = at_once ? frame.elapsed_s : std::max(elapsed_s, doubt_.since_s());
       const double rounds = paused(goes_on, spare_s, over_s) ? 0.0 : rounds_in(spare_s, over_s);
       step.samples += static_cast<std::uint64_t>(rounds) * modulus_;
-      step.same_gap = !at_once && rounds > 0.0 && doubt_.gap;
+      step.same_gap = !at_once && rounds > 0.0 && doubt_.gap();
       if (rounds > 0.0) step.late_s = 0.0;
     }
     if (came_to_stand) {
@@ -377,7 +364,8 @@ class DeviceCount {
       step.restarted = true;
       step.late_s = 0.0;
     }
-    step.undecided = step.late_s > 0.0 && (late_.now_s() > 0.0 ? doubt_.rounds : doubtful(frame, difference));
+    step.undecided =
+        step.late_s > 0.0 && (late_.now_s() > 0.0 ? doubt_.rounds() : doubtful(frame, difference));
     step.dt_s = static_cast<double>(step.samples) * nominal_s_;
   }
 
@@ -389,15 +377,7 @@ class DeviceCount {
   std::uint64_t place_ = kFirstPlace;                                    // of the last one
   RecentFrames recent_;
   Arrivals arrivals_;
-  // Of frames that are late where rounds may have been lost.
-  struct Doubt {
-    // gap: one has been told; counts: by the count, too, some are missing
-    bool rounds = false, gap = false, counts = false;
-    double quiet_s = 0.0, since_s = 0.0;  // in all, beside what was counted; since they began
-    double late_s = 0.0, paced_s = 0.0;   // since it last became less or more; so long
-    int frames = 0;
-  };
-  Doubt doubt_;
+  RoundDoubt doubt_;
   Lateness late_;  // of the last frame, undecided
   MeasuredPeriod period_;
   double scatter_s_ = 1e-3;
