@@ -60,6 +60,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   }
   out.innovation_radps = m.innovation;
   published_.passed_over = false;
+  published_.returned = {};
 
   if (follow_manoeuvres_) {
     follow(m, out);
@@ -322,7 +323,8 @@ void Engine::publish_rest() noexcept {
     const Wider wider =
         change_.wider(trackers_, a, lag, noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
     published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
-    published_.variance[a] += noise_[a].rounding() + noise_[a].vibration() + change_.unseen(a);
+    published_.variance[a] += noise_[a].rounding(published_.rate[a], published_.variance[a]) +
+                              noise_[a].vibration() + change_.unseen(a);
   }
 }
 
@@ -335,7 +337,8 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       const double dt_s = m.covered_s(a);
       const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);
       rate += paid.rate();
-      variance += paid.rate() * paid.rate();
+      // Of a lag that lasts the payments are the return: the rate is off by the greater of the two.
+      variance += std::max(0.0, paid.rate() * paid.rate() - published_.returned[a]);
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
       const double short_by =
           has(m.valid, a) && !published_.passed_over ? m.in.rate_radps[a] - published_.rate[a] : 0.0;
