@@ -214,7 +214,7 @@ void Engine::publish_mix(const Surprise& now) noexcept {
     const MotionMix::Doubt doubt = mix_.doubt(trackers_, a, rest, variance, scale);
     published_.variance[a] = doubt.noise + doubt.bias + doubt.other;
     if (!conserve_angle_) continue;
-    published_.variance[a] += ledger_.common() * doubt.noise;
+    published_.shared[a] = ledger_.common() * doubt.noise;
     published_.returned[a] = doubt.bias;
   }
 }
