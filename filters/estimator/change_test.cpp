@@ -84,6 +84,7 @@ void ChangeTest::forget() noexcept {
 
 inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {
   const double log_rest = logarithm(now.rest_factor), farthest = std::sqrt(2.0 * most);
+  const double longest = horizons_[known_ - 1].samples;
   Measured out;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     if ((now.valid >> a & 1U) == 0) continue;
@@ -94,7 +95,13 @@ inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double mos
     out.scale[lane] = now.scale[a];
     out.rest[lane] = rest;
     out.spoke_for_rest[lane] = std::min(rest, 2.0 * most) + log_rest;
-    out.normalised[lane] = std::clamp(now.innovation[a] / std::sqrt(now.scale[a]), -farthest, farthest);
+    const double whole = now.innovation[a] / std::sqrt(now.scale[a]);
+    const double part = std::clamp(whole, -farthest, farthest);
+    // More than as much again is no tail of the noise.
+    const double beyond = std::clamp(whole, -2.0 * farthest, 2.0 * farthest) - part;
+    clipped_count_[a] = std::min(clipped_count_[a] + 1.0, kHorizonsKept * longest);
+    clipped_[a] += (beyond - clipped_[a]) / std::max(clipped_count_[a], kHorizonsBelieved * longest);
+    out.normalised[lane] = part + clipped_[a];
     out.angle[lane] = now.innovation[a] * now.covered_s[a];
     out.rest_square += std::min(rest, kSquareClip);
   }

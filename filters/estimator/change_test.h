@@ -123,7 +123,7 @@ class ChangeTest {
     double gain = 0.0, forgets = 0.0;
   };
 
-  [[nodiscard]] static Measured measured(const Surprise& now, double most) noexcept;
+  [[nodiscard]] Measured measured(const Surprise& now, double most) noexcept;
   void add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   void add_some(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   // By how much the test is to believe the sums wider than white noise's.
@@ -143,6 +143,8 @@ class ChangeTest {
   std::array<Contest, TrackerBank::kMost> contests_{};
   std::array<Horizon, TrackerBank::kMost> horizons_{};
   std::size_t known_ = 0;  // of horizons_
+  // What one measurement is clipped by, normalised: of skewed noise that has a mean. From so many.
+  Axes clipped_{}, clipped_count_{};
   Behind behind_;
   double relaxed_ = 0.0;
   bool suspected_ = false;

@@ -20,9 +20,11 @@ constexpr double kUntestedKept = 256.0;
 constexpr double kColouredUntested = 4096.0;
 // After so many samples that nobody has measured, what is rough by the next one is no noise.
 constexpr double kMostSteps = 16.0;
-// So many lags after it was moved the filter at rest has settled. Of n measurements it takes the mean, with
-// gain 1 / n, until it has.
+// So many lags after it was moved the filter at rest has settled; until then it is a mean, with gain 1 / n.
 constexpr double kSettledLags = 2.0;
+// A motion that ends slowly is taken for over while it goes on below the noise: so many lags after that its
+// tail is over, too.
+constexpr double kTailLags = 8.0;
 // Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 °/s.
 constexpr double kMostRestRate = 0.02;
 }  // namespace
@@ -60,6 +62,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   }
   out.innovation_radps = m.innovation;
   published_.passed_over = false;
+  published_.returned = published_.shared = {};
 
   if (follow_manoeuvres_) {
     follow(m, out);
@@ -148,9 +151,9 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   if (knowledge_ == Knowledge::nothing) knowledge_ = Knowledge::told;
   since_moved_ += 1.0;
   // Where it goes under way, in the tail of a motion, or while its gain is that of a filter that was moved,
-  // its lag will not return.
+  // what it lags behind by will not be returned.
   at_rest_for_ = in_manoeuvre() ? 0.0 : at_rest_for_ + 1.0;
-  const bool settled = at_rest_for_ * rest_->gain() > kSettledLags;
+  const bool settled = at_rest_for_ * rest_->gain() > kTailLags;
   for (std::size_t a = 0; !settled && a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
   // Under way, too, a filter that has had time to settle and was not found wrong is to be as far from the
   // measurements as it believes; that of a larger model is only moved by its level, and may take longer.
@@ -322,7 +325,8 @@ void Engine::publish_rest() noexcept {
     const Wider wider =
         change_.wider(trackers_, a, lag, noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
     published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
-    published_.variance[a] += noise_[a].rounding() + noise_[a].vibration() + change_.unseen(a);
+    published_.variance[a] += noise_[a].rounding(published_.rate[a], published_.variance[a]) +
+                              noise_[a].vibration() + change_.unseen(a);
   }
 }
 
@@ -335,7 +339,8 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
       const double dt_s = m.covered_s(a);
       const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);
       rate += paid.rate();
-      variance += paid.rate() * paid.rate();
+      // Of a lag that lasts the payments are the return: the rate is off by the greater of the two.
+      variance += std::max(0.0, paid.rate() * paid.rate() - published_.returned[a]) + published_.shared[a];
       // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
       const double short_by =
           has(m.valid, a) && !published_.passed_over ? m.in.rate_radps[a] - published_.rate[a] : 0.0;

@@ -75,6 +75,8 @@ class Engine {
   // Of the published rate, payments left out.
   struct Published {
     Axes rate{}, variance{};
+    Axes returned{};  // of the variance, what is lag that payments return
+    Axes shared{};    // what noise adds to it that the rate and payments for it have in common
     double gain = 0.0;
     bool passed_over = false;  // an outlier, as it looks now: no rotation
   };

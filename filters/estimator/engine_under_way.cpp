@@ -211,7 +211,11 @@ void Engine::publish_mix(const Surprise& now) noexcept {
     const double rest = rest_->rate(a), variance = rest_variance(a);
     const double scale = now.scale[a] > 0.0 ? now.scale[a] : health_.measurement_noise[a];
     published_.rate[a] = mix_.rate(trackers_, a, rest);
-    published_.variance[a] = mix_.variance(trackers_, a, rest, variance, scale);
+    const MotionMix::Doubt doubt = mix_.doubt(trackers_, a, rest, variance, scale);
+    published_.variance[a] = doubt.noise + doubt.bias + doubt.other;
+    if (!conserve_angle_) continue;
+    published_.shared[a] = ledger_.common() * doubt.noise;
+    published_.returned[a] = doubt.bias;
   }
 }
 

@@ -147,12 +147,12 @@ void MotionMix::compare(const TrackerBank& trackers, const Surprise& now) noexce
   }
 }
 
-double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double rest, double rest_variance,
-                           double scale) const noexcept {
+MotionMix::Doubt MotionMix::doubt(const TrackerBank& trackers, std::size_t axis, double rest,
+                                  double rest_variance, double scale) const noexcept {
   double noise = 0.0, bias = 0.0, drift = 0.0, shorter = 0.0, mean = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double longer = 1.0 - shorter;
-    if (j > 0) bias += longer * longer * std::max(0.0, bias_square_[axis][j]);
+    if (j > 0) bias += longer * longer * bias_square_[axis][j];
     // Where the axis has no measurement of this sample: of what is foreseen, or else held.
     const bool foreseen = trackers.foresees(j, axis);
     const double factor =
@@ -165,7 +165,8 @@ double MotionMix::variance(const TrackerBank& trackers, std::size_t axis, double
   // Either the filter at rest is right or the trackers are.
   const double moving = 1.0 - rest_weight_;
   const double apart = moving > 1e-9 ? rest - mean / moving : 0.0;
-  return noise * scale + bias + drift + rest_weight_ * (rest_variance + moving * apart * apart);
+  return {noise * scale, std::max(0.0, bias),
+          drift + rest_weight_ * (rest_variance + moving * apart * apart)};
 }
 
 double MotionMix::gain(const TrackerBank& trackers, double rest_gain) const noexcept {

@@ -41,11 +41,14 @@ class MotionMix {
 
   [[nodiscard]] double rest_weight() const noexcept { return rest_weight_; }
   [[nodiscard]] double rate(const TrackerBank& trackers, std::size_t axis, double rest) const noexcept;
-  // Of the mean. Trackers share their noise: what two of them have in common is the longer one's. A longer
-  // one has a bias in a motion it is too slow for: by as much it is further from the next shorter one, on
-  // average over a while, than noise alone makes it.
-  [[nodiscard]] double variance(const TrackerBank& trackers, std::size_t axis, double rest,
-                                double rest_variance, double scale) const noexcept;
+  // Variance of the mean, and the part of it that is no noise. Trackers share their noise: what two of them
+  // have in common is the longer one's. A longer one has a bias in a motion it is too slow for: by as much it
+  // is further from the next shorter one, on average over a while, than noise alone makes it.
+  struct Doubt {
+    double noise = 0.0, bias = 0.0, other = 0.0;
+  };
+  [[nodiscard]] Doubt doubt(const TrackerBank& trackers, std::size_t axis, double rest, double rest_variance,
+                            double scale) const noexcept;
   [[nodiscard]] double gain(const TrackerBank& trackers, double rest_gain) const noexcept;
   // Samples that the mean has in it.
   [[nodiscard]] double length(const TrackerBank& trackers, double rest_gain) const noexcept;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/random/circle.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
@@ -23,6 +24,33 @@ void NoiseScale::round_to(double digit) noexcept {
   constexpr double kPi = std::numbers::pi;
   const double hidden = 4.0 * kPi * kPi * told_ / (digit_ * digit_);
   rounding_ = hidden < 50.0 ? digit_ * digit_ / (2.0 * kPi * kPi) * exponential(-hidden) : 0.0;
+}
+
+// A level x has the mean x - B sin u, u its place between two steps in radians: Kepler's equation, which
+// Newton's way from the far end solves. Where noise is so small that it has more than one solution the mean
+// does not say where the level lies. The mean may be elsewhere by its noise: at three places, that have the
+// moments of a normal distribution, each as likely as many levels have that mean.
+double NoiseScale::rounding(double mean, double variance) const noexcept {
+  if (!(rounding_ > 0.0)) return 0.0;
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const double steep = kTurn * std::sqrt(2.0 * rounding_) / digit_;
+  if (steep >= 1.0) return rounding_;
+  const double aside = std::sqrt(3.0 * std::max(0.0, variance));
+  double squares = 0.0, levels = 0.0;
+  for (const int to : {-1, 0, 1}) {
+    double turns = (mean + to * aside - last_[2]) / digit_;
+    turns -= std::nearbyint(turns);
+    double level = turns > 0.0 ? 0.5 : -0.5;
+    OnCircle at = on_circle(level);
+    for (int i = 0; i < 5; ++i) {
+      level -= (level - steep / kTurn * at.sine - turns) / (1.0 - steep * at.cosine);
+      at = on_circle(level);
+    }
+    const double likely = (to == 0 ? 4.0 : 1.0) / (1.0 - steep * at.cosine);
+    squares += likely * at.sine * at.sine;
+    levels += likely;
+  }
+  return 2.0 * rounding_ * squares / levels;
 }
 
 void NoiseScale::take(double rate, double steps) noexcept {
@@ -100,7 +128,7 @@ bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept 
   tails_ += (beyond / rough - tails_) / colour_count_;
   colour_ = std::max(colour_, 0.5);
   // Bounded alike, so that of noise that has just become louder both are.
-  if (third_ >= 0.0) vibration_.take(std::min(apart * apart, bound_), third_);
+  if (third_ >= 0.0) vibration_.take(std::min(apart * apart, bound_), third_, digit_variance_);
   return false;
 }
 

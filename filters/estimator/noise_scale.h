@@ -52,10 +52,11 @@ class NoiseScale {
   // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   [[nodiscard]] bool white() const noexcept { return colour_ < kWhite; }
-  // Variance of the mean of a level that a coarse converter rounds, over where it lies between two steps: the
-  // first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and Kollar, "Quantization
-  // Noise", 2008, chapter 4). No filter sees it.
-  [[nodiscard]] double rounding() const noexcept { return rounding_; }
+  // What the mean of a level that a coarse converter rounds is off by, mean square, where that mean is known
+  // with this variance: by the first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and
+  // Kollar, "Quantization Noise", 2008, chapter 4). It is little where the level is one of the converter's or
+  // lies between two, and most in a quarter of the way. No filter sees it.
+  [[nodiscard]] double rounding(double mean, double variance) const noexcept;
   // Variance of what may be a motion that is taken for noise.
   [[nodiscard]] double vibration() const noexcept { return vibration_.variance(); }
   void follow_motion() noexcept { vibration_.forget(); }
@@ -115,7 +116,7 @@ class NoiseScale {
   double squares_ = 0.0;
   double digit_ = 1e300;         // least difference of two neighbours
   double digit_variance_ = 0.0;  // of what rounding to it adds to a measurement
-  double rounding_ = 0.0;
+  double rounding_ = 0.0;        // over where the level lies
   int learned_ = 0, different_ = 0, in_a_row_ = 0;
   bool known_ = false;
   std::array<double, 3> last_{};

@@ -17,11 +17,11 @@ namespace ifog {
 class Vibration {
  public:
   // Of one measurement at rest: the square of its innovation and the variance of white noise by its third
-  // difference, both bounded against outliers.
-  void take(double square, double rough) noexcept {
+  // difference, both bounded against outliers. digit: variance of what a coarse converter adds to it.
+  void take(double square, double rough, double digit = 0.0) noexcept {
     square_ += square;
     rough_ += rough;
-    if (++in_sum_ == kSum) judge();
+    if (++in_sum_ == kSum) judge(digit);
   }
   // A motion was found that explains it, and is followed.
   void forget() noexcept {
@@ -40,9 +40,10 @@ class Vibration {
   // So many standard deviations are none of chance.
   static constexpr double kSurely = 4.0;
 
-  void judge() noexcept {
+  // Of a converter that showed one value all along, or the rounding of the subtraction, nothing is rough.
+  void judge(double digit) noexcept {
     const double rough = rough_ / kSum, ratio = square_ / rough_;
-    const bool heard = rough_ > 0.0;
+    const bool heard = rough_ > digit;
     square_ = rough_ = variance_ = 0.0;
     in_sum_ = 0;
     if (!heard) return;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The published variance against the error where the noise is not what a filter takes it for: with outliers,
-// and with a motion that no tracker follows.
+// skewed or rounded, and with a motion that no tracker follows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "filters/estimator/vibration.h"
 #include "tests/unit/estimator/drive.h"
@@ -15,23 +18,35 @@ using namespace ifog::test;
 constexpr int kLength = 60'000;
 constexpr std::size_t kSettled = 20'000;
 
-// Mean of squared error over variance, of the samples from `from` on.
-double squared_error_over_variance(const ifog::FilterSettings& settings, const Record& made,
-                                   std::size_t from) {
+struct Judged {
+  double error_over_variance = 0.0;  // mean of the squared error over the variance
+  std::vector<double> variance;
+};
+
+// Of the samples from `from` on.
+Judged judge(const ifog::FilterSettings& settings, const Record& made, std::size_t from) {
   ifog::Estimator estimator(settings, 1, kPeriod);
   ifog::EstimatorInput in;
   ifog::EstimatorOutput out;
   in.dt_s = kPeriod;
   in.valid_axes = 1;
-  double sum = 0.0;
+  Judged found;
   for (std::size_t i = 0; i < made.measured.size(); ++i) {
     in.sequence = i;
     in.rate_radps[0] = made.measured[i];
     estimator.step(in, out);
+    if (i < from) continue;
     const double error = out.denoised_radps[0] - made.truth[i];
-    if (i >= from) sum += error * error / out.variance_rad2ps2[0];
+    found.variance.push_back(out.variance_rad2ps2[0]);
+    found.error_over_variance += error * error / out.variance_rad2ps2[0];
   }
-  return sum / static_cast<double>(made.measured.size() - from);
+  found.error_over_variance /= static_cast<double>(found.variance.size());
+  return found;
+}
+
+double squared_error_over_variance(const ifog::FilterSettings& settings, const Record& made,
+                                   std::size_t from) {
+  return judge(settings, made, from).error_over_variance;
 }
 
 // One in a hundred stands twenty sigma off: too many to be passed over, so that the rate has them in it.
@@ -62,6 +77,76 @@ TEST(Honest, WithAVibrationThatIsTakenForNoise) {
     EXPECT_LT(found, 1.25) << walk;
     EXPECT_GT(found, 0.8) << walk;
   }
+}
+
+// At rest between two steps of a converter five times as coarse as the noise, told that noise. The mean is
+// off by nothing at the converter's own values and half way, and in between by 0.72.
+Record rounded(std::uint64_t seed, double level) {
+  constexpr double kStep = 5.0;
+  Record made = record(seed, kLength, 0.0, [level](int) { return kStep * level; });
+  for (double& z : made.measured) z = kStep * std::nearbyint(z / kStep);
+  return made;
+}
+
+TEST(Honest, WhereverALevelLiesBetweenTwoStepsOfTheConverter) {
+  for (const double level : {0.2, 0.25, 0.3, 0.7}) {
+    const double found = squared_error_over_variance(told(1e-7), rounded(8, level), kSettled);
+    EXPECT_LT(found, 1.25) << level;
+    EXPECT_GT(found, 0.8) << level;
+  }
+  for (const double level : {0.0, 0.5}) {
+    std::vector<double> variance = judge(told(1e-7), rounded(9, level), kSettled).variance;
+    std::nth_element(variance.begin(), variance.begin() + kLength / 4, variance.end());
+    EXPECT_LT(variance[kLength / 4], 0.13) << level;  // half of what it is over all levels
+  }
+}
+
+// A value that stays is no vibration, whatever the subtraction of it from itself leaves.
+TEST(Honest, OfAConverterThatShowsOneValueForLong) {
+  Record made = rounded(10, 0.01);
+  for (std::size_t i = 0; i < made.measured.size(); ++i) {
+    const double offset = 0.1;  // no whole number of bits
+    made.truth[i] += offset;
+    made.measured[i] = (i / 1024 % 2 == 1 ? 0.0 : made.measured[i]) + offset;
+  }
+  const std::vector<double> variance = judge(told(1e-5), made, kSettled).variance;
+  // Nothing that moves within a step is further off than the step is wide.
+  EXPECT_LT(*std::max_element(variance.begin(), variance.end()), 25.0);
+}
+
+// What is clipped of a measurement, lest it look like a change, has a mean of its own there.
+TEST(Honest, InSkewedNoise) {
+  constexpr double kWalk = 1e-6;
+  constexpr int kSeeds = 8;
+  double mean = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Record made = record(10 + seed, 3 * kLength, kWalk);
+    std::mt19937_64 random(110 + seed);
+    std::exponential_distribution<double> exponential;
+    for (std::size_t i = 0; i < made.measured.size(); ++i)
+      made.measured[i] = made.truth[i] + exponential(random) - 1.0;
+    std::vector<double> variance = judge(told(kWalk), made, kLength).variance;
+    const auto middle = variance.begin() + static_cast<std::ptrdiff_t>(variance.size() / 2);
+    std::nth_element(variance.begin(), middle, variance.end());
+    mean += *middle / kSeeds;
+  }
+  // The settled Kalman filter's, by Riccati's equation.
+  const double predicted = 0.5 * (kWalk + std::sqrt(kWalk * kWalk + 4.0 * kWalk));
+  EXPECT_NEAR(mean / (predicted / (1.0 + predicted)), 1.0, 0.08);
+}
+
+// A tracker's lag in a sea is paid back as it comes: the two are no two errors.
+TEST(Honest, InASea) {
+  constexpr int kSeeds = 3;
+  double mean = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Record made = record(30 + seed, kLength, 1e-6, [](int i) {
+      return i < 20'000 ? 0.0 : 3.0 * std::sin(2.0 * std::numbers::pi * (i - 20'000) / 2000.0);
+    });
+    mean += squared_error_over_variance(told(1e-6), made, kSettled) / kSeeds;
+  }
+  EXPECT_GT(mean, 0.8);
+  EXPECT_LT(mean, 1.25);
 }
 
 class Draws {
