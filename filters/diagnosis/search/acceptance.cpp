@@ -118,6 +118,15 @@ void subtract_found(const BlockData& data, const SearchResult& found, std::vecto
   subtract_effects(data, candidates_of(found.chosen), found.noise.shape, found.coefficients, errors);
 }
 
+double score_on(const BlockGrid& grid, const BlockData& channels, const SearchResult& found) {
+  if (grid.valid == channels.grid.valid) return score_of(found);
+  BlockData data = channels;
+  data.grid.valid = grid.valid;
+  SearchResult there = found;
+  there.noise = fit_noise(data.grid, design(data, found.fitted), found.noise.shape);
+  return score_of(there);
+}
+
 SearchResult without_effect(const BlockData& data, const BlockData& reconstructed, SearchResult found,
                             std::size_t at) {
   found.chosen.erase(found.chosen.begin() + static_cast<std::ptrdiff_t>(at));
