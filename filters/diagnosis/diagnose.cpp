@@ -141,17 +141,23 @@ class Run {
     for (std::size_t round = 0; round < kMostDelays; ++round) {
       const auto delay = most_delayed_channel(reconstructed_, found_.fitted, found_.noise.shape);
       if (!delay || delay->gain < kLate) return;
-      const BlockData before = reconstructed_;
+      const BlockData before = reconstructed_, read_before = data_;
+      const std::size_t said = result_.remarks.size();
       SearchResult found = found_;
       undo_delay(data_.grid, delay->delay_s, reconstructed_.channels[delay->channel]);
       rebuild_differences(reconstructed_);
+      if (delay->delay_s < 0.0) {  // which the daemon can wait for
+        undo_delay(data_.grid, delay->delay_s, data_.channels[delay->channel]);
+        rebuild_differences(data_);
+      }
       search({});
-      const bool used = std::any_of(found_.fitted.begin(), found_.fitted.end(), [&](const Candidate& each) {
-        return each.channel == delay->channel || each.with_channel == delay->channel;
-      });
-      if (!used || score_of(found_) < score_of(found) + kLate) {
+      const bool used = std::any_of(found_.fitted.begin(), found_.fitted.end(),
+                                    [&](const Candidate& each) { return each.uses(delay->channel); });
+      if (!used || score_of(found_) < score_on(reconstructed_.grid, before, found) + kLate) {
         reconstructed_ = before;
+        data_ = read_before;
         found_ = std::move(found);
+        result_.remarks.resize(said);
         return;
       }
       result_.channel_delays.push_back(
@@ -301,7 +307,7 @@ class Run {
     for (FoundEffect& each : sample_effects(ramps_, zone_, lines_.fast, errors_, options_.axis))
       result_.effects.push_back(std::move(each));
     result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), jointly);
-    result_.ranges = ranges_of(data_, result_.effects);
+    result_.ranges = ranges_of(data_, result_.effects, result_.channel_delays);
     parts_ = std::move(findings.parts);
   }
 

@@ -94,7 +94,7 @@ struct ReferenceDelay {
 // Of a channel that was logged late: what it says at a time was so delay_s before.
 struct ChannelDelay {
   std::string channel;
-  double delay_s = 0.0;
+  double delay_s = 0.0;  // below zero: early
   double std_error_s = 0.0;
 };
 

@@ -21,10 +21,14 @@ Compensator::ChannelSet Compensator::hold_channels(const CompensatorInput& in,
   ChannelSet moved = kAlways;
   for (std::size_t i = 0; i < held_.size(); ++i) {
     Held& held = held_[i];
-    const double value = i < in.channels.size() ? in.channels[i] : std::numeric_limits<double>::quiet_NaN();
+    double value = i < in.channels.size() ? in.channels[i] : std::numeric_limits<double>::quiet_NaN();
     const double age = i < in.age_s.size() ? in.age_s[i] : 0.0;
-    const bool told = held.readings.step(value, in.dt_s, ranges_[i]);
+    bool told = held.readings.step(value, in.dt_s, ranges_[i]);
     held.stale = !told || age > stale_after_s_;
+    if (DelayedReading& delayed = delayed_[i]; delayed.delays() && (told || delayed.begun())) {
+      value = told ? delayed.step(value, in.dt_s) : delayed.hold(in.dt_s);
+      told = true;
+    }
     // By its bits: a zero has two signs.
     if (told &&
         (!held.seen || std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(held.value))) {

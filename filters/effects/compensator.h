@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/effects/delayed_reading.h"
 #include "filters/effects/plausible_reading.h"
 #include "filters/effects/ramp_tracker.h"
 #include "filters/effects/shape.h"
@@ -179,6 +180,7 @@ class Compensator {
   std::vector<std::string> channels_, left_out_;
   std::vector<ChannelRange> ranges_;  // of channels_, infinite where the model gives none
   std::vector<Held> held_;
+  std::vector<DelayedReading> delayed_;  // of channels_
   std::vector<Term> terms_;
   std::vector<Ramp> ramps_;
   std::vector<Zone> zones_;

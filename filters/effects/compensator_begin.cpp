@@ -64,6 +64,7 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
         if (factor.channel < channels_.size() && (factor.turn > 0.0) == turns)
           ranges_[factor.channel] =
               turns ? range_of("", {}) : range_of(channels_[factor.channel], model.ranges);
+  for (const std::string& name : channels_) delayed_.emplace_back(range_of(name, model.ranges).early_s);
   arrange_terms();
 }
 
@@ -219,6 +220,7 @@ void Compensator::begin(double since_power_up_s) noexcept {
 void Compensator::restart() noexcept {
   begun_ = false;
   for (Held& held : held_) held = {};
+  for (DelayedReading& each : delayed_) each.restart();
   for (Term& term : terms_) {
     for (Factor& factor : term.factors) {
       factor.shape.restart();
@@ -241,6 +243,7 @@ void Compensator::take_over(const Compensator& previous) noexcept {
       held_[i].seen = true;
       held_[i].value = previous.held_[j].value;
       held_[i].readings = previous.held_[j].readings;
+      delayed_[i].take_over(previous.delayed_[j]);
       held_[i].reach = reach_of(held_[i].value, ranges_[i]);
     }
   }

@@ -52,7 +52,10 @@ struct Effect {
 struct ChannelRange {
   std::string channel;  // or the difference of two, as in an effect
   double low = 0.0, high = 0.0;
+  double early_s = 0.0;  // what it says acts so much later: logged early, or on a way of its own
 };
+
+inline constexpr double kMostEarly_s = 60.0;
 
 // IEEE Std 952 coefficients, SI: Q rad, N rad/s/sqrt(Hz), B rad/s, K rad/s^2/sqrt(Hz), R rad/s^2; absent: not
 // seen.

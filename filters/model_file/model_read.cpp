@@ -342,6 +342,10 @@ Model parse_model(std::string_view text, const std::string& name) {
     range.low = item.required("low");
     range.high = item.required("high");
     if (range.high < range.low) item.fail("high", item.find("high"), "expected at least low");
+    range.early_s = item.not_negative("early_s", 0.0);
+    if (range.early_s > kMostEarly_s)
+      item.fail("early_s", item.find("early_s"),
+                "expected at most " + std::to_string(static_cast<int>(kMostEarly_s)));
     item.done();
     model.ranges.push_back(std::move(range));
   }

@@ -121,6 +121,7 @@ std::string model_text(const Model& model) {
     write_channel(text, "", range.channel);
     text.line("low", toml_number(range.low));
     text.line("high", toml_number(range.high));
+    if (range.early_s > 0.0) text.line("early_s", toml_number(range.early_s));
   }
   write_source(text, model.source);
   return text.take();

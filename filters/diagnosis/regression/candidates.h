@@ -34,6 +34,7 @@ struct Candidate {
   [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0 || is_transition(); }
   [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }
+  [[nodiscard]] bool uses(std::size_t of) const { return channel == of || with_channel == of; }
   // Whether the model will take it away, in this record and the next.
   [[nodiscard]] bool corrected() const {
     return carries_over(form) && first_reading != FirstReading::kEarthRateShown;

@@ -25,14 +25,14 @@ Way way_of(double NoiseShape::*parameter) {
   const double least = parameter == &NoiseShape::walk ? kLeastWalk : kLeastFlicker;
   return [=](NoiseShape& shape, double factor) {
     shape.*parameter *= factor;
-    return shape.*parameter >= least && shape.*parameter <= kMost;
+    return shape.*parameter >= least && (factor < 1.0 || shape.*parameter <= kMost);
   };
 }
 
 void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& ways) {
   const HarmonicLimits limits = harmonic_limits(grid);
   ways.emplace_back([=](NoiseShape& shape, double factor) {
-    return (shape.harmonics[harmonic].variance *= factor) <= kMost;
+    return (shape.harmonics[harmonic].variance *= factor) <= kMost || factor < 1.0;
   });
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     double& decay = shape.harmonics[harmonic].decay;
@@ -53,7 +53,7 @@ bool against_white(NoiseShape& shape, double factor) {
   shape.flicker *= factor;
   shape.markov *= factor;
   for (DampedHarmonic& each : shape.harmonics) each.variance *= factor;
-  return shape.walk <= kMost && shape.flicker <= kMost;
+  return factor < 1.0 || (shape.walk <= kMost && shape.flicker <= kMost);
 }
 
 std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool with_harmonics) {

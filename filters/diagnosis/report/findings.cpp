@@ -12,6 +12,7 @@
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 namespace {
@@ -303,7 +304,31 @@ bool known_all_round(const FineChannel& angle, const std::vector<FoundEffect>& e
   return halves == 0 && doubt < kKnownRound * kKnownRound * size;
 }
 
-std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
+namespace {
+
+// The daemon has an early channel's readings before they act, those of a difference as well.
+void wait_for(const ChannelDelay& delay, const BlockData& data, const std::vector<FoundEffect>& effects,
+              std::vector<ChannelRange>& ranges) {
+  const auto made_of = [&](const std::string& channel) {
+    const ChannelNames names = names_in(channel);
+    return names.of == delay.channel || names.less == delay.channel;
+  };
+  const auto uses = [&](const FoundEffect& found) {
+    return made_of(found.effect.channel) || made_of(found.effect.with_channel);
+  };
+  const auto channel = std::find_if(data.channels.begin(), data.channels.end(),
+                                    [&](const FineChannel& each) { return each.name == delay.channel; });
+  if (channel == data.channels.end() || std::none_of(effects.begin(), effects.end(), uses)) return;
+  auto range = std::find_if(ranges.begin(), ranges.end(),
+                            [&](const ChannelRange& each) { return each.channel == delay.channel; });
+  if (range == ranges.end()) range = ranges.insert(range, {channel->name, channel->low, channel->high});
+  range->early_s = std::min(range->early_s - delay.delay_s, kMostEarly_s);
+}
+
+}  // namespace
+
+std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects,
+                                    const std::vector<ChannelDelay>& delays) {
   std::vector<ChannelRange> ranges;
   const bool ramp = std::any_of(effects.begin(), effects.end(), [](const FoundEffect& found) {
     return found.effect.form == name_of(Form::kRateRamp);
@@ -320,6 +345,8 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
     if (std::any_of(effects.begin(), effects.end(), uses))
       ranges.push_back({channel.name, channel.low, channel.high});
   }
+  for (const ChannelDelay& delay : delays)
+    if (delay.delay_s < 0.0) wait_for(delay, data, effects, ranges);
   return ranges;
 }
 

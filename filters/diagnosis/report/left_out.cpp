@@ -35,6 +35,13 @@ std::string judged_beside(std::size_t harmonics) {
 
 std::string delay_in_words(const ChannelDelay& delay) {
   std::array<char, 240> text{};
+  if (delay.delay_s < 0.0) {
+    std::snprintf(text.data(), text.size(),
+                  "what %s says acts %.3g s later (+-%.2g), as of a channel that is logged early: the model "
+                  "says so, and the daemon waits as long with it",
+                  delay.channel.c_str(), -delay.delay_s, delay.std_error_s);
+    return text.data();
+  }
   std::snprintf(
       text.data(), text.size(),
       "%s logged %.3g s late (+-%.2g): its effects were sought as if it were not. The daemon has it no "

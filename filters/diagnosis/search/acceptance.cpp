@@ -24,16 +24,31 @@ constexpr double kUnsteadyShare = 0.2;
 constexpr double kCancel = 0.2;  // of either band power, what is left of both together
 
 // Slow noise that happens to run against the effects hides them in the raw error, and their removal lays it
-// bare. That is no reason to leave them out where noise as large as the model's does it now and then.
+// bare. That is no reason to leave them out where noise as large as the model's does it now and then. What is
+// not corrected, a line say, leaves the error as it was, and is only beside them here: of a structure that
+// sways it may be made in part, and then its size is not what a plain fit finds.
 bool slow_noise_may_oppose(const BlockData& reconstructed, const SearchResult& found) {
   if (found.fitted.empty()) return true;
   const Columns all = design(reconstructed, found.fitted);
   const Eigen::Index k = reconstructed.grid.constants();
-  const Eigen::Index p = all.cols() - 1 - k;
-  Columns columns(all.rows(), k + 2);
-  columns << all.leftCols(1 + k), all.rightCols(p) * found.fitted_coefficients.tail(p);
-  const Eigen::VectorXd taken = Eigen::VectorXd::Ones(k + 1);
-  const Eigen::MatrixXd known = Eigen::MatrixXd::Zero(k + 1, k + 1);
+  Columns columns = all.leftCols(1 + k);
+  Eigen::VectorXd corrected = Eigen::VectorXd::Zero(all.rows());
+  Eigen::Index at = 1 + k;
+  for (const Candidate& each : found.fitted) {
+    const auto mine = all.middleCols(at, each.width());
+    if (each.corrected()) {
+      corrected += mine * found.fitted_coefficients.segment(at - 1, each.width());
+    } else {
+      columns.conservativeResize(Eigen::NoChange, columns.cols() + each.width());
+      columns.rightCols(each.width()) = mine;
+    }
+    at += each.width();
+  }
+  columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+  columns.rightCols(1) = corrected;
+  const Eigen::Index taken_out = columns.cols() - 1;
+  const Eigen::VectorXd taken = Eigen::VectorXd::Ones(taken_out);
+  const Eigen::MatrixXd known = Eigen::MatrixXd::Zero(taken_out, taken_out);
   return disagreement(reconstructed.grid, found.noise, columns, k, taken, known) < kOpposed;
 }
 
@@ -101,6 +116,15 @@ std::optional<std::size_t> cancelling(const BlockData& data, const SearchResult&
 
 void subtract_found(const BlockData& data, const SearchResult& found, std::vector<EvenError>& errors) {
   subtract_effects(data, candidates_of(found.chosen), found.noise.shape, found.coefficients, errors);
+}
+
+double score_on(const BlockGrid& grid, const BlockData& channels, const SearchResult& found) {
+  if (grid.valid == channels.grid.valid) return score_of(found);
+  BlockData data = channels;
+  data.grid.valid = grid.valid;
+  SearchResult there = found;
+  there.noise = fit_noise(data.grid, design(data, found.fitted), found.noise.shape);
+  return score_of(there);
 }
 
 SearchResult without_effect(const BlockData& data, const BlockData& reconstructed, SearchResult found,

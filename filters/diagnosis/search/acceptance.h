@@ -17,6 +17,10 @@ void subtract_found(const BlockData& data, const SearchResult& found, std::vecto
 SearchResult without_effect(const BlockData& data, const BlockData& reconstructed, SearchResult found,
                             std::size_t at);
 
+// What `found` would score on the blocks of `grid`, of which some may have been left out since. channels:
+// those of its fit, on the blocks it had.
+double score_on(const BlockGrid& grid, const BlockData& channels, const SearchResult& found);
+
 // Whether effect `at` is more than a few outliers, a change of the noise or one part of the record make up.
 bool stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at, double significance);
 

@@ -38,6 +38,8 @@ TEST(LeftOut, IsNamedByFormAndChannel) {
   delay.delay_s = 2.5;
   delay.std_error_s = 0.1;
   EXPECT_EQ(delay_in_words(delay).find("table_degC logged 2.5 s late (+-0.1): "), 0U);
+  delay.delay_s = -40.0;
+  EXPECT_EQ(delay_in_words(delay).find("what table_degC says acts 40 s later (+-0.1), "), 0U);
 }
 
 TEST(DeadZone, HidesWhatIsWithinItAndNothingBeyond) {

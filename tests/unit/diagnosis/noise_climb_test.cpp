@@ -56,5 +56,31 @@ TEST(NoiseClimb, EndsAtTheTopBesideItsStart) {
   }
 }
 
+// What was too large to be relative to white noise comes down again: of a record of unit white noise under a
+// resonance the climb finds both, wherever it began.
+TEST(NoiseClimb, ComesDownFromWhereNoWhiteNoiseIsLeft) {
+  Walking still(2000, 0.0, 22);
+  std::mt19937_64 random(23);
+  std::normal_distribution<double> normal;
+  const double left = std::exp(-1.0 / 40.0), turn = 2.0 * M_PI * 0.2, driven = std::sqrt(1.0 - left * left);
+  double angle = 0.0, beside = 0.0;
+  for (Eigen::Index i = 0; i < still.grid.error.size(); ++i) {
+    const double before = angle;
+    angle = left * (std::cos(turn) * before - std::sin(turn) * beside) + driven * 30.0 * normal(random);
+    beside = left * (std::sin(turn) * before + std::cos(turn) * beside) + driven * 30.0 * normal(random);
+    still.columns(i, 0) += angle - before;
+  }
+  const auto ended = [&](double too_large) {
+    NoiseShape start;
+    start.flicker = 1e-3 * too_large;
+    start.harmonics = {{900.0 * too_large, 0.2, 40.0}};
+    return climb(still.grid, still.columns, start, 1.05, true);
+  };
+  const NoiseFit near = ended(1.0), far = ended(1e10);
+  EXPECT_NEAR(near.white_variance, 1.0, 0.3);
+  EXPECT_NEAR(far.white_variance, 1.0, 0.3);
+  EXPECT_NEAR(far.log_likelihood, near.log_likelihood, 1.0);
+}
+
 }  // namespace
 }  // namespace ifog

@@ -196,5 +196,28 @@ TEST(Acceptance, AnErrorThatGrowsDoesNotHold) {
   EXPECT_FALSE(holds(data, found, errors, &EvenError::held_out));
 }
 
+// Slow noise runs against a true effect by chance, and its means grow without it. That is no more of a reason
+// to leave it out when a line was claimed as well, of a size that no plain fit finds: what sways made it.
+TEST(Acceptance, ALineThatIsNotCorrectedDeniesNoEffect) {
+  BlockData data = with_supply(6);
+  add(data, of(1, Form::kLinear), 0.5);
+  Candidate line;
+  line.form = Form::kLine;
+  line.frequency_hz = 0.13 / data.grid.block_s;
+  SearchResult alone = chosen(data, {of(1, Form::kLinear)});
+  SearchResult beside = chosen(data, {line, of(1, Form::kLinear)});
+  beside.fitted_coefficients[1] += 2.0;
+  std::vector<EvenError> errors = errors_of(data);
+  errors[0].before = SharedSamples();
+  Samples& before = errors[0].before.anew(kBlocks);
+  Samples& after = errors[0].held_out.anew(kBlocks);
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    before[i] = data.grid.error[static_cast<Eigen::Index>(i)] - 0.5 * (data.channels[1].values[i] - 12.0);
+    after[i] = before[i] + ((20 * i / kBlocks) % 2 == 0 ? 0.12 : -0.12);
+  }
+  EXPECT_TRUE(holds(data, alone, errors, &EvenError::held_out));
+  EXPECT_TRUE(holds(data, beside, errors, &EvenError::held_out));
+}
+
 }  // namespace
 }  // namespace ifog

@@ -50,7 +50,7 @@ Model full_model() {
   lookup.parameters = {{"angle_rms", 1e-9, 1e-11, "rad"}};
   model.effects = {linear, lookup};
   model.covariance = {1.0, 0.5, 0.5, 2.0};
-  model.ranges = {{"temperature_degC", -10.5, 41.0}};
+  model.ranges = {{"temperature_degC", -10.5, 41.0, 12.25}};
   model.source = {
       "a b.csv", "ff", "2026-01-01", {{"std_radps", 2.0}}, {{"std_radps", 1.0}, {"adev_10", 0.125}}};
   return model;
@@ -159,6 +159,8 @@ TEST(ModelFile, NumbersThatNoSensorHasAreRefusedByLine) {
            {"low = -10.5", "low = -inf"},
            {"low = -10.5", "low = 50.0"},
            {"high = 41", "high = nan"},
+           {"early_s = 12.25", "early_s = -1"},
+           {"early_s = 12.25", "early_s = 61"},
            {"N = 2.9e-07", "N = nan"},
            {"process_noise = 1e-17", "process_noise = inf"},
            {"table_y = [0, 3e-09", "table_y = [0, 1e300"}}) {
