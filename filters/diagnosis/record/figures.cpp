@@ -103,8 +103,8 @@ std::map<std::string, double> error_figures(std::span<const double> error, doubl
   return error_figures(error, period_s, none);
 }
 
-std::map<std::string, double> error_figures(std::span<const double> error, double period_s,
-                                            KnownAngles& angles) {
+std::map<std::string, double> error_figures(const AskedSeries& asked, double period_s, KnownAngles& angles) {
+  const std::span<const double> error = asked.values();
   std::map<std::string, double> figures;
   figures["residual_rms_radps"] = rms_about_mean(error);
   std::vector<std::string> names;
@@ -116,7 +116,7 @@ std::map<std::string, double> error_figures(std::span<const double> error, doubl
     names.emplace_back(name);
     counts.push_back(count);
   }
-  const std::vector<double> deviations = angles.gapped(error, counts);
+  const std::vector<double> deviations = angles.gapped(asked, counts);
   for (std::size_t i = 0; i < counts.size(); ++i) {
     figures["rms_" + names[i]] = rms_about_mean(means_over(error, counts[i]));
     figures["adev_" + names[i]] = deviations[i];
