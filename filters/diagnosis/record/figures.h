@@ -42,5 +42,7 @@ Present present(std::span<const double> values);
 
 // Means over `count` samples, NaN where fewer than half are there.
 Samples means_over(std::span<const double> error, std::size_t count);
+// Over each of these counts.
+std::vector<Samples> means_over(std::span<const double> error, const std::vector<std::size_t>& counts);
 
 }  // namespace ifog

@@ -37,7 +37,7 @@ double noise_beside(std::span<const double> power, std::size_t k) {
 // Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. Several
 // frequencies at once, so that the error is read once; each by a table of its first turns, which a carrier
 // turns on from one table's length to the next.
-constexpr int kAtOnce = 4;
+constexpr int kAtOnce = 8;
 constexpr std::size_t kTable = 64;
 using Several = Eigen::Array<double, kAtOnce, 1>;
 using Sums = std::array<std::vector<Complex>, kAtOnce>;
