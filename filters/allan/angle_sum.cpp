@@ -12,15 +12,17 @@ namespace ifog {
 AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
   find_mean(rate_radps, stretches);
   if (rate_radps.in_memory().size() < rate_radps.size() || rate_radps.size() > kMostInMemory) {
-    std::vector<double> some;  // not one by one
-    some.reserve(kSeriesPiece);
+    std::vector<double> some(LongSeries::kAtOnce);  // not one by one
+    std::size_t held = 0, total = stretches.size();
+    for (const Stretch& s : stretches) total += s.size();
+    long_.expect(total);
     sum_up(rate_radps, stretches, [&](double angle) {
-      some.push_back(angle);
-      if (some.size() < kSeriesPiece) return;
+      some[held++] = angle;
+      if (held < some.size()) return;
       long_.add(some);
-      some.clear();
+      held = 0;
     });
-    long_.add(some);
+    long_.add(std::span(some).first(held));
     return;
   }
   std::size_t total = stretches.size();

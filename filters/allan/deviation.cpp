@@ -149,7 +149,7 @@ class Window {
   // is moved seldom.
   Window(const SeriesView& angle, const AngleSum::Part& part, std::size_t reach)
       : angle_(angle), part_(part), room_(angle.in_memory().empty() ? reach + ahead(reach) : part.angles) {}
-  static std::size_t ahead(std::size_t reach) { return std::max(64 * kBlock, reach / 4); }
+  static std::size_t ahead(std::size_t reach) { return std::max(64 * kBlock, reach / 2); }
 
   // From `begin` on; begin never goes back. As many as there is room for, or to the part's end.
   std::span<const double> from(std::size_t begin) {
@@ -160,11 +160,7 @@ class Window {
     double* const held = held_.get();
     const std::size_t kept = end_ > begin ? end_ - begin : 0;
     if (kept > 0) std::copy(held + (begin - begin_), held + (end_ - begin_), held);
-    std::vector<double> room;
-    for (std::size_t at = kept; at < count; at += kSeriesPiece) {
-      const auto piece = angle_.piece(part_.first + begin + at, std::min(kSeriesPiece, count - at), room);
-      std::copy(piece.begin(), piece.end(), held + at);
-    }
+    angle_.read(part_.first + begin + kept, {held + kept, count - kept});
     begin_ = begin;
     end_ = begin + count;
     return {held, count};

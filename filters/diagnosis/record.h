@@ -35,6 +35,8 @@ struct KnownClock {
   double usual_step_s = 0.0;
 };
 
+class KnownColumns;
+
 struct Record {
   std::string name;
   std::span<const double> time_s;             // strictly increasing
@@ -47,6 +49,7 @@ struct Record {
   std::vector<Stretch> at_rest;             // samples, in order; empty: not looked for, all
   RecordOrigin origin;                      // that time_s is counted from
   std::shared_ptr<const KnownClock> clock;  // null: not looked at; of other times: says nothing of these
+  std::shared_ptr<KnownColumns> known;      // of its columns, shared with the other axes; null: nothing
 };
 
 // Of the channel of that name; empty when the record has none.

@@ -38,9 +38,7 @@ double quantile(std::vector<double> values, double p) {
   return *at;
 }
 
-struct Window {
-  double mean = 0.0, scatter = 0.0;  // NaN: too little there
-};
+using Window = RestWindow;
 
 // Of four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
 // second smallest. All four at once, as each sample waits for the one before it in its quarter.
@@ -72,18 +70,8 @@ Window window_of(std::span<const double> rate) {
   return {0.5 * (level[1] + level[2]), scatter[1]};
 }
 
-// Of all its windows, one behind the other.
-std::vector<Window> windows_of(const SeriesView& rate, std::size_t window, std::size_t count) {
-  std::vector<Window> out;
-  out.reserve(count);
-  const std::size_t together = std::max<std::size_t>(1, kSeriesPiece / window);
-  std::vector<double> room;
-  for (std::size_t first = 0; first < count; first += together) {
-    const std::size_t some = std::min(together, count - first);
-    const std::span<const double> rates = rate.piece(first * window, some * window, room);
-    for (std::size_t i = 0; i < some; ++i) out.push_back(window_of(rates.subspan(i * window, window)));
-  }
-  return out;
+std::size_t samples_of_window(double period_s) {
+  return std::max(kLeastWindow, static_cast<std::size_t>(std::lround(kWindow_s / period_s)));
 }
 
 // Median of the means around each window.
@@ -258,9 +246,30 @@ Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
   return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), {}, period_s);
 }
 
+RestWindows rest_windows(const SeriesView& rate, double period_s) {
+  const std::size_t window = samples_of_window(period_s), count = rate.size() / window;
+  RestWindows out;
+  out.reserve(count);
+  const std::size_t together = std::max<std::size_t>(1, kSeriesPiece / window);
+  std::vector<double> room;
+  for (std::size_t first = 0; first < count; first += together) {
+    const std::size_t some = std::min(together, count - first);
+    const std::span<const double> rates = rate.piece(first * window, some * window, room);
+    for (std::size_t i = 0; i < some; ++i) out.push_back(window_of(rates.subspan(i * window, window)));
+  }
+  return out;
+}
+
 Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s) {
+  return find_rest(axes, references, period_s, [&](std::size_t axis) {
+    return std::make_shared<const RestWindows>(rest_windows(axes[axis], period_s));
+  });
+}
+
+Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s,
+               const RestWindowsOf& windows_of) {
   const std::size_t samples = axes.empty() ? 0 : axes.front().size();
-  const auto window = std::max(kLeastWindow, static_cast<std::size_t>(std::lround(kWindow_s / period_s)));
+  const std::size_t window = samples_of_window(period_s);
   const std::size_t count = samples / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
   if (period_s > kDwell_s && !references.empty()) return rest_by_references(references, samples);
@@ -269,14 +278,13 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
     if (period_s > kSlowest_s) rest.slow_turns = dwells_of(axes);
     return rest;
   }
-  std::vector<std::vector<Window>> windows(axes.size());
-  share_out(axes.size(), samples < kWorthThreads ? 1 : 0,
-            [&](std::size_t a) { windows[a] = windows_of(axes[a], window, count); });
+  std::vector<std::shared_ptr<const RestWindows>> windows(axes.size());
+  share_out(axes.size(), samples < kWorthThreads ? 1 : 0, [&](std::size_t a) { windows[a] = windows_of(a); });
   std::vector<double> leap(count);
-  for (const std::vector<Window>& of_axis : windows)
-    mark_axis(of_axis, static_cast<double>(window) * period_s, state, leap);
+  for (const auto& of_axis : windows)
+    mark_axis(*of_axis, static_cast<double>(window) * period_s, state, leap);
   widen(state);
-  for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
+  for (const auto& of_axis : windows) mark_steady_turns(*of_axis, state);
   Rest rest = as_samples(state, window, samples);
   rest.slow_turns = slow_turns_of(leap, state, window);
   return rest;

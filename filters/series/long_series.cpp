@@ -7,11 +7,6 @@
 #include "filters/series/mapped_file.h"
 
 namespace ifog {
-namespace {
-
-constexpr std::size_t kAtOnce = std::size_t{1} << 16U;  // numbers written together
-
-}  // namespace
 
 LongSeries::~LongSeries() { unmap(); }
 
@@ -42,12 +37,22 @@ void LongSeries::unmap() {
   if (mapped_ != nullptr) unmap_file(std::exchange(mapped_, nullptr), filed_ * sizeof(double));
 }
 
+void LongSeries::expect(std::size_t numbers) {
+  if (numbers > most_) file_ = take_spare_file(numbers * sizeof(double));
+}
+
 void LongSeries::add(double value) {
   recent_.push_back(value);
   if (recent_.size() >= (!file_ ? most_ + 1 : kAtOnce)) file_recent();
 }
 
 void LongSeries::add(std::span<const double> values) {
+  if (file_ && recent_.empty() && values.size() >= kAtOnce) {
+    unmap();
+    file_->write(filed_, values);
+    filed_ += values.size();
+    return;
+  }
   recent_.insert(recent_.end(), values.begin(), values.end());
   if (recent_.size() >= (!file_ ? most_ + 1 : kAtOnce)) file_recent();
 }

@@ -16,6 +16,8 @@ class LongSeries {
  public:
   // 8 MiB of numbers: a dozen columns in memory together are a hundredth of a small computer's.
   static constexpr std::size_t kInMemory = std::size_t{1} << 20U;
+  // Numbers that are written to the file together: so many or more, added together, go straight there.
+  static constexpr std::size_t kAtOnce = std::size_t{1} << 16U;
 
   // in_memory: numbers kept there before the file is begun, in $TMPDIR or else /var/tmp or /tmp.
   explicit LongSeries(std::size_t in_memory = kInMemory) : most_(in_memory) {}
@@ -25,6 +27,13 @@ class LongSeries {
   LongSeries(const LongSeries&) = delete;
   LongSeries& operator=(const LongSeries&) = delete;
 
+  // Whether to add so many writes to the file.
+  [[nodiscard]] bool will_write(std::size_t numbers) const {
+    return recent_.size() + numbers >= (!file_ ? most_ + 1 : kAtOnce);
+  }
+  // Nothing has been added yet, and so many will be: they go to a file that somebody else gave back, if there
+  // is one that long.
+  void expect(std::size_t numbers);
   // Both throw std::runtime_error with one line: no room for the file, an error of its device.
   void add(double value);
   void add(std::span<const double> values);

@@ -70,6 +70,15 @@ class Resident {
     mapped_.erase(at);
   }
 
+  // Likewise, with the file of it.
+  std::optional<UnnamedFile> take(const void* at) {
+    const std::lock_guard lock(guard_);
+    const auto mapped = mapped_.find(at);
+    std::optional<UnnamedFile> file = std::move(mapped->second.file);
+    mapped_.erase(mapped);
+    return file;
+  }
+
   struct Place {
     UnnamedFile* file;
     std::size_t offset;  // bytes
@@ -168,6 +177,18 @@ class Spares {
     return at;
   }
 
+  // Likewise, of about that size.
+  std::optional<Spare> take_about(std::size_t bytes) noexcept {
+    const std::lock_guard lock(guard_);
+    const auto found = std::find_if(all_.rbegin(), all_.rend(), [&](const Spare& each) {
+      return each.bytes >= bytes / 2 && each.bytes / 2 <= bytes;
+    });
+    if (found == all_.rend()) return std::nullopt;
+    const Spare spare = *found;
+    all_.erase(std::next(found).base());
+    return spare;
+  }
+
   void keep(const Spare& spare) noexcept {
     const std::lock_guard lock(guard_);
     if (all_.size() == kMostSpare) {
@@ -217,6 +238,14 @@ void* map_new_file(std::size_t bytes) {
 }
 
 void unmap_new_file(void* at, std::size_t bytes) noexcept { spares().keep({at, room_for(bytes)}); }
+
+std::optional<UnnamedFile> take_spare_file(std::size_t bytes) noexcept {
+  const std::optional<Spare> spare = spares().take_about(bytes);
+  if (!spare) return std::nullopt;
+  std::optional<UnnamedFile> file = resident().take(spare->at);
+  ::munmap(spare->at, spare->bytes);
+  return file;
+}
 
 void write_new_file(void* to, const void* from, std::size_t bytes) {
   const Resident::Place place = resident().place_of(to);

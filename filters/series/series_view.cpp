@@ -48,6 +48,19 @@ std::span<const double> SeriesView::piece(std::size_t first, std::size_t count,
   return to;
 }
 
+void ReadingAhead::look_up(std::size_t i) {
+  next_ = i + kAhead;
+  const std::span<const double> some = values_.subspan(i, std::min(kAhead, values_.size() - i));
+  if (values_.size_bytes() > kLookedUp) expect_reading(some.data(), some.size_bytes());
+}
+
+void SeriesView::read(std::size_t first, std::span<double> to) const {
+  if (long_ != nullptr)
+    long_->read(first_ + first, to);
+  else
+    std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(first), to.size(), to.begin());
+}
+
 double SeriesView::at(std::size_t i) const {
   if (long_ == nullptr) return values_[i];
   double value = 0.0;

@@ -27,6 +27,8 @@ class SeriesView {
   [[nodiscard]] std::span<const double> piece(std::size_t first, std::size_t count,
                                               std::vector<double>& room) const;
   [[nodiscard]] double at(std::size_t i) const;
+  // These numbers, as many as there is room for. Throws likewise.
+  void read(std::size_t first, std::span<double> to) const;
   // From begin to end, without what is at `end`.
   [[nodiscard]] SeriesView part(std::size_t begin, std::size_t end) const;
   // All of them at once where they are in memory; empty otherwise.
@@ -49,6 +51,24 @@ void for_each_piece(const SeriesView& series, std::size_t begin, std::size_t end
   for (std::size_t at = begin; at < end; at += kSeriesPiece)
     use(series.piece(at, end - at < kSeriesPiece ? end - at : kSeriesPiece, room), at);
 }
+
+// For what goes through numbers one by one, in order and from each as far as kAhead: pages of a file are
+// looked up together before. Of what is no file's nothing.
+class ReadingAhead {
+ public:
+  explicit ReadingAhead(std::span<const double> values) : values_(values) {}
+  // Before the number at i is read, i never decreasing.
+  void at(std::size_t i) {
+    if (i >= next_) look_up(i);
+  }
+
+ private:
+  static constexpr std::size_t kAhead = std::size_t{1} << 17U;
+  void look_up(std::size_t i);
+
+  std::span<const double> values_;
+  std::size_t next_ = 0;
+};
 
 // The median of the differences of neighbours, exactly, in memory that does not grow; of an even number the
 // upper one. At least two numbers, none NaN, not decreasing.

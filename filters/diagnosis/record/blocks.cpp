@@ -6,13 +6,17 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/record_clock.h"
+#include "filters/diagnosis/record/step_means.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/mapped_file.h"
+#include "filters/series/series_view.h"
 
 namespace ifog {
 namespace {
@@ -109,11 +113,15 @@ void check_columns(const std::vector<Record>& records) {
                                   records.front().name);
     if (!record.reference_radps.empty()) same(record.reference_radps.size(), "the reference");
     for (const RecordChannel& channel : record.channels) same(channel.values.size(), channel.name);
-    for (std::size_t i = 1; i < n; ++i) {
-      if (!(record.time_s[i] > record.time_s[i - 1])) {
-        throw std::invalid_argument(record.name + ": time does not increase at sample " + std::to_string(i));
-      }
-    }
+    double before_s = record.time_s.front();
+    for_each_piece(record.time_s, 1, n, [&](std::span<const double> times, std::size_t from) {
+      bool all = true;  // without a branch
+      for (const double time_s : times) all = all && time_s > std::exchange(before_s, time_s);
+      if (all) return;
+      std::size_t at = from;
+      while (record.time_s[at] > record.time_s[at - 1]) ++at;
+      throw std::invalid_argument(record.name + ": time does not increase at sample " + std::to_string(at));
+    });
   }
 }
 
@@ -135,67 +143,6 @@ double white_variance(const std::vector<Record>& records) {
   if (differences.empty()) return 0.0;
   const double sigma = median(std::move(differences)) / 0.6744897501960817;
   return sigma * sigma / 2.0;
-}
-
-std::size_t fine_index(const Record& record, std::size_t i, double fine_s) {
-  return static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s[0]) / fine_s + 0.5));
-}
-
-// The first sample of each step of a record's fine grid, and behind the last step the number of samples.
-std::vector<std::size_t> step_starts(const Record& record, double fine_s, std::size_t steps) {
-  std::vector<std::size_t> first;
-  first.reserve(steps + 1);
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    const std::size_t k = std::min(fine_index(record, i, fine_s), steps - 1);
-    while (first.size() <= k) first.push_back(i);
-  }
-  first.resize(steps + 1, record.time_s.size());
-  return first;
-}
-
-// Where the record has no rows the channel went on: linear between the steps beside such a hole. Held there
-// and then jumping, its derivative would be that of no temperature.
-void bridge_holes(const std::vector<std::size_t>& first, std::span<double> means) {
-  std::size_t last = 0;
-  for (std::size_t k = 0; k < means.size(); ++k) {
-    if (first[k] == first[k + 1]) continue;
-    for (std::size_t j = last + 1; j < k; ++j)
-      means[j] = means[last] +
-                 (means[k] - means[last]) * static_cast<double>(j - last) / static_cast<double>(k - last);
-    last = k;
-  }
-}
-
-// Means of one column over the fine grid of one record; steps without a value hold the last one.
-void fill(const std::vector<std::size_t>& first, std::span<const double> values, std::vector<double>& means,
-          std::vector<double>* power) {
-  const std::size_t steps = first.size() - 1;
-  const std::size_t begin = means.size();
-  bool known = false;  // steps before the first value hold that
-  double held = 0.0;
-  constexpr std::size_t kLookedUp = std::size_t{1} << 17U;
-  for (std::size_t k = 0, looked_up = 0; k < steps; ++k) {
-    if (first[k] >= looked_up) {
-      looked_up = std::min(first[k] + kLookedUp, values.size());
-      expect_reading(values.data() + first[k], (looked_up - first[k]) * sizeof(double));
-    }
-    double sum = 0.0, square = 0.0;
-    std::uint32_t count = 0;
-    for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
-      if (!std::isfinite(values[i])) continue;
-      sum += values[i];
-      square += values[i] * values[i];
-      ++count;
-    }
-    if (count && !known) {
-      held = sum / count;
-      std::fill(means.begin() + static_cast<std::ptrdiff_t>(begin), means.end(), held);
-    }
-    if (count) held = sum / count, known = true;
-    means.push_back(held);
-    if (power) power->push_back(count ? std::max(0.0, square / count - held * held) : 0.0);
-  }
-  bridge_holes(first, std::span(means).last(steps));
 }
 
 void describe(FineChannel& channel) {
@@ -223,12 +170,14 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
 }
 
 // The first samples of the steps of its fine grid.
-std::vector<std::size_t> add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
+std::shared_ptr<const StepStarts> add_blocks_of(const Record& record, BlockGrid& grid,
+                                                std::vector<double>& error) {
   const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
   grid.records.push_back({grid.size(), grid.size() + blocks});
   grid.origin.push_back(record.origin);
-  std::vector<std::size_t> first = step_starts(record, grid.fine_s, blocks * grid.fine);
+  const auto starts = step_starts(record, grid.fine_s, blocks * grid.fine);
+  const StepStarts& first = *starts;
   const double full = grid.block_s / grid.sample_s;
   for (std::size_t b = 0; b < blocks; ++b) {
     double sum = 0.0, count = 0.0;
@@ -245,18 +194,25 @@ std::vector<std::size_t> add_blocks_of(const Record& record, BlockGrid& grid, st
     grid.time_s.push_back(record.time_s[0] + (static_cast<double>(b) + 0.5) * grid.block_s -
                           0.5 * grid.fine_s);
   }
-  return first;
+  return starts;
+}
+
+StepMeansOf means_of(const Record& record, const StepStarts& starts, const BlockGrid& grid) {
+  const bool several = grid.fine_s > grid.sample_s;  // samples a step
+  return {record, starts, grid.fine_s, several};
 }
 
 template <class ValuesOf>
 FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& grid,
-                         const std::vector<std::vector<std::size_t>>& starts, const std::string& name,
-                         ValuesOf&& values_in) {
+                         const std::vector<std::shared_ptr<const StepStarts>>& starts,
+                         const std::string& name, ValuesOf&& values_in) {
   FineChannel channel;
   channel.name = name;
-  const bool several = grid.fine_s > grid.sample_s;  // samples a step
   for (std::size_t r = 0; r < records.size(); ++r) {
-    fill(starts[r], values_in(records[r]), channel.values, several ? &channel.power : nullptr);
+    const std::span<const double> values = values_in(records[r]);
+    const auto steps = means_of(records[r], *starts[r], grid).column(values);
+    channel.values.insert(channel.values.end(), steps->means.begin(), steps->means.end());
+    channel.power.insert(channel.power.end(), steps->power.begin(), steps->power.end());
   }
   describe(channel);
   return channel;
@@ -293,12 +249,14 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   BlockData data;
   data.grid = steps_and_blocks(records, most_blocks);
   std::vector<double> error;
-  std::vector<std::vector<std::size_t>> starts;  // by record: the first samples of its steps
+  std::vector<std::shared_ptr<const StepStarts>> starts;  // by record: the first samples of its steps
   starts.reserve(records.size());
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
   if (data.grid.used() < kLeastBlocks) throw std::invalid_argument(too_few(records, data.grid));
 
+  for (std::size_t r = 0; r < records.size(); ++r)
+    means_of(records[r], *starts[r], data.grid).prepare(records[r].channels);
   for (const RecordChannel& channel : records.front().channels) {
     const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };
     if (!std::all_of(records.begin(), records.end(), has_it)) continue;

@@ -39,6 +39,20 @@ double quantile(std::vector<double> values, double p) {
   return values[static_cast<std::size_t>(at)];
 }
 
+// The first i in [from, to) with test(i); `to` if none is. Where it seldom is, without a branch.
+template <typename Test>
+std::size_t first_where(ReadingAhead& ahead, std::size_t from, std::size_t to, const Test& test) {
+  constexpr std::size_t kTogether = 64;
+  for (; from + kTogether <= to; from += kTogether) {
+    ahead.at(from);
+    bool any = false;
+    for (std::size_t k = 0; k < kTogether; ++k) any |= test(from + k);
+    if (any) break;
+  }
+  while (from < to && !test(from)) ++from;
+  return from;
+}
+
 // What is usual of a channel.
 struct Usual {
   double low = 0.0, high = 0.0;  // hundredth and ninety-ninth quantile
@@ -61,8 +75,13 @@ Usual usual_of(std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); i += stride) some.push_back(values[i]);
   for (std::size_t i = stride; i < values.size(); i += stride)
     moves.push_back(std::abs(values[i] - values[i - 1]));
-  for (std::size_t i = 1; i < values.size() && changes.size() < 4 * kLookedAt; ++i)
-    if (const double move = std::abs(values[i] - values[i - 1]); move > 0.0) changes.push_back(move);
+  ReadingAhead ahead(values);
+  const auto changed = [&](std::size_t i) { return values[i] != values[i - 1]; };
+  for (std::size_t i = 1; changes.size() < 4 * kLookedAt; ++i) {
+    i = first_where(ahead, i, values.size(), changed);
+    if (i >= values.size()) break;
+    changes.push_back(std::abs(values[i] - values[i - 1]));
+  }
   if (some.size() < 100 || changes.empty()) return usual;
   leave_out_placeholders(some);
   usual.low = quantile(some, 0.01);
@@ -138,9 +157,12 @@ std::vector<Run> excursions(const Readings& of, const Usual& usual) {
   if (i == n || of.time_s[i] - of.time_s[0] > kLongestExcursion_s) return {};
   if (i > 0) found.push_back({0, i});
   samples += i;
+  ReadingAhead ahead(of.values);
+  const auto jumps = [&](std::size_t at) { return std::abs(of.values[at] - of.values[at - 1]) > jump; };
   for (++i; i < n; ++i) {
+    i = first_where(ahead, i, n, jumps);
+    if (i >= n) break;
     const double away = std::abs(of.values[i] - of.values[i - 1]);
-    if (!(away > jump)) continue;
     auto back = return_to(of, i, of.values[i - 1], kBeside * away);
     const bool ends = of.time_s[n - 1] - of.time_s[i] <= kLongestExcursion_s;
     if (!back && ends && elsewhere(of.values[i])) back = n;
@@ -165,9 +187,13 @@ std::vector<Stuck> stuck_stretches(std::span<const double> values, const Usual& 
   std::vector<Stuck> found;
   std::size_t longest = 0;
   std::size_t second = 0;
+  ReadingAhead ahead(values);
   for (std::size_t from = 0; from < values.size();) {
     std::size_t to = from + 1;
-    while (to < values.size() && values[to] == values[from]) ++to;
+    for (; to < values.size(); ++to) {
+      ahead.at(to);
+      if (values[to] != values[from]) break;
+    }
     const std::size_t length = to - from;
     second = std::max(second, std::min(length, longest));
     longest = std::max(longest, length);
@@ -268,8 +294,10 @@ std::optional<Samples> rate_without_knocks(const Record& record, const std::stri
   const auto is_away = [&](std::size_t i) {
     return of.values[i] > usual.high + far || of.values[i] < usual.low - far;
   };
+  ReadingAhead ahead(of.values);
   for (std::size_t i = 0; i < of.values.size(); ++i) {
-    if (!is_away(i)) continue;
+    i = first_where(ahead, i, of.values.size(), is_away);
+    if (i == of.values.size()) break;
     std::size_t to = i + 1;
     while (to < of.values.size() && is_away(to)) ++to;
     if (to - i <= kShortest) {

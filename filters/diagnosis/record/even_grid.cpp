@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/record/known_columns.h"
 #include "filters/series/mapped_file.h"
 #include "filters/series/series_view.h"
 
@@ -37,7 +39,10 @@ bool is_even(const Record& record, double sample_s) {
 
 std::span<const double> even_samples(const Record& record, double sample_s, std::span<const double> values,
                                      Samples& room) {
-  if (values.size() == record.time_s.size() && is_even(record, sample_s)) return values;
+  if (values.size() == record.time_s.size() &&
+      *known_or(record.known.get(), {"is even", record.time_s, sample_s},
+                [&] { return is_even(record, sample_s); }))
+    return values;
   room = on_even_grid(record, sample_s, values);
   return room;
 }
@@ -66,6 +71,11 @@ Samples error_of(const Record& record) {
 }
 
 double variance_of(std::span<const double> values) {
+  const std::optional<double> variance = variance_of_two(values);
+  return variance ? *variance : 0.0;
+}
+
+std::optional<double> variance_of_two(std::span<const double> values) {
   double sum = 0.0;
   double square = 0.0;
   double n = 0.0;
@@ -76,7 +86,7 @@ double variance_of(std::span<const double> values) {
       n += 1.0;
     }
   });
-  if (n < 2.0) return 0.0;
+  if (n < 2.0) return std::nullopt;
   const double mean = sum / n;
   for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
     for (const double v : some)

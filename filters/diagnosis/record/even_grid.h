@@ -2,6 +2,7 @@
 // A record on its nominal grid: even steps, so that spectra and Allan deviations mean something.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "filters/diagnosis/record.h"
@@ -20,7 +21,8 @@ std::span<const double> even_samples(const Record& record, double sample_s, std:
 // rate - reference by sample.
 Samples error_of(const Record& record);
 
-// About the mean, NaN left out.
+// About the mean, NaN left out; 0, or nothing, of fewer than two.
 double variance_of(std::span<const double> values);
+std::optional<double> variance_of_two(std::span<const double> values);
 
 }  // namespace ifog

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/known_angles.h"
@@ -17,8 +19,8 @@ namespace {
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 double rms_about_mean(std::span<const double> values) {
-  const auto finite = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  return finite < 2 ? kMissing : std::sqrt(variance_of(values));
+  const std::optional<double> variance = variance_of_two(values);
+  return variance ? std::sqrt(*variance) : kMissing;
 }
 
 double lag_one(std::span<const double> values) {
@@ -84,16 +86,21 @@ Present present(std::span<const double> values) {
 }
 
 Samples means_over(std::span<const double> error, std::size_t count) {
-  Samples means;
-  means.reserve(error.size() / count);
-  constexpr std::size_t kLookedUp = std::size_t{1} << 17U;
-  std::size_t looked_up = 0;
-  for (std::size_t from = 0; from + count <= error.size(); from += count) {
-    if (from >= looked_up) {
-      looked_up = std::min(from + std::max(count, kLookedUp), error.size());
-      expect_reading(error.data() + from, (looked_up - from) * sizeof(double));
-    }
-    means.push_back(present(error.subspan(from, count)).mean_of(count));
+  return std::move(means_over(error, std::vector{count}).front());
+}
+
+std::vector<Samples> means_over(std::span<const double> error, const std::vector<std::size_t>& counts) {
+  std::vector<Samples> means(counts.size());
+  std::vector<std::size_t> next(counts.size());
+  for (std::size_t c = 0; c < counts.size(); ++c) means[c].reserve(error.size() / counts[c]);
+  // A piece is read once for all of them, while it is in the second-level cache.
+  constexpr std::size_t kPiece = std::size_t{1} << 16U;
+  for (std::size_t from = 0; from < error.size(); from += kPiece) {
+    const std::size_t to = std::min(from + kPiece, error.size());
+    expect_reading(error.data() + from, (to - from) * sizeof(double));
+    for (std::size_t c = 0; c < counts.size(); ++c)
+      for (; next[c] + counts[c] <= to; next[c] += counts[c])
+        means[c].push_back(present(error.subspan(next[c], counts[c])).mean_of(counts[c]));
   }
   return means;
 }
@@ -103,8 +110,8 @@ std::map<std::string, double> error_figures(std::span<const double> error, doubl
   return error_figures(error, period_s, none);
 }
 
-std::map<std::string, double> error_figures(std::span<const double> error, double period_s,
-                                            KnownAngles& angles) {
+std::map<std::string, double> error_figures(const AskedSeries& asked, double period_s, KnownAngles& angles) {
+  const std::span<const double> error = asked.values();
   std::map<std::string, double> figures;
   figures["residual_rms_radps"] = rms_about_mean(error);
   std::vector<std::string> names;
@@ -116,15 +123,18 @@ std::map<std::string, double> error_figures(std::span<const double> error, doubl
     names.emplace_back(name);
     counts.push_back(count);
   }
-  const std::vector<double> deviations = angles.gapped(error, counts);
+  const std::vector<double> deviations = angles.gapped(asked, counts);
+  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
+  std::vector<std::size_t> with_second = counts;
+  with_second.push_back(second);
+  const std::vector<Samples> means = means_over(error, with_second);
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    figures["rms_" + names[i]] = rms_about_mean(means_over(error, counts[i]));
+    figures["rms_" + names[i]] = rms_about_mean(means[i]);
     figures["adev_" + names[i]] = deviations[i];
   }
   figures["heading_drift_rad"] = heading_drift(error, period_s);
-  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
   const bool long_enough = error.size() >= 20 * second;
-  figures["whiteness"] = long_enough ? lag_one(means_over(error, second)) : lag_one(error);
+  figures["whiteness"] = long_enough ? lag_one(means.back()) : lag_one(error);
   return figures;
 }
 

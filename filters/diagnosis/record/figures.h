@@ -13,6 +13,7 @@
 
 namespace ifog {
 
+class AskedSeries;
 class KnownAngles;
 
 // Even steps of period_s; NaN missing. Keys: residual_rms_radps, rms_<T>s_radps and adev_<T>s_radps for T of
@@ -20,8 +21,7 @@ class KnownAngles;
 // left out. Heading drift: error of the angle at the end when the bias is the mean of the first tenth.
 // Whiteness: lag-1 autocorrelation of 1 s means (of samples, if those are longer); 0 for white noise.
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s);
-std::map<std::string, double> error_figures(std::span<const double> error, double period_s,
-                                            KnownAngles& angles);
+std::map<std::string, double> error_figures(const AskedSeries& error, double period_s, KnownAngles& angles);
 
 // Several records of one sensor: squares averaged by length, whiteness by length.
 std::map<std::string, double> pooled(const std::vector<std::map<std::string, double>>& figures,
@@ -42,5 +42,7 @@ Present present(std::span<const double> values);
 
 // Means over `count` samples, NaN where fewer than half are there.
 Samples means_over(std::span<const double> error, std::size_t count);
+// Over each of these counts.
+std::vector<Samples> means_over(std::span<const double> error, const std::vector<std::size_t>& counts);
 
 }  // namespace ifog

@@ -3,43 +3,36 @@
 // look at what is left each by itself, and what no effect was found in is before and after the same.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
+#include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <list>
 #include <span>
+#include <type_traits>
 #include <utility>
 
-#include "filters/series/mapped_file.h"
+#include "filters/series/series_mark.h"
+#include "filters/series/shared_samples.h"
 
 namespace ifog {
 
-// Of every bit of a series: two that differ have the same once in 2^128.
-struct SeriesMark {
-  std::size_t size = 0;
-  std::array<std::uint64_t, 4> lanes{};
-  friend bool operator==(const SeriesMark&, const SeriesMark&) = default;
-};
+// A series to ask for. What is in SharedSamples keeps its mark, so that it is read through for it once; any
+// other is each time. Outlived by what it is of.
+class AskedSeries {
+ public:
+  AskedSeries(const SharedSamples& samples) : values_(samples), kept_(&samples) {}
+  template <typename Values>
+  requires(std::convertible_to<const Values&, std::span<const double>> &&
+           !std::same_as<std::remove_cvref_t<Values>, AskedSeries>) AskedSeries(const Values& values)
+      : values_(values) {}
 
-inline SeriesMark mark_of(std::span<const double> series) noexcept {
-  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15U;  // of the golden ratio: it spreads every bit
-  SeriesMark mark{series.size(), {1, 2, 3, 4}};
-  std::size_t i = 0;
-  const auto take = [&](std::uint64_t& lane, double value) {
-    lane = std::rotl((lane ^ std::bit_cast<std::uint64_t>(value)) * kOdd, 31);
-  };
-  constexpr std::size_t kPiece = std::size_t{1} << 17U;
-  while (i + 4 <= series.size()) {
-    const std::size_t end = std::min(i + kPiece, series.size() / 4 * 4);
-    expect_reading(series.data() + i, (end - i) * sizeof(double));
-    for (; i < end; i += 4)
-      for (std::size_t lane = 0; lane < 4; ++lane) take(mark.lanes[lane], series[i + lane]);
-  }
-  for (; i < series.size(); ++i) take(mark.lanes[i % 4], series[i]);
-  return mark;
-}
+  [[nodiscard]] std::span<const double> values() const { return values_; }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] SeriesMark mark() const { return kept_ != nullptr ? kept_->mark() : mark_of(values_); }
+
+ private:
+  std::span<const double> values_;
+  const SharedSamples* kept_ = nullptr;
+};
 
 template <typename Value>
 class KnownOfSeries {
@@ -49,15 +42,15 @@ class KnownOfSeries {
 
   // work(series), or what that gave before; valid until the next call.
   template <typename Work>
-  const Value& of(std::span<const double> series, const Work& work) {
-    const SeriesMark mark = mark_of(series);
+  const Value& of(const AskedSeries& series, const Work& work) {
+    const SeriesMark mark = series.mark();
     for (auto each = known_.begin(); each != known_.end(); ++each)
       if (each->first == mark) {
         known_.splice(known_.begin(), known_, each);
         return each->second;
       }
     if (known_.size() == most_) known_.pop_back();
-    return known_.emplace_front(mark, work(series)).second;
+    return known_.emplace_front(mark, work(series.values())).second;
   }
 
  private:

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/record/prepared_channels.h"
 
+#include <memory>
 #include <utility>
 
 #include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/record/known_columns.h"
 #include "filters/diagnosis/record/record_clock.h"
 
 namespace ifog {
@@ -26,7 +28,15 @@ PreparedChannels::PreparedChannels(const std::vector<Record>& captures, const Ti
       unwrapped_(with_unwrapped_angles(parted_.records)),
       repaired_(repair_channels(unwrapped_.records, threads)),
       whole_(with_differences(repaired_.records)) {
-  for (Record& record : whole_.records) look_at_clock(record);
+  const auto known = std::make_shared<KnownColumns>();
+  for (Record& record : whole_.records) {
+    look_at_clock(record);
+    record.known = known;
+    known->add(record.time_s);
+    known->add(record.rate_radps);
+    for (const RecordChannel& axis : record.other_axes) known->add(axis.values);
+    for (const RecordChannel& channel : record.channels) known->add(channel.values);
+  }
 }
 
 std::vector<Record> PreparedChannels::of_axis(const std::vector<Record>& captures) const {
@@ -48,6 +58,7 @@ std::vector<Record> PreparedChannels::with_rates_of(const std::vector<Record>& c
     record.time_s = channels[i].time_s;
     record.channels = channels[i].channels;
     record.clock = channels[i].clock;
+    record.known = channels[i].known;
     records.push_back(std::move(record));
   }
   return records;

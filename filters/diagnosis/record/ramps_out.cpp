@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "filters/diagnosis/record/known_columns.h"
 #include "filters/diagnosis/record/rebuilt_ramp.h"
 
 namespace ifog {
@@ -13,7 +14,8 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
   if (records.empty()) return parts;
   for (const RecordChannel& channel : records.front().channels) {
     const auto wraps = [&](const Record& record) {
-      return wrap_period(values_of(record, channel.name)) > 0.0;
+      const std::span<const double> values = values_of(record, channel.name);
+      return *known_or(record.known.get(), {"wraps", values}, [&] { return wrap_period(values) > 0.0; });
     };
     if (!std::any_of(records.begin(), records.end(), wraps)) continue;
     for (Record& record : parts.records) {

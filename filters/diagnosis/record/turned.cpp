@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/record/known_columns.h"
 #include "filters/diagnosis/record/record_clock.h"
 #include "filters/rest/rest.h"
 
@@ -46,7 +47,14 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
     const double period_s = *period;
     std::vector<std::span<const double>> axes{record.rate_radps};
     for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
-    const Rest rest = find_rest(axes, period_s);
+    const std::vector<SeriesView> views(axes.begin(), axes.end());
+    if (record.known)
+      for (const std::span<const double> axis : axes)
+        record.known->prepare({"rest windows", axis, period_s}, [&] { return rest_windows(axis, period_s); });
+    const Rest rest = find_rest(views, {}, period_s, [&](std::size_t axis) {
+      return known_or(record.known.get(), {"rest windows", axes[axis], period_s},
+                      [&] { return rest_windows(axes[axis], period_s); });
+    });
     if (rest.turned == 0) {
       out.records.back().at_rest = rest.at_rest;
       continue;

@@ -6,6 +6,7 @@
 
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/record/record_clock.h"
+#include "filters/series/series_view.h"
 
 namespace ifog {
 namespace {
@@ -19,7 +20,10 @@ constexpr double kHole = 1.5;          // steps
 Stretch longest_without_hole(const Record& record, double step_s) {
   Stretch longest{0, 0};
   std::size_t begin = 0;
+  ReadingAhead times(record.time_s), rates(record.rate_radps);
   for (std::size_t i = 0; i <= record.time_s.size(); ++i) {
+    times.at(i);
+    rates.at(i);
     const bool missing = i == record.time_s.size() || !std::isfinite(record.rate_radps[i]) ||
                          (!record.reference_radps.empty() && !std::isfinite(record.reference_radps[i]));
     const bool hole = i > begin && !missing && record.time_s[i] - record.time_s[i - 1] > kHole * step_s;

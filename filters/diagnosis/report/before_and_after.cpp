@@ -10,8 +10,7 @@ namespace ifog {
 void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, KnownFigures& known,
                             KnownAngles& angles, Diagnosis& diagnosis) {
   const auto figures_of = [&](const SharedSamples& error) {
-    return known.of(error,
-                    [&](std::span<const double> series) { return error_figures(series, sample_s, angles); });
+    return known.of(error, [&](std::span<const double>) { return error_figures(error, sample_s, angles); });
   };
   std::vector<std::map<std::string, double>> before;
   std::vector<std::map<std::string, double>> written;

@@ -20,8 +20,7 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
 }
 
 // What the effects leave of a record's samples at rest, NaN elsewhere: in `room` unless it is all of them.
-std::span<const double> error_at_rest(const Record& record, const EvenError& error, double sample_s,
-                                      Samples& room) {
+AskedSeries error_at_rest(const Record& record, const EvenError& error, double sample_s, Samples& room) {
   const bool all = record.at_rest.empty() ||
                    (record.at_rest.size() == 1 && record.at_rest.front().size() == record.time_s.size());
   // A step of the grid without a sample is missing in the error, too.
@@ -48,7 +47,7 @@ NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
   Samples all;
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
+    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room).values();
     for (const Stretch& part : stretches({}, rate, {}))
       parts.push_back({all.size() + part.begin, all.size() + part.end});
     all.insert(all.end(), rate.begin(), rate.end());
@@ -60,7 +59,7 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
                    Diagnosis& diagnosis) {
   Samples room;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
+    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room).values();
     const std::vector<NoiseChange> found =
         noise_changes(rate, stretches({}, rate, {}), sample_s, [&](std::size_t i) {
           return errors[r].origin.told(errors[r].start_s + static_cast<double>(i) * sample_s);

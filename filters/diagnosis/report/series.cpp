@@ -57,7 +57,9 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
       const auto row = static_cast<Eigen::Index>(b);
       series.time_s.push_back(offset + grid.time_s[b]);
       series.before_radps.push_back(mean_of_block(grid, errors[r].before, b - record.first));
-      series.after_radps.push_back(mean_of_block(grid, errors[r].written, b - record.first));
+      series.after_radps.push_back(errors[r].written.is(errors[r].before)
+                                       ? series.before_radps.back()
+                                       : mean_of_block(grid, errors[r].written, b - record.first));
       for (std::size_t i = 0; i < parts.size(); ++i) {
         series.contribution_radps[i].push_back(parts[i][row]);
         const std::size_t channel = chosen[i].candidate.channel;
@@ -68,7 +70,8 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   }
   const EvenError& first = errors.front();
   const Spectrum before = averaged_spectrum(first.before, grid.sample_s, known);
-  const Spectrum after = averaged_spectrum(first.written, grid.sample_s, known);
+  const Spectrum after =
+      first.written.is(first.before) ? before : averaged_spectrum(first.written, grid.sample_s, known);
   series.frequency_hz = before.frequency_hz;
   for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
   for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));

@@ -19,53 +19,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kFirstBin = 16.0;  // below, slow noise and a line look alike
-constexpr double kBand = 0.15;      // noise is taken from +-15 % of the frequency, and at least
-constexpr std::size_t kLeastBins = 25;
-
-// Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
-// frequencies, and between them in proportion.
-class NoiseFloor {
- public:
-  explicit NoiseFloor(std::span<const double> power) {
-    std::vector<double> window;
-    for (std::size_t k = 1; k < power.size(); k += std::max<std::size_t>(1, k / 50)) {
-      const std::size_t half = std::max(kLeastBins, static_cast<std::size_t>(kBand * static_cast<double>(k)));
-      const std::size_t low = k > half ? k - half : 1;
-      const std::size_t high = std::min(power.size(), k + half + 1);
-      const std::size_t stride = std::max<std::size_t>(1, (high - low) / 2000);
-      window.clear();
-      for (std::size_t i = low; i < high; i += stride) window.push_back(power[i]);
-      const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-      std::nth_element(window.begin(), middle, window.end());
-      at_.push_back(k);
-      value_.push_back(*middle / std::numbers::ln2);
-    }
-  }
-
-  [[nodiscard]] double operator[](std::size_t bin) const {
-    const auto above = std::upper_bound(at_.begin() + 1, at_.end(), bin);
-    return between(static_cast<std::size_t>(above - at_.begin()) - 1, bin);
-  }
-  // The same for bins in order; j: where the one before was found, 0 at first.
-  [[nodiscard]] double following(std::size_t bin, std::size_t& j) const {
-    while (j + 1 < at_.size() && at_[j + 1] <= bin) ++j;
-    return between(j, bin);
-  }
-
- private:
-  [[nodiscard]] double between(std::size_t j, std::size_t bin) const {
-    const bool inside = j + 1 < at_.size();
-    const double next = inside ? value_[j + 1] : value_[j];
-    const double span = inside ? static_cast<double>(at_[j + 1] - at_[j]) : 1.0;
-    const double share = bin > at_[j] ? std::min(1.0, static_cast<double>(bin - at_[j]) / span) : 0.0;
-    return std::max(value_[j] + share * (next - value_[j]), 1e-300);
-  }
-
-  std::vector<std::size_t> at_;
-  std::vector<double> value_;
-};
-
 // Noise power right beside a peak. On a resonance it is far above the noise of the wider band, and every
 // ripple of the resonance would pass for a line against that.
 double noise_beside(std::span<const double> power, std::size_t k) {
@@ -84,7 +37,7 @@ double noise_beside(std::span<const double> power, std::size_t k) {
 // Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. Several
 // frequencies at once, so that the error is read once; each by a table of its first turns, which a carrier
 // turns on from one table's length to the next.
-constexpr int kAtOnce = 4;
+constexpr int kAtOnce = 8;
 constexpr std::size_t kTable = 64;
 using Several = Eigen::Array<double, kAtOnce, 1>;
 using Sums = std::array<std::vector<Complex>, kAtOnce>;
@@ -205,9 +158,9 @@ SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex
 // Bins in which a peak has no other beside it.
 std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
 
-const KnownPeriodogram& periodogram_of(std::span<const double> error, KnownPeriodograms& known) {
+const KnownPeriodogram& periodogram_of(const AskedSeries& error, KnownPeriodograms& known) {
   return known.of(error, [](std::span<const double> series) {
-    return KnownPeriodogram{periodogram(series), {}};
+    return KnownPeriodogram{periodogram(series), {}, {}};
   });
 }
 
@@ -244,26 +197,25 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   return find_lines(error, start_s, period_s, significance, none, most);
 }
 
-std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
+std::vector<SpectralLine> find_lines(const AskedSeries& asked, double start_s, double period_s,
                                      double significance, KnownPeriodograms& known, std::size_t most) {
   std::vector<SpectralLine> lines;
+  const std::span<const double> error = asked.values();
   if (error.size() < 128) return lines;
-  const KnownPeriodogram& looked_at = periodogram_of(error, known);
+  const KnownPeriodogram& looked_at = periodogram_of(asked, known);
   const Periodogram& spectrum = looked_at.spectrum;
   const Samples& power = spectrum.power;
-  const NoiseFloor floor(power);
+  if (!looked_at.standing_out) looked_at.standing_out.emplace(power);
+  const NoiseFloor& floor = looked_at.standing_out->floor;
   const auto tries = static_cast<double>(power.size());
   const double least = std::log(tries / significance);
   std::vector<std::size_t> peaks;
-  std::size_t near = 0;
-  for (std::size_t k = static_cast<std::size_t>(kFirstBin); k + 1 < power.size(); ++k) {
-    if (!(power[k] >= power[k - 1] && power[k] >= power[k + 1])) continue;
-    if (power[k] / floor.following(k, near) > 0.6 * least) peaks.push_back(k);
-  }
+  for (const SpectralPeaks::Peak& peak : looked_at.standing_out->peaks)
+    if (peak.ratio > kLeastOfLines * least) peaks.push_back(peak.bin);
   std::sort(peaks.begin(), peaks.end(),
             [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
   const std::vector<std::size_t> apart = not_beside(peaks);
-  const Search in{error, mean_of_present(error), start_s, period_s, spectrum.length, tries, significance};
+  const Search in{error, spectrum.mean, start_s, period_s, spectrum.length, tries, significance};
   for (std::size_t i = 0; i < apart.size() && lines.size() < most; ++i) {
     const std::size_t k = apart[i];
     SpectralLine line =
@@ -287,11 +239,13 @@ Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::
   return averaged_spectrum(error, period_s, none, points);
 }
 
-Spectrum averaged_spectrum(std::span<const double> error, double period_s, KnownPeriodograms& known,
+Spectrum averaged_spectrum(const AskedSeries& error, double period_s, KnownPeriodograms& known,
                            std::size_t points) {
   Spectrum spectrum;
   if (error.size() < 64) return spectrum;
-  const auto& [power, length] = periodogram_of(error, known).spectrum;
+  const Periodogram& of = periodogram_of(error, known).spectrum;
+  const Samples& power = of.power;
+  const std::size_t length = of.length;
   const double scale = 2.0 * period_s / static_cast<double>(length);
   const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
   for (std::size_t k = 1; k < power.size();) {

@@ -7,10 +7,12 @@
 #include <complex>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "filters/diagnosis/record/known_series.h"
+#include "filters/diagnosis/residual/noise_floor.h"
 #include "filters/diagnosis/residual/periodogram.h"
 
 namespace ifog {
@@ -38,6 +40,7 @@ struct KnownPeriodogram {
   Periodogram spectrum;
   // By bin of a peak that was looked at more closely: the error's sums at its frequency over equal pieces.
   mutable std::map<std::size_t, std::vector<std::complex<double>>> pieces;
+  mutable std::optional<SpectralPeaks> standing_out;
 };
 
 // Of the errors that were looked at last.
@@ -50,12 +53,12 @@ class KnownPeriodograms : public KnownOfSeries<KnownPeriodogram> {
 // strongest first. error: at even steps of period_s, starting at start_s.
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most = 12);
-std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
+std::vector<SpectralLine> find_lines(const AskedSeries& error, double start_s, double period_s,
                                      double significance, KnownPeriodograms& known, std::size_t most = 12);
 
 // Averaged in logarithmic bands for drawing, at most `points`.
 Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points = 600);
-Spectrum averaged_spectrum(std::span<const double> error, double period_s, KnownPeriodograms& known,
+Spectrum averaged_spectrum(const AskedSeries& error, double period_s, KnownPeriodograms& known,
                            std::size_t points = 600);
 
 }  // namespace ifog

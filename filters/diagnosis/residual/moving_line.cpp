@@ -17,7 +17,8 @@ using Complex = std::complex<double>;
 // What the driven carrier has to gather beyond the fixed one, in units of the noise around the peak. A line
 // that stays loses by the same measure, so the sign is as telling as the size.
 constexpr double kLeastGain = 30.0;
-constexpr double kMostBins = 8.0;  // wider, it is a hump as well
+constexpr std::size_t kMostFollowed = 6;  // the strongest
+constexpr double kMostBins = 8.0;         // wider, it is a hump as well
 constexpr double kLeastCoherence =
     0.5;  // below, the peak is a hump of noise and its power says nothing of a phase
 
@@ -73,10 +74,25 @@ double best_power(std::span<const double> error, double mean, const Steps& steps
   return best;
 }
 
+double bins_of(const SpectralLine& peak, std::size_t samples, double period_s) {
+  return peak.width_hz * period_s * static_cast<double>(samples);
+}
+
+bool to_follow(const SpectralLine& peak, std::size_t samples, double period_s) {
+  return !(peak.coherence < kLeastCoherence || bins_of(peak, samples, period_s) > kMostBins);
+}
+
 }  // namespace
+
+bool any_to_follow(std::size_t samples, double period_s, const std::vector<SpectralLine>& peaks) {
+  const auto end = peaks.begin() + static_cast<std::ptrdiff_t>(std::min(peaks.size(), kMostFollowed));
+  return std::any_of(peaks.begin(), end,
+                     [&](const SpectralLine& peak) { return to_follow(peak, samples, period_s); });
+}
 
 std::optional<MovingLine> find_moving_line(std::span<const double> error, std::span<const double> rate,
                                            double period_s, const std::vector<SpectralLine>& peaks) {
+  if (!any_to_follow(error.size(), period_s, peaks)) return std::nullopt;
   double mean_rate = 0.0;
   double mean_error = 0.0;
   double n = 0.0;
@@ -91,9 +107,9 @@ std::optional<MovingLine> find_moving_line(std::span<const double> error, std::s
   mean_error /= n;
   Samples driven;  // where it is asked for
   std::optional<MovingLine> found;
-  for (std::size_t k = 0; k < std::min<std::size_t>(peaks.size(), 6); ++k) {
-    const double width = peaks[k].width_hz * period_s * static_cast<double>(error.size());
-    if (peaks[k].coherence < kLeastCoherence || width > kMostBins) continue;
+  for (std::size_t k = 0; k < std::min(peaks.size(), kMostFollowed); ++k) {
+    if (!to_follow(peaks[k], error.size(), period_s)) continue;
+    const double width = bins_of(peaks[k], error.size(), period_s);
     const double cycles = peaks[k].frequency_hz * period_s;
     const double bins = std::max(3.0, 2.0 * width);
     double at_fixed = cycles;

@@ -18,6 +18,9 @@ struct MovingLine {
   double gain = 0.0;            // power gathered beyond the best fixed frequency, over the noise's
 };
 
+// Whether find_moving_line() follows any of these peaks of so many samples.
+bool any_to_follow(std::size_t samples, double period_s, const std::vector<SpectralLine>& peaks);
+
 // error: what is left; rate: as measured, both at even steps of period_s, NaN missing. peaks: of the error's
 // spectrum.
 std::optional<MovingLine> find_moving_line(std::span<const double> error, std::span<const double> rate,

@@ -53,9 +53,9 @@ Periodogram periodogram(std::span<const double> error, std::size_t in_memory) {
   Periodogram out;
   out.length = error.size();
   while (out.length > 16 && (!is_smooth(out.length) || (pairs && out.length % 2 != 0))) --out.length;
-  const double mean = mean_of_present(error);
+  out.mean = mean_of_present(error);
   const std::span<const double> used = error.first(out.length);
-  out.power = pairs ? PairedTransform(used, mean).power() : power_in_memory(used, mean);
+  out.power = pairs ? PairedTransform(used, out.mean).power() : power_in_memory(used, out.mean);
   return out;
 }
 

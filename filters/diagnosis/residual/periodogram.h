@@ -15,6 +15,7 @@ struct Periodogram {
 
   Samples power;           // of bins 0 … length / 2, not scaled
   std::size_t length = 0;  // of the series, cut to a product of small primes for the transform's sake
+  double mean = 0.0;       // of all samples that are there, which is taken out first
 };
 
 // Of the samples that are there; 0 for none.

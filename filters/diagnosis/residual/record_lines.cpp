@@ -114,7 +114,7 @@ std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
   for (std::size_t r = 0; r < errors.size(); ++r) {
     const std::vector<SpectralLine> peaks =
         find_lines(errors[r].after, errors[r].start_s, sample_s, significance, known);
-    if (peaks.empty()) continue;
+    if (!any_to_follow(errors[r].after.size(), sample_s, peaks)) continue;
     Samples room;
     const std::span<const double> even = even_samples(rates[r], sample_s, rates[r].rate_radps, room);
     if (auto moving = find_moving_line(errors[r].after, even, sample_s, peaks)) return moving;

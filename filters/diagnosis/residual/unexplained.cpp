@@ -7,13 +7,16 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/residual/two_states.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
+#include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
@@ -42,7 +45,9 @@ std::string text(const char* format, Values... values) {
 // with a hole in it: of few differences the energy scatters more than that of the others.
 std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   std::vector<double> found;
+  ReadingAhead ahead(left);
   for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
+    ahead.at(from);
     double square = 0.0;
     double n = 0.0;
     for (std::size_t i = from + 1; i < from + piece; ++i) {
@@ -103,75 +108,93 @@ struct SlowRest {
   double share = 0.0;   // of their variance that neighbours do not see
 };
 
-// How means scatter, and how neighbours differ; NaN of a mean that is missing.
-struct Scatter {
-  double variance = 0.0, steps = 0.0, pairs = 0.0;
+// Means of 1, 4, 16 … samples, NaN of one that is missing, each level made of the sums of the one before,
+// while the samples go by once. use(level, mean).
+template <typename Use>
+class MeansByFour {
+ public:
+  explicit MeansByFour(std::size_t samples, Use use) : use_(std::move(use)) {
+    for (std::size_t count = 1; samples / count >= 16; count *= 4) counts_.push_back(count);
+    sums_.resize(counts_.size());
+  }
+  [[nodiscard]] const std::vector<std::size_t>& counts() const { return counts_; }
+
+  // Fours of them but at the end, where what does not fill the last one of a level is left out.
+  void add(std::span<const double> samples) {
+    for (const double each : samples) use_(std::size_t{0}, each);
+    if (counts_.size() < 2) return;
+    for (std::size_t i = 0; i + 4 <= samples.size(); i += 4) pass_on(1, present(samples.subspan(i, 4)));
+  }
+
+ private:
+  void pass_on(std::size_t level, Present sum) {
+    for (;; ++level) {
+      use_(level, sum.mean_of(counts_[level]));
+      if (level + 1 == counts_.size()) return;
+      Above& above = sums_[level + 1];
+      above.four.sum += sum.sum;
+      above.four.count += sum.count;
+      if (++above.filled < 4) return;
+      sum = above.four;
+      above = {};
+    }
+  }
+
+  struct Above {
+    Present four;
+    int filled = 0;
+  };
+  Use use_;
+  std::vector<std::size_t> counts_;  // samples a mean, by level
+  std::vector<Above> sums_;
 };
 
-template <typename MeanOf>
-Scatter scatter_of(std::size_t means, const MeanOf& mean_of) {
-  Scatter found;
-  double sum = 0.0, there = 0.0;
-  for (std::size_t i = 0; i < means; ++i) {
-    const double mean = mean_of(i);
-    if (!std::isfinite(mean)) continue;
-    sum += mean;
-    there += 1.0;
-  }
-  if (there < 2.0) return found;
+template <typename Use>
+std::vector<std::size_t> each_mean_by_four(std::span<const double> left, Use use) {
+  static_assert(kSeriesPiece % 4 == 0);
+  MeansByFour<Use> means(left.size(), std::move(use));
+  for_each_piece(left, 0, left.size(), [&](std::span<const double> some, std::size_t) { means.add(some); });
+  return means.counts();
+}
+
+// How means of one length scatter, and how neighbours differ.
+struct Scatter {
+  double sum = 0.0, there = 0.0, mean = kNaN;
+  double variance = 0.0, steps = 0.0, pairs = 0.0;
   double before = kNaN;
-  for (std::size_t i = 0; i < means; ++i) {
-    const double mean = mean_of(i), step = mean - std::exchange(before, mean);
-    if (std::isfinite(mean)) found.variance += (mean - sum / there) * (mean - sum / there) / there;
-    if (!std::isfinite(step)) continue;
-    found.steps += step * step;
-    found.pairs += 1.0;
-  }
-  return found;
-}
-
-// Of four times as many samples each, made of the sums before; what does not fill the last one is left out.
-void join_by_four(FiledVector<Present>& sums) {
-  const std::size_t joined = sums.size() / 4;
-  for (std::size_t i = 0; i < joined; ++i) {
-    Present four;
-    for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
-      four.sum += sums[k].sum;
-      four.count += sums[k].count;
-    }
-    sums[i] = four;
-  }
-  sums.resize(joined);
-}
-
-FiledVector<Present> sums_of_four(std::span<const double> left) {
-  FiledVector<Present> sums;
-  sums.reserve(left.size() / 4);
-  for (std::size_t from = 0; from + 4 <= left.size(); from += 4)
-    sums.push_back(present(left.subspan(from, 4)));
-  return sums;
-}
+};
 
 // Slow is what makes means scatter more than neighbouring means differ (von Neumann's ratio, whose standard
 // deviation for n means of white noise is 1 / sqrt n).
 SlowRest slow_rest(std::span<const double> left, double period_s) {
   constexpr double kClear = 5.0;
+  constexpr std::size_t kMostLevels = 32;
+  std::array<Scatter, kMostLevels> scatters;
+  each_mean_by_four(left, [&](std::size_t level, double mean) {
+    if (!std::isfinite(mean)) return;
+    scatters[level].sum += mean;
+    scatters[level].there += 1.0;
+  });
+  for (Scatter& of : scatters) of.mean = of.sum / of.there;
+  const std::vector<std::size_t> counts = each_mean_by_four(left, [&](std::size_t level, double mean) {
+    Scatter& of = scatters[level];
+    const double step = mean - std::exchange(of.before, mean);
+    if (std::isfinite(mean)) of.variance += (mean - of.mean) * (mean - of.mean) / of.there;
+    if (!std::isfinite(step)) return;
+    of.steps += step * step;
+    of.pairs += 1.0;
+  });
   SlowRest found;
   double most = kClear;
-  FiledVector<Present> sums;
-  for (std::size_t count = 1; left.size() / count >= 16; count *= 4) {
-    if (count == 4) sums = sums_of_four(left);
-    if (count > 4) join_by_four(sums);
-    const Scatter scatter =
-        count == 1 ? scatter_of(left.size(), [&](std::size_t i) { return left[i]; })
-                   : scatter_of(sums.size(), [&](std::size_t i) { return sums[i].mean_of(count); });
+  for (std::size_t level = 0; level < counts.size(); ++level) {
+    const Scatter& scatter = scatters[level];
     const double n = scatter.pairs, all = scatter.variance;
-    if (n < 16.0 || !(scatter.steps > 0.0)) continue;
+    if (scatter.there < 2.0 || n < 16.0 || !(scatter.steps > 0.0)) continue;
     const double neighbours = 0.5 * scatter.steps / n;
     const double sigma = (all / neighbours - 1.0) * std::sqrt(n);
     if (sigma <= most) continue;
     most = sigma;
-    found = {static_cast<double>(count) * period_s, 1.0 - neighbours / all};
+    found = {static_cast<double>(counts[level]) * period_s, 1.0 - neighbours / all};
   }
   return found;
 }
@@ -262,7 +285,9 @@ void describe_share(std::span<const double> error, std::span<const double> left,
       1, static_cast<std::size_t>(std::floor((sways ? grid.block_s : 1.0) / period_s + 0.5)));
   found.means_s = static_cast<double>(count) * period_s;
   const double before = variance_of(means_over(error, count));
-  const double after = variance_of(means_over(left, count));
+  const double after = left.data() == error.data() && left.size() == error.size()
+                           ? before
+                           : variance_of(means_over(left, count));
   double known = noise.white_variance * grid.block_s / found.means_s;
   for (const DampedHarmonic& each : noise.shape.harmonics) {
     const double kept = std::exp(-1.0 / each.decay) * std::cos(2.0 * std::numbers::pi * each.cycles);

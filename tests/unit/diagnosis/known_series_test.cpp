@@ -65,5 +65,34 @@ TEST(KnownOfSeries, OfMoreThanItKeepsTheOneAskedForLongestAgoGoes) {
   EXPECT_EQ(counted.worked, 4);
 }
 
+// Samples that several share are read through for their mark once, and after a change again.
+TEST(KnownOfSeries, OfSharedSamplesTheMarkFollowsEachChange) {
+  KnownOfSeries<double> known(8);
+  int worked = 0;
+  const auto first_of = [&](const SharedSamples& samples) {
+    return known.of(samples, [&](std::span<const double> all) {
+      ++worked;
+      return all.front();
+    });
+  };
+  SharedSamples one(std::vector<double>{1.0, 2.0, 3.0});
+  SharedSamples same = one;
+  EXPECT_EQ(first_of(one), 1.0);
+  EXPECT_EQ(first_of(same), 1.0);
+  EXPECT_EQ(first_of(SharedSamples(std::vector<double>{1.0, 2.0, 3.0})), 1.0);  // the same numbers
+  EXPECT_EQ(worked, 1);
+  same.own()[0] = 4.0;
+  EXPECT_EQ(first_of(same), 4.0);
+  EXPECT_EQ(first_of(one), 1.0);
+  EXPECT_EQ(worked, 2);
+  same.own()[0] = 5.0;  // in the same memory
+  EXPECT_EQ(first_of(same), 5.0);
+  same.anew(2)[0] = 6.0;
+  same.own()[1] = 0.0;
+  EXPECT_EQ(first_of(same), 6.0);
+  EXPECT_EQ(worked, 4);
+  EXPECT_EQ(same.mark(), mark_of(std::vector<double>{6.0, 0.0}));
+}
+
 }  // namespace
 }  // namespace ifog

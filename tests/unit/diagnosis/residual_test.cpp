@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 
@@ -198,6 +200,38 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   const Unexplained slow = of(drifting);
   EXPECT_EQ(slow.kind, "slow");
   EXPECT_GT(slow.fraction, 0.5);
+
+  // By definition: the means of 1, 4, 16 … samples that scatter most beyond what neighbours differ by.
+  drifting.resize(59999);
+  for (std::size_t i = 20000; i < 20500; ++i) drifting[i] = std::nan("");
+  double most = 0.0, share = 0.0, over_s = 0.0;
+  for (std::size_t count = 1; drifting.size() / count >= 16; count *= 4) {
+    std::vector<double> means;
+    for (std::size_t from = 0; from + count <= drifting.size(); from += count) {
+      double sum = 0.0, n = 0.0;
+      for (std::size_t i = from; i < from + count; ++i)
+        if (std::isfinite(drifting[i])) sum += drifting[i], n += 1.0;
+      means.push_back(2.0 * n >= static_cast<double>(count) ? sum / n : std::nan(""));
+    }
+    double mean = 0.0, there = 0.0, square = 0.0, differences = 0.0, pairs = 0.0;
+    for (const double each : means)
+      if (std::isfinite(each)) mean += each, there += 1.0;
+    mean /= there;
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      if (std::isfinite(means[i])) square += (means[i] - mean) * (means[i] - mean);
+      if (i == 0 || !std::isfinite(means[i]) || !std::isfinite(means[i - 1])) continue;
+      differences += (means[i] - means[i - 1]) * (means[i] - means[i - 1]);
+      pairs += 1.0;
+    }
+    const double ratio = 2.0 * square / there / (differences / pairs);
+    if (pairs < 16.0 || (ratio - 1.0) * std::sqrt(pairs) <= most) continue;
+    most = (ratio - 1.0) * std::sqrt(pairs);
+    share = 100.0 * (1.0 - 1.0 / ratio);
+    over_s = static_cast<double>(count) * kPeriod;
+  }
+  std::array<char, 80> words{};
+  std::snprintf(words.data(), words.size(), "%.0f %% of what %.3g s means", share, over_s);
+  EXPECT_NE(of(drifting).hint.find(words.data()), std::string::npos) << of(drifting).hint << words.data();
 
   SpectralLine peak;
   peak.frequency_hz = 3.3;

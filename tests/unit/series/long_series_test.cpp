@@ -44,6 +44,9 @@ TEST(LongSeries, IsWhatWasAddedWhereverItIs) {
         const auto got = view.piece(first, count, room);
         ASSERT_EQ(got.size(), count);
         EXPECT_TRUE(std::equal(got.begin(), got.end(), all.begin() + static_cast<std::ptrdiff_t>(first)));
+        std::vector<double> read(count);
+        view.read(first, read);
+        EXPECT_TRUE(std::equal(read.begin(), read.end(), all.begin() + static_cast<std::ptrdiff_t>(first)));
       }
       const SeriesView part = view.part(1000, 150000);
       EXPECT_EQ(part.size(), 149000U);

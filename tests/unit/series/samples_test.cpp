@@ -101,6 +101,30 @@ TEST(Samples, KeepNoMoreRoomThanAFew) {
   EXPECT_LE(mapped_at_all(), before + (ifog::kMostSpare + 1) * kBytes);
 }
 
+// What is given back is there for whoever writes a series of about that length, and for one only.
+TEST(LongSeries, WritesIntoAFileThatWasGivenBack) {
+  constexpr std::size_t kLong = 2 * kFew, kBytes = kLong * sizeof(double);
+  while (ifog::take_spare_file(kBytes)) {
+  }
+  { const Samples given_back(kLong, 1.0); }
+  ifog::LongSeries first(0), second(0);
+  first.expect(kLong - 5);
+  EXPECT_FALSE(ifog::take_spare_file(kBytes));
+  second.expect(kLong - 5);
+  std::vector<double> some(100000);
+  for (std::size_t i = 0; i < some.size(); ++i) some[i] = static_cast<double>(i);
+  for (ifog::LongSeries* series : {&first, &second}) {
+    series->add(some);
+    series->add(7.0);
+    EXPECT_EQ(series->size(), some.size() + 1);
+    std::vector<double> read(some.size() + 1);
+    series->read(0, read);
+    EXPECT_TRUE(std::equal(some.begin(), some.end(), read.begin()));
+    EXPECT_EQ(read.back(), 7.0);
+    EXPECT_EQ(series->all().back(), 7.0);
+  }
+}
+
 TEST(SharedSamples, AreOneUntilOneIsChanged) {
   SharedSamples one(std::vector<double>{1.0, 2.0, 3.0}), other = one;
   EXPECT_TRUE(other.is(one));

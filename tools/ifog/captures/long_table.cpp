@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/column_names.h"
+#include "filters/threads/share_out.h"
 
 namespace ifog::tools {
 
@@ -60,14 +61,20 @@ bool LongTableSink::wants(std::size_t column) const {
 
 void LongTableSink::take(RowBlock& rows) {
   table_.origin = rows.origin;
-  table_.time_s.add(rows.time_s);
-  for (std::size_t c = 0; c < from_.size(); ++c) {
+  // To make the pages of a file takes longer than to read its rows: where all columns write, two share that.
+  const unsigned threads = table_.time_s.will_write(rows.time_s.size()) ? 2 : 1;
+  share_out(from_.size() + 1, threads, [&](std::size_t i) {
+    if (i == 0) {
+      table_.time_s.add(rows.time_s);
+      return;
+    }
+    const std::size_t c = i - 1;
     LongColumn& column = table_.columns[c];
     const std::vector<double>& values = rows.columns[from_[c]];
     column.values.add(values);
     column.known =
         column.known || std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
-  }
+  });
 }
 
 LongRows::LongRows(const LongTable& table, const CaptureShape& shape)

@@ -9,6 +9,7 @@
 
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
+#include "filters/series/series_view.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/say.h"
 
@@ -20,7 +21,10 @@ std::string rate_of(const std::string& axis) { return axis.empty() ? "rate" : "r
 void tell_missing(const std::string& name, const std::string& axis, const CaptureView& capture,
                   std::span<const double> rate) {
   const auto none = [](double value) { return std::isnan(value); };
-  const auto missing = static_cast<std::size_t>(std::count_if(rate.begin(), rate.end(), none));
+  std::size_t missing = 0;
+  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> some, std::size_t) {
+    missing += static_cast<std::size_t>(std::count_if(some.begin(), some.end(), none));
+  });
   if (missing == 0) return;
   const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
   warn("%s: %s\n", name.c_str(),
@@ -36,8 +40,9 @@ bool repeats_one_value(std::span<const double> values) {
   constexpr std::ptrdiff_t kFewest = 100;
   const auto is_value = [](double value) { return !std::isnan(value); };
   const auto first = std::find_if(values.begin(), values.end(), is_value);
-  return std::count_if(first, values.end(), is_value) > kFewest &&
-         std::all_of(first, values.end(), [&](double value) { return !is_value(value) || value == *first; });
+  return std::all_of(first, values.end(),
+                     [&](double value) { return !is_value(value) || value == *first; }) &&
+         std::count_if(first, values.end(), is_value) > kFewest;
 }
 
 void tell_stuck(const std::string& name, const std::string& axis, std::span<const double> rate) {

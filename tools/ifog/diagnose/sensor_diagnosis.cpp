@@ -22,6 +22,7 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
+#include "filters/series/series_view.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -114,31 +115,35 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
     }
 }
 
+// Of those that are there; 0 of none.
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  double n = 0.0;
+  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
+    for (const double v : some) {
+      if (!std::isfinite(v)) continue;
+      sum += v;
+      n += 1.0;
+    }
+  });
+  return n > 0.0 ? sum / n : 0.0;
+}
+
 // What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
 // the Earth's rate, whatever the mounting. Empty unless there are three gyros and three accelerometers.
-std::string vertical_rate(const CaptureView& capture) {
+std::string vertical_rate(const CaptureView& capture, unsigned threads) {
   if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
-  std::array<double, 3> rate{};
-  std::array<double, 3> force{};
+  std::array<std::span<const double>, 6> columns;  // rates, then accelerations
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto mean = [](std::span<const double> values) {
-      double sum = 0.0;
-      double n = 0.0;
-      for (const double v : values) {
-        if (!std::isfinite(v)) continue;
-        sum += v;
-        n += 1.0;
-      }
-      return n > 0.0 ? sum / n : 0.0;
-    };
-    rate[a] = mean(capture.rate_radps[a]);
-    const CaptureView::Channel* accel = nullptr;
-    for (const CaptureView::Channel& column : capture.channels) {
-      if (column.name == "accel_" + capture.axes[a] + "_mps2") accel = &column;
-    }
-    if (!accel) return "";
-    force[a] = mean(accel->values);
+    columns[a] = capture.rate_radps[a];
+    const auto accel = std::ranges::find(capture.channels, "accel_" + capture.axes[a] + "_mps2",
+                                         &CaptureView::Channel::name);
+    if (accel == capture.channels.end()) return "";
+    columns[3 + a] = accel->values;
   }
+  std::array<double, 6> means{};
+  share_out(columns.size(), threads, [&](std::size_t c) { means[c] = mean_of(columns[c]); });
+  const std::span<const double> rate = std::span(means).first(3), force = std::span(means).last(3);
   const double g = std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
   if (g < 9.0 || g > 10.5) return "";
   constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
@@ -267,7 +272,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
               " was left out: \" - \" in a name stands for a difference of two columns; another name "
               "(--column) makes it a channel");
     }
-  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front()) : "";
+  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front(), wanted.threads) : "";
   if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   return found;
 }
