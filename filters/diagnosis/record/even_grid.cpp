@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "filters/diagnosis/record/known_columns.h"
+#include "filters/series/finite_sum.h"
 #include "filters/series/mapped_file.h"
 #include "filters/series/series_view.h"
 
@@ -76,17 +77,9 @@ double variance_of(std::span<const double> values) {
 }
 
 std::optional<double> variance_of_two(std::span<const double> values) {
-  double sum = 0.0;
-  double square = 0.0;
-  double n = 0.0;
-  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
-    for (const double v : some) {
-      if (!std::isfinite(v)) continue;
-      sum += v;
-      n += 1.0;
-    }
-  });
+  const auto [sum, n] = finite_sum(values);
   if (n < 2.0) return std::nullopt;
+  double square = 0.0;
   const double mean = sum / n;
   for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
     for (const double v : some)

@@ -22,7 +22,7 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
-#include "filters/series/series_view.h"
+#include "filters/series/finite_sum.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -117,16 +117,8 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
 
 // Of those that are there; 0 of none.
 double mean_of(std::span<const double> values) {
-  double sum = 0.0;
-  double n = 0.0;
-  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
-    for (const double v : some) {
-      if (!std::isfinite(v)) continue;
-      sum += v;
-      n += 1.0;
-    }
-  });
-  return n > 0.0 ? sum / n : 0.0;
+  const FiniteSum finite = finite_sum(values);
+  return finite.count > 0.0 ? finite.sum / finite.count : 0.0;
 }
 
 // What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
