@@ -176,7 +176,7 @@ std::shared_ptr<const StepStarts> add_blocks_of(const Record& record, BlockGrid&
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
   grid.records.push_back({grid.size(), grid.size() + blocks});
   grid.origin.push_back(record.origin);
-  const auto starts = step_starts(record, grid.fine_s, blocks * grid.fine);
+  auto starts = step_starts(record, grid.fine_s, blocks * grid.fine);
   const StepStarts& first = *starts;
   const double full = grid.block_s / grid.sample_s;
   for (std::size_t b = 0; b < blocks; ++b) {

@@ -60,6 +60,7 @@ class KnownColumns {
     Column column;
     double by;
     std::size_t times;
+    // It is compared with a 0 that is no pointer. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   struct Entry {
