@@ -145,9 +145,11 @@ class MixedDevices {
     std::int64_t least = most + 1;
     for (std::size_t i = 0; i < kTails; ++i) {
       const Tail& tail = tails_[i];
-      // Of one that was left half a round ago and more the counts come again on the other's way round.
-      if (!alive(tail) || frames_ - tail.seen > static_cast<std::uint64_t>(modulus_) / 2) continue;
-      if (tail.at == frame.at && tail.digest == frame.digest) return i;
+      if (!alive(tail)) continue;
+      // The very frame again: of a count that was left half a round ago and more it is one of the next round,
+      // where the values do not change.
+      const bool lately = frames_ - tail.seen <= static_cast<std::uint64_t>(modulus_) / 2;
+      if (lately && tail.at == frame.at && tail.digest == frame.digest) return i;
       const std::int64_t by = ahead(tail.at, frame.at);
       if (by <= 0 || by > most || by > least || (by == least && i != followed_)) continue;
       least = by;

@@ -113,5 +113,28 @@ std::string name_of(const testing::TestParamInfo<Collected>& of) {
 
 INSTANTIATE_TEST_SUITE_P(Lines, Collecting, testing::ValuesIn(lines()), name_of);
 
+// Two gyros whose portions of half a round come in turn over one line.
+TEST(Collecting, FromTwoDevicesIsStillSeen) {
+  DeviceTimeline timeline(128, 1000.0);
+  bool mixed = false;
+  for (std::int64_t portion = 0; portion < 60; ++portion)
+    for (std::int64_t i = 0; i < 2 * 64; ++i) {
+      const bool second = i >= 64;
+      const std::int64_t n = portion * 64 + i % 64 + (second ? 70 : 5);
+      const double value = (second ? 1.0 : 0.0) + 1e-6 * static_cast<double>(n);
+      DeviceTimeline::Frame frame;
+      frame.counts = true;
+      frame.sequence = static_cast<std::uint32_t>(n % 128);
+      frame.arrival_ns = 1'000'000'000 + (portion + 1) * 64'000'000 + i * 1000;
+      frame.values = {&value, 1};
+      if (portion == 0 && i == 0)
+        timeline.first(frame);
+      else
+        timeline.next(frame);
+      mixed = mixed || timeline.mixed();
+    }
+  EXPECT_TRUE(mixed);
+}
+
 }  // namespace
 }  // namespace ifog
