@@ -36,9 +36,9 @@ double quadratic_form(const BlockGrid& grid, const NoiseShape& shape, const Eige
       std::complex<double> past = 0.0;
       double before = 0.0;
       for (std::size_t b = record.first; b <= record.end; ++b) {
-        // The weight of an angle between two blocks: of what it adds to the one and takes from the other.
+        // The weight of what lies between two blocks: of what it adds to the one and takes from the other.
         const double here = b < record.end ? w[static_cast<Eigen::Index>(b)] : 0.0;
-        const double now = before - here;
+        const double now = before - each.returned * here;
         sum += each.variance * now * (now + 2.0 * past.real());
         past = step * (past + now);
         before = here;

@@ -21,7 +21,8 @@ constexpr double kLeastDecay = 1.0;
 constexpr double kMostDecays = 16.0;  // a record has at least so many
 constexpr std::size_t kFewestBlocks = 512;
 constexpr std::size_t kMostOrders = 6;
-constexpr double kOfHarmonic = 3.0;  // parameters
+constexpr double kOfHarmonic = 3.0;  // parameters, of an angle
+constexpr double kOfReturn = 1.0;
 constexpr double kOfMarkov = 2.0;
 constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
 constexpr double kRough = 1.4;
@@ -104,7 +105,8 @@ std::optional<Hump> highest_hump(const Periodogram& spectrum, const HarmonicLimi
 }
 
 // White noise of the old shape was the mean over all, humps included: the rest is relative to the floor now.
-NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white) {
+NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white,
+                     double returned) {
   const HarmonicLimits limits = harmonic_limits(grid);
   const double density = relative_density(grid, shape, hump.cycles);
   NoiseShape with = shape;
@@ -115,21 +117,21 @@ NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump&
   for (DampedHarmonic& each : with.harmonics) each.variance /= white;
   const double decay =
       std::clamp(1.0 / (std::numbers::pi * hump.width), limits.least_decay, limits.most_decay);
-  // The area on both sides of zero: height times half pi times the width. Of the angle, of which a block sees
-  // the change.
-  const double turned = 4.0 * std::pow(std::sin(std::numbers::pi * hump.cycles), 2);
-  const double variance =
-      std::numbers::pi * hump.width * (hump.ratio - 1.0) * hump.floor * density / white / turned;
-  with.harmonics.push_back({variance, hump.cycles, decay});
+  // The area on both sides of zero: height times half pi times the width.
+  DampedHarmonic mine{0.0, hump.cycles, decay, returned};
+  mine.variance = std::numbers::pi * hump.width * (hump.ratio - 1.0) * hump.floor * density / white /
+                  mine.seen_at(hump.cycles);
+  with.harmonics.push_back(mine);
   return with;
 }
 
-NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
+NoiseFit add_kind(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump,
+                  double returned) {
   NoiseFit best;
   best.log_likelihood = -1e300;
   for (const double white : {1.0, std::sqrt(hump.floor), hump.floor}) {
     for (const double wider : {1.0, 4.0}) {
-      NoiseShape start = with_hump(grid, fit.shape, hump, white);
+      NoiseShape start = with_hump(grid, fit.shape, hump, white, returned);
       DampedHarmonic& mine = start.harmonics.back();
       mine.decay = std::max(mine.decay / wider, kLeastDecay);
       const double value = fit_whitened(grid, start, columns).log_likelihood;
@@ -137,6 +139,27 @@ NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& 
     }
   }
   return climb(grid, columns, best.shape, kRough, true);
+}
+
+const NoiseFit& better(const BlockGrid& grid, const NoiseFit& a, const NoiseFit& b) {
+  return information_criterion(grid, a) < information_criterion(grid, b) ? a : b;
+}
+
+// An angle, or from a rate on.
+NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
+  return better(grid, add_kind(grid, columns, fit, hump, 0.0), add_kind(grid, columns, fit, hump, 1.0));
+}
+
+// What the criterion makes of a harmonic: none, an angle, or what it was.
+NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, std::size_t harmonic) {
+  NoiseShape shape = fit.shape;
+  shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));
+  const NoiseFit without = climb(grid, columns, shape, kFine, true);
+  const NoiseFit& best = better(grid, without, fit);
+  if (&best == &without || fit.shape.harmonics[harmonic].is_angle()) return best;
+  shape = fit.shape;
+  shape.harmonics[harmonic].return_instead(1.0);
+  return better(grid, climb(grid, columns, shape, kFine, true), fit);
 }
 
 double cost(const BlockGrid& grid, double parameters) {
@@ -151,9 +174,10 @@ HarmonicLimits harmonic_limits(const BlockGrid& grid) {
 }
 
 double information_criterion(const BlockGrid& grid, const NoiseFit& fit) {
-  return cost(grid, kOfHarmonic * static_cast<double>(fit.shape.harmonics.size()) +
-                        (fit.shape.markov > 0.0 ? kOfMarkov : 0.0)) -
-         2.0 * fit.log_likelihood;
+  double parameters = fit.shape.markov > 0.0 ? kOfMarkov : 0.0;
+  for (const DampedHarmonic& each : fit.shape.harmonics)
+    parameters += kOfHarmonic + (each.is_angle() ? 0.0 : kOfReturn);
+  return cost(grid, parameters) - 2.0 * fit.log_likelihood;
 }
 
 NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit) {
@@ -171,13 +195,9 @@ NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const Noi
   if (best.shape.harmonics.empty()) return fit;
   best = climb(grid, columns, best.shape, kFine, true);
   for (std::size_t i = 0; i < best.shape.harmonics.size();) {
-    NoiseShape shape = best.shape;
-    shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(i));
-    const NoiseFit without = climb(grid, columns, shape, kFine, true);
-    if (information_criterion(grid, without) < information_criterion(grid, best))
-      best = without;
-    else
-      ++i;
+    const std::size_t before = best.shape.harmonics.size();
+    best = with_less(grid, columns, best, i);
+    if (best.shape.harmonics.size() == before) ++i;
   }
   return best;
 }

@@ -15,6 +15,8 @@ namespace {
 // Below these a component changes the likelihood of a few thousand blocks by nothing: it is taken for zero.
 constexpr double kLeastWalk = 1e-10;
 constexpr double kLeastFlicker = 1e-6;
+// Of what a harmonic swings, that does not return: below, it is an angle.
+constexpr double kLeastStays = 1e-3;
 // Above this there is no white noise left to be relative to.
 constexpr double kMost = 1e6;
 
@@ -29,7 +31,7 @@ Way way_of(double NoiseShape::*parameter) {
   };
 }
 
-void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& ways) {
+void add_ways(const BlockGrid& grid, const NoiseShape& start, std::size_t harmonic, std::vector<Way>& ways) {
   const HarmonicLimits limits = harmonic_limits(grid);
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     return (shape.harmonics[harmonic].variance *= factor) <= kMost || factor < 1.0;
@@ -44,6 +46,14 @@ void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& way
     DampedHarmonic& each = shape.harmonics[harmonic];
     each.cycles += std::log(factor) / (2.0 * std::numbers::pi * each.decay);
     return each.cycles >= limits.least_cycles && each.cycles <= 0.5;
+  });
+  if (start.harmonics[harmonic].is_angle()) return;
+  ways.emplace_back([=](NoiseShape& at, double factor) {
+    DampedHarmonic& each = at.harmonics[harmonic];
+    const double stays = (1.0 - each.returned) * factor;
+    if (stays < kLeastStays || stays > 2.0) return false;
+    each.return_instead(1.0 - stays);
+    return true;
   });
 }
 
@@ -67,7 +77,7 @@ std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool wi
     if (shape.*parameter != 0.0) ways.push_back(way_of(parameter));
   if (!with_harmonics) return ways;
   ways.emplace_back(against_white);
-  for (std::size_t i = 0; i < shape.harmonics.size(); ++i) add_ways(grid, i, ways);
+  for (std::size_t i = 0; i < shape.harmonics.size(); ++i) add_ways(grid, shape, i, ways);
   return ways;
 }
 

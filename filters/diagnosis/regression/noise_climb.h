@@ -7,7 +7,8 @@
 namespace ifog {
 
 // From `shape` to the top beside it: walk and flicker where they are not zero, and down to zero; a
-// Gauss-Markov process of its own where there is one; the harmonics when `with_harmonics`.
+// Gauss-Markov process of its own where there is one; the harmonics when `with_harmonics`, of which those
+// that are an angle stay one.
 NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, double precision,
                bool with_harmonics = false);
 

@@ -69,7 +69,7 @@ Whitening::Whitening(const BlockGrid& grid, const NoiseShape& shape) : grid_(gri
   for (const DampedHarmonic& each : shape.harmonics) {
     const double left = std::exp(-1.0 / each.decay);
     const double turn = 2.0 * std::numbers::pi * each.cycles;
-    turns_.push_back({left * std::cos(turn), left * std::sin(turn)});
+    turns_.push_back({left * std::cos(turn), left * std::sin(turn), each.returned});
     const double driven = each.variance * (1.0 - left * left);
     drive_.insert(drive_.end(), {driven, driven, 0.0});
   }
@@ -86,7 +86,7 @@ Whitening::StateSpace Whitening::state_space() const {
   for (const Turn& turn : turns_) {
     states.step.block<2, 2>(i, i) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
     states.step(i + 2, i) = 1.0;
-    states.seen.segment<2>(i + 1) << 0.0, -1.0;
+    states.seen.segment<2>(i + 1) << 0.0, -turn.returned;
     i += 3;
   }
   return states;
@@ -165,7 +165,8 @@ void Whitening::apply_some(Columns& columns, Eigen::Index first) const {
       }
       Lane e = row;
       for (std::size_t i = 0; i < m; ++i) e -= state[i];
-      for (std::size_t i = m; i < gain_.size(); i += 3) e -= state[i] - state[i + 2];
+      for (std::size_t h = 0, i = m; h < turns_.size(); ++h, i += 3)
+        e -= state[i] - turns_[h].returned * state[i + 2];
       go_on(e);
       row = e;
     }
@@ -193,9 +194,9 @@ double relative_density(const BlockGrid& grid, const NoiseShape& shape, double c
   }
   if (shape.markov > 0.0) add(shape.markov, shape.markov_s / grid.block_s, cycles);
   for (const DampedHarmonic& each : shape.harmonics) {
-    const double turned = 2.0 * half_step * half_step * each.variance;
-    add(turned, each.decay, cycles - each.cycles);
-    add(turned, each.decay, cycles + each.cycles);
+    const double seen = 0.5 * each.variance * each.seen_at(cycles);
+    add(seen, each.decay, cycles - each.cycles);
+    add(seen, each.decay, cycles + each.cycles);
   }
   return density;
 }

@@ -11,7 +11,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "filters/diagnosis/record/blocks.h"
@@ -19,13 +21,30 @@
 
 namespace ifog {
 
-// An angle whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that
-// of a resonance driven by white noise. A block's mean is the angle turned in it over its length: what sways
-// does not turn away, and at slow frequencies there is nothing of it, however fast it is against the blocks.
+// x whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that of a
+// resonance driven by white noise, of which a block sees x less `returned` times what it was a block ago. x
+// may be an angle: a block's mean is the angle turned in it over its length, what sways does not turn away,
+// and at slow frequencies there is nothing of it, however fast it is against the blocks. Or x is the rate
+// itself, of a line that moves or of a mounting that creeps as it sways, which has a floor at slow
+// frequencies; and a mean over a block of what is fast against it lies between or, at an odd alias, below.
 struct DampedHarmonic {
-  double variance = 0.0;  // of the angle, over the square of a block's length
+  double variance = 0.0;  // of x; of an angle over the square of a block's length
   double cycles = 0.0;    // a block, at most one half: what is faster is seen at its alias
   double decay = 0.0;     // blocks
+  double returned = 1.0;  // 1 an angle, 0 a rate; at least -1
+
+  [[nodiscard]] bool is_angle() const { return returned == 1.0; }
+  // Of the density of x at so many cycles a block, what a block sees.
+  [[nodiscard]] double seen_at(double at_cycles) const {
+    const double half_step = std::sin(std::numbers::pi * at_cycles);
+    return (1.0 - returned) * (1.0 - returned) + 4.0 * returned * half_step * half_step;
+  }
+  // Another share of it returns, as much is seen at its own frequency.
+  void return_instead(double share) {
+    const double before = seen_at(cycles);
+    returned = share;
+    variance *= before / seen_at(cycles);
+  }
 };
 
 // Relative to the white variance of a block mean, which likelihoods concentrate out.
@@ -74,8 +93,9 @@ class Whitening {
   std::vector<double> factor_;  // of the states that only decay: x+ = factor x + gain e
   struct Turn {
     double cosine, sine;  // times what a block leaves of the amplitude
+    double returned;
   };
-  std::vector<Turn> turns_;           // of the harmonics: angle, its quadrature, and the angle a block ago
+  std::vector<Turn> turns_;           // of the harmonics: x, its quadrature, and x a block ago
   std::vector<double> drive_, gain_;  // of all states, in that order
   double innovation_variance_ = 1.0;
 };

@@ -26,12 +26,13 @@ NoiseShape swaying(const std::vector<DampedHarmonic>& harmonics, double walk = 0
   return shape;
 }
 
-// Of an angle's change over a block, from the angle's own covariance.
+// Of what a block sees, from the covariance of what swings.
 double covariance_at(const DampedHarmonic& h, double distance) {
-  const auto of_angle = [&](double d) {
+  const auto of_itself = [&](double d) {
     return h.variance * std::exp(-std::abs(d) / h.decay) * std::cos(kTurn * h.cycles * d);
   };
-  return 2.0 * of_angle(distance) - of_angle(distance + 1.0) - of_angle(distance - 1.0);
+  return (1.0 + h.returned * h.returned) * of_itself(distance) -
+         h.returned * (of_itself(distance + 1.0) + of_itself(distance - 1.0));
 }
 
 Eigen::MatrixXd dense_covariance(const NoiseShape& shape, Eigen::Index n) {
@@ -42,13 +43,18 @@ Eigen::MatrixXd dense_covariance(const NoiseShape& shape, Eigen::Index n) {
   return v;
 }
 
-const NoiseShape kTwo = swaying({{40.0, 0.3, 4.0}, {6.0, 0.11, 30.0}});
+// Two angles, a rate, and what lies on either side of it.
+const NoiseShape kSome = swaying({{40.0, 0.3, 4.0},
+                                  {6.0, 0.11, 30.0},
+                                  {9.0, 0.2, 12.0, 0.0},
+                                  {5.0, 0.4, 7.0, 0.6},
+                                  {3.0, 0.06, 20.0, -0.4}});
 
 // What the last value of n is not told by those before it: the last pivot of the Cholesky factor.
 TEST(Harmonics, InnovationVarianceIsTheLastPivotOfTheCovariance) {
   const Eigen::Index n = 400;
-  const Eigen::MatrixXd factor = dense_covariance(kTwo, n).llt().matrixL();
-  const Whitening filter(grid_of({64}), kTwo);
+  const Eigen::MatrixXd factor = dense_covariance(kSome, n).llt().matrixL();
+  const Whitening filter(grid_of({64}), kSome);
   EXPECT_NEAR(filter.innovation_variance(), std::pow(factor(n - 1, n - 1), 2), 1e-6);
 }
 
@@ -56,7 +62,7 @@ TEST(Harmonics, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
   constexpr Eigen::Index n = 900;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  const Eigen::MatrixXd v = dense_covariance(kTwo, n);
+  const Eigen::MatrixXd v = dense_covariance(kSome, n);
   Columns columns(n, 3);
   Eigen::VectorXd drawn(n);
   for (double& value : drawn) value = normal(random);
@@ -71,7 +77,7 @@ TEST(Harmonics, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
   const Eigen::VectorXd expected =
       normals.ldlt().solve(x.transpose() * factor.solve(Eigen::VectorXd(columns.col(0))));
   Columns white = columns;
-  Whitening(grid_of({n}), kTwo).apply(white);
+  Whitening(grid_of({n}), kSome).apply(white);
   const Eigen::VectorXd found =
       Eigen::MatrixXd(white.rightCols(2)).colPivHouseholderQr().solve(Eigen::VectorXd(white.col(0)));
   // The steady filter begins as if the first angles were known: that is worth a small part of the error bar.
@@ -84,9 +90,9 @@ TEST(Harmonics, DensityIsTheSumOfTheCovariancesWithTheirPhases) {
   for (const double cycles : {0.0, 0.01, 0.11, 0.25, 0.3, 0.5}) {
     double sum = 1.0;
     for (int d = -600; d <= 600; ++d)
-      for (const DampedHarmonic& h : kTwo.harmonics)
+      for (const DampedHarmonic& h : kSome.harmonics)
         sum += covariance_at(h, d) * std::cos(kTurn * cycles * static_cast<double>(d));
-    EXPECT_NEAR(relative_density(grid, kTwo, cycles), sum, 1e-6 * (1.0 + sum)) << cycles;
+    EXPECT_NEAR(relative_density(grid, kSome, cycles), sum, 1e-6 * (1.0 + sum)) << cycles;
   }
 }
 
@@ -102,14 +108,14 @@ TEST(Harmonics, PlainFitScattersAsTheDenseCovarianceSays) {
     columns(i, 0) = normal(random);
     columns(i, 3) = std::sin(0.3 * static_cast<double>(i)) + normal(random);
   }
-  Eigen::MatrixXd v = dense_covariance(kTwo, n);
+  Eigen::MatrixXd v = dense_covariance(kSome, n);
   v.topRightCorner(200, 100).setZero();
   v.bottomLeftCorner(100, 200).setZero();
   const Eigen::MatrixXd x = columns.rightCols(3);
   const Eigen::MatrixXd plain = (x.transpose() * x).inverse() * x.transpose();
   const double expected =
       (plain * columns.col(0))(2) / std::sqrt(0.7 * (plain * v * plain.transpose())(2, 2));
-  const NoiseFit noise{kTwo, 0.0, 0.7};
+  const NoiseFit noise{kSome, 0.0, 0.7};
   EXPECT_NEAR(disagreement(grid, noise, columns, 2, Eigen::VectorXd::Zero(3), Eigen::MatrixXd::Zero(3, 3)),
               std::abs(expected), 1e-9 * std::abs(expected));
 }
@@ -122,11 +128,15 @@ class Tower {
     state_ = angle_ * deviate();
   }
   double turned_in(double dt) {
+    const double before = state_.real();
+    return (swung_to(dt) - before) / dt;
+  }
+  // As a rate where that is what swings.
+  double swung_to(double dt) {
     const double left = std::exp(-dt * std::numbers::pi * frequency_hz_ / quality_);
-    const std::complex<double> before = state_;
     state_ = state_ * std::polar(left, kTurn * frequency_hz_ * dt) +
              angle_ * std::sqrt(1.0 - left * left) * deviate();
-    return (state_.real() - before.real()) / dt;
+    return state_.real();
   }
 
  private:
@@ -165,6 +175,38 @@ TEST(Harmonics, TheFitFindsTheTowerAtItsAliasAndTheFloorBesideIt) {
     EXPECT_NEAR(found.cycles, 0.08, 0.004) << seed;
     EXPECT_NEAR(found.decay, 30.0 / (std::numbers::pi * 0.54) / 2.0, 0.25 * 8.8) << seed;
     EXPECT_NEAR(std::sqrt(fit.white_variance), 1.0, 0.1) << seed;
+  }
+}
+
+// Means over so many samples of a rate that swings, whose floor at slow frequencies is far above the white
+// noise. Every effect is judged in that floor: its density by the sum of the covariances, below a tenth of
+// the resonance.
+TEST(Harmonics, ARateThatSwingsLeavesItsFloorAtSlowFrequencies) {
+  constexpr std::size_t kBlocks = 4000;
+  constexpr double kHz = 0.3, kQuality = 40.0, kStep = 0.2, kRate = 40.0;
+  for (const std::size_t samples : {1U, 5U, 9U}) {
+    const double decay = kQuality / (std::numbers::pi * kHz * kStep);  // samples
+    const auto of_samples = [&](double d) {
+      return kRate * kRate * std::exp(-std::abs(d) / decay) * std::cos(kTurn * kHz * kStep * d);
+    };
+    double expected = 1.0;
+    for (int d = -20000; d <= 20000; ++d) expected += of_samples(d);
+    std::vector<double> ratios;
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
+      Tower tower(kHz, kQuality, kRate, seed);
+      std::mt19937_64 random(300 + seed);
+      std::normal_distribution<double> normal;
+      std::vector<double> values(kBlocks, 0.0);
+      for (double& value : values)
+        for (std::size_t i = 0; i < samples; ++i)
+          value += (tower.swung_to(kStep) + normal(random)) / std::sqrt(static_cast<double>(samples));
+      const BlockGrid grid = grid_of({kBlocks});
+      const NoiseFit fit = fit_noise(grid, with_constant(values));
+      ASSERT_FALSE(fit.shape.harmonics.empty()) << seed;
+      for (const double cycles : {0.001, 0.003, 0.005})
+        ratios.push_back(fit.white_variance * relative_density(grid, fit.shape, cycles) / expected);
+    }
+    for (const double ratio : ratios) EXPECT_NEAR(std::log(ratio), 0.0, 0.5) << samples << " samples a block";
   }
 }
 
