@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/checks/channel_delay.h"
+#include "filters/diagnosis/record/derived_channels.h"
 #include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/record/stuck_blocks.h"
@@ -66,6 +68,21 @@ std::vector<Candidate> events_named(const BlockData& data, const Effect& effect)
   return found;
 }
 
+// Early channels as the daemon has them once it has waited; and those delays.
+std::vector<ChannelDelay> wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
+  std::vector<ChannelDelay> waited;
+  for (const ChannelRange& range : ranges) {
+    if (!(range.early_s > 0.0)) continue;
+    for (FineChannel& channel : data.channels) {
+      if (channel.name != range.channel) continue;
+      undo_delay(data.grid, -range.early_s, channel);
+      waited.push_back({channel.name, -range.early_s, 0.0});
+    }
+  }
+  if (!waited.empty()) rebuild_differences(data);
+  return waited;
+}
+
 bool is_event(const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
   return form == Form::kStep || form == Form::kLine;
@@ -73,8 +90,9 @@ bool is_event(const Effect& effect) {
 
 class Measuring {
  public:
-  Measuring(const BlockData& data, const EffectsToMeasure& wanted, const std::string& axis)
-      : data_(data), wanted_(wanted), axis_(axis) {
+  Measuring(const BlockData& data, const EffectsToMeasure& wanted, const std::string& axis,
+            const std::vector<ChannelDelay>& waited)
+      : data_(data), wanted_(wanted), axis_(axis), waited_(waited) {
     result_.together.resize(wanted.together.size());
     for (std::size_t i = 0; i < wanted.together.size(); ++i) take(i);
     for (const Effect& effect : wanted.beside) take_beside(effect);
@@ -172,12 +190,13 @@ class Measuring {
       for (Eigen::Index j = 0; j < count; ++j)
         result_.covariance.push_back(joint.covariance(first + i, first + j));
     }
-    result_.ranges = ranges_of(data_, found);
+    result_.ranges = ranges_of(data_, found, waited_);
   }
 
   const BlockData& data_;
   const EffectsToMeasure& wanted_;
   const std::string& axis_;
+  const std::vector<ChannelDelay>& waited_;
   std::vector<std::size_t> place_;  // in `together`, of the first effects of the model
   std::vector<Candidate> model_, events_;
   NoiseFit noise_;
@@ -195,8 +214,9 @@ MeasuredEffects measure_effects(const std::vector<Record>& records, const Effect
   std::vector<std::string> used;
   for (const Effect& effect : wanted.together) used.insert(used.end(), {effect.channel, effect.with_channel});
   leave_out_stuck(prepared.stuck(), used, data.grid);
+  const std::vector<ChannelDelay> waited = wait_for_early(wanted.ranges, data);
   const BlockData reconstructed = with_reconstructed_channels(data);
-  return Measuring(reconstructed, wanted, axis).run();
+  return Measuring(reconstructed, wanted, axis, waited).run();
 }
 
 }  // namespace ifog

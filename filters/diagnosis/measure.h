@@ -24,6 +24,8 @@ struct EffectsToMeasure {
   std::vector<std::vector<Effect>> instead;
   // What the sensor has beside them, fitted along: a step and a line in the captures that they can be of.
   std::vector<Effect> beside;
+  // Of the sensor's own model, for how early its channels are: the daemon waits for those before it corrects.
+  std::vector<ChannelRange> ranges = {};
 };
 
 struct MeasuredEffect {

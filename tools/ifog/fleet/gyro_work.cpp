@@ -56,6 +56,7 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
 EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, const std::string& axis,
                                  std::vector<std::size_t>& of_type) {
   EffectsToMeasure wanted;
+  wanted.ranges = model.ranges;
   for (std::size_t i = 0; i < type.effects.size(); ++i) {
     const std::vector<Effect>& forms = type.effects[i].forms;
     if (forms.empty() || forms.front().axis != axis) continue;
