@@ -141,13 +141,15 @@ NoiseFit add_kind(const BlockGrid& grid, const Columns& columns, const NoiseFit&
   return climb(grid, columns, best.shape, kRough, true);
 }
 
-const NoiseFit& better(const BlockGrid& grid, const NoiseFit& a, const NoiseFit& b) {
-  return information_criterion(grid, a) < information_criterion(grid, b) ? a : b;
+bool is_better(const BlockGrid& grid, const NoiseFit& one, const NoiseFit& than) {
+  return information_criterion(grid, one) < information_criterion(grid, than);
 }
 
 // An angle, or from a rate on.
 NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
-  return better(grid, add_kind(grid, columns, fit, hump, 0.0), add_kind(grid, columns, fit, hump, 1.0));
+  const NoiseFit angle = add_kind(grid, columns, fit, hump, 1.0);
+  const NoiseFit rate = add_kind(grid, columns, fit, hump, 0.0);
+  return is_better(grid, rate, angle) ? rate : angle;
 }
 
 // What the criterion makes of a harmonic: none, an angle, or what it was.
@@ -155,11 +157,12 @@ NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit
   NoiseShape shape = fit.shape;
   shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));
   const NoiseFit without = climb(grid, columns, shape, kFine, true);
-  const NoiseFit& best = better(grid, without, fit);
-  if (&best == &without || fit.shape.harmonics[harmonic].is_angle()) return best;
+  if (is_better(grid, without, fit)) return without;
+  if (fit.shape.harmonics[harmonic].is_angle()) return fit;
   shape = fit.shape;
   shape.harmonics[harmonic].return_instead(1.0);
-  return better(grid, climb(grid, columns, shape, kFine, true), fit);
+  const NoiseFit angle = climb(grid, columns, shape, kFine, true);
+  return is_better(grid, angle, fit) ? angle : fit;
 }
 
 double cost(const BlockGrid& grid, double parameters) {
@@ -189,7 +192,7 @@ NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const Noi
     const std::optional<Hump> hump = highest_hump(of_innovations(grid, columns, best.shape), limits);
     if (!hump || hump->gain < cost(grid, kOfHarmonic)) break;
     const NoiseFit more = add_one(grid, columns, best, *hump);
-    if (!(information_criterion(grid, more) < information_criterion(grid, best))) break;
+    if (!is_better(grid, more, best)) break;
     best = more;
   }
   if (best.shape.harmonics.empty()) return fit;
