@@ -34,7 +34,8 @@ Way way_of(double NoiseShape::*parameter) {
 void add_ways(const BlockGrid& grid, const NoiseShape& start, std::size_t harmonic, std::vector<Way>& ways) {
   const HarmonicLimits limits = harmonic_limits(grid);
   ways.emplace_back([=](NoiseShape& shape, double factor) {
-    return (shape.harmonics[harmonic].variance *= factor) <= kMost || factor < 1.0;
+    shape.harmonics[harmonic].variance *= factor;
+    return factor < 1.0 || shape.harmonics[harmonic].seen_variance() <= kMost;
   });
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     double& decay = shape.harmonics[harmonic].decay;
@@ -63,7 +64,10 @@ bool against_white(NoiseShape& shape, double factor) {
   shape.flicker *= factor;
   shape.markov *= factor;
   for (DampedHarmonic& each : shape.harmonics) each.variance *= factor;
-  return factor < 1.0 || (shape.walk <= kMost && shape.flicker <= kMost);
+  return factor < 1.0 ||
+         (shape.walk <= kMost && shape.flicker <= kMost &&
+          std::all_of(shape.harmonics.begin(), shape.harmonics.end(),
+                      [](const DampedHarmonic& each) { return each.seen_variance() <= kMost; }));
 }
 
 std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool with_harmonics) {

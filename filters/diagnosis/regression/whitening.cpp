@@ -180,12 +180,20 @@ void Whitening::apply(Columns& columns) const {
   for (; first < columns.cols(); ++first) apply_some<1>(columns, first);
 }
 
+namespace {
+
+// 1 + 2 sum of r^k cos, of a process that keeps exp(-1 / decay) from block to block.
+double poisson_kernel(double decay, double cycles) {
+  const double r = std::exp(-1.0 / decay);
+  return (1.0 - r * r) / (1.0 - 2.0 * r * std::cos(2.0 * std::numbers::pi * cycles) + r * r);
+}
+
+}  // namespace
+
 double relative_density(const BlockGrid& grid, const NoiseShape& shape, double cycles) {
   double density = 1.0;
-  // 1 + 2 sum of r^k cos: the Poisson kernel.
   const auto add = [&](double variance, double decay, double away) {
-    const double r = std::exp(-1.0 / decay);
-    density += variance * (1.0 - r * r) / (1.0 - 2.0 * r * std::cos(2.0 * std::numbers::pi * away) + r * r);
+    density += variance * poisson_kernel(decay, away);
   };
   const double half_step = std::sin(std::numbers::pi * cycles);
   if (half_step != 0.0) density += shape.walk / (4.0 * half_step * half_step);
@@ -201,9 +209,16 @@ double relative_density(const BlockGrid& grid, const NoiseShape& shape, double c
   return density;
 }
 
+double slow_white(const NoiseShape& shape) {
+  double density = 1.0;
+  for (const DampedHarmonic& each : shape.harmonics)
+    density += each.variance * each.seen_at(0.0) * poisson_kernel(each.decay, each.cycles);
+  return density;
+}
+
 NoiseTerms noise_terms(const NoiseShape& shape, double white, double block_s) {
   NoiseTerms terms;
-  terms.N = std::sqrt(white * block_s);
+  terms.N = std::sqrt(white * slow_white(shape) * block_s);
   if (shape.walk > 0.0) terms.K = std::sqrt(shape.walk * white / block_s);
   // One-sided spectrum of the bank between its ends: variance / ln(spacing) / f; IEEE Std 952: B^2 / (pi f).
   if (shape.flicker > 0.0) {

@@ -39,6 +39,11 @@ struct DampedHarmonic {
     const double half_step = std::sin(std::numbers::pi * at_cycles);
     return (1.0 - returned) * (1.0 - returned) + 4.0 * returned * half_step * half_step;
   }
+  // Of what a block sees.
+  [[nodiscard]] double seen_variance() const {
+    const double kept = std::exp(-1.0 / decay) * std::cos(2.0 * std::numbers::pi * cycles);
+    return variance * (1.0 + returned * (returned - 2.0 * kept));
+  }
   // Another share of it returns, as much is seen at its own frequency.
   void return_instead(double share) {
     const double before = seen_at(cycles);
@@ -109,6 +114,10 @@ std::vector<double> flicker_bank(const BlockGrid& grid);
 
 // Power density at so many cycles a block over that of the white noise. Nothing of a walk at zero.
 double relative_density(const BlockGrid& grid, const NoiseShape& shape, double cycles);
+
+// What is white at slow frequencies, where nothing of an angle that swings is left and the floor of a rate
+// that does: its density over that of the white noise.
+double slow_white(const NoiseShape& shape);
 
 // The same in IEEE Std 952 coefficients, of the terms that it has. `white` is the variance of a block mean,
 // (rad/s)^2.

@@ -289,10 +289,8 @@ void describe_share(std::span<const double> error, std::span<const double> left,
                            ? before
                            : variance_of(means_over(left, count));
   double known = noise.white_variance * grid.block_s / found.means_s;
-  for (const DampedHarmonic& each : noise.shape.harmonics) {
-    const double kept = std::exp(-1.0 / each.decay) * std::cos(2.0 * std::numbers::pi * each.cycles);
-    known += noise.white_variance * each.variance * (1.0 + each.returned * (each.returned - 2.0 * kept));
-  }
+  for (const DampedHarmonic& each : noise.shape.harmonics)
+    known += noise.white_variance * each.seen_variance();
   found.fraction = before > 0.0 ? std::clamp((after - known) / before, 0.0, 1.0) : 0.0;
 }
 

@@ -96,6 +96,18 @@ TEST(Harmonics, DensityIsTheSumOfTheCovariancesWithTheirPhases) {
   }
 }
 
+// Of many blocks the mean scatters by the density at zero.
+TEST(Harmonics, WhatIsWhiteAtSlowFrequenciesIsTheVarianceOfALongMean) {
+  double sum = 1.0;
+  for (int d = -600; d <= 600; ++d)
+    for (const DampedHarmonic& h : kSome.harmonics) sum += covariance_at(h, d);
+  EXPECT_NEAR(slow_white(kSome), sum, 1e-6 * sum);
+  EXPECT_GT(sum, 3.0);
+  NoiseShape angles = swaying({kSome.harmonics[0], kSome.harmonics[1]});
+  EXPECT_NEAR(slow_white(angles), 1.0, 1e-12);
+  EXPECT_NEAR(*noise_terms(kSome, 4.0, 0.25).N, std::sqrt(sum), 1e-6 * std::sqrt(sum));
+}
+
 // The variance of plain least squares by the dense covariance; two records, which share nothing.
 TEST(Harmonics, PlainFitScattersAsTheDenseCovarianceSays) {
   const Eigen::Index n = 300;
