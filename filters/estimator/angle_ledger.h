@@ -57,8 +57,9 @@ class AngleLedger {
     at_rest_[axis] -= angle_rad;
     manoeuvre_[axis] += angle_rad;
   }
-  // Samples that were passed over as outliers turned out to be rotation.
+  // Samples that were passed over as outliers turned out to be rotation: of a manoeuvre, or of rest.
   void admit(std::size_t axis, double angle_rad) noexcept { manoeuvre_[axis] += angle_rad; }
+  void admit_at_rest(std::size_t axis, double angle_rad) noexcept { at_rest_[axis] += angle_rad; }
   // Samples that what follows the motion looks back on.
   void pace(double samples) noexcept {
     const double quick = std::max(kQuickSamples, kQuickShare * samples);

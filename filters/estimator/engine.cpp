@@ -257,13 +257,17 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     return;
   }
   hear(m);
-  if (now.valid != 0 && (outliers_.run().empty() || outliers_.began())) kept_out_ = {};
+  if (now.valid != 0 && outliers_.run().empty()) book_kept_out(m);
+  if (now.valid != 0 && outliers_.began()) forget_kept_out();
   if (keep_out) {
     out.flags |= kGated;
     ++health_.gated;
     published_.passed_over = true;
-    for (std::size_t a = 0; a < axes_; ++a)
-      if (has(m.valid, a)) kept_out_[a] += (m.in.rate_radps[a] - rest_->rate(a)) * m.covered_s(a);
+    for (std::size_t a = 0; a < axes_; ++a) {
+      if (!has(m.valid, a)) continue;
+      kept_out_[a] += (m.in.rate_radps[a] - rest_->rate(a)) * m.covered_s(a);
+      kept_out_s_[a] += m.covered_s(a);
+    }
   }
   std::optional<std::size_t> changed;
   if (keep_out && outliers_.run().size() == 1) {

@@ -86,6 +86,8 @@ class Engine {
   void begin() noexcept;
   void begin_after_gap(const Measurement& m) noexcept;
   void admit_kept_out() noexcept;
+  void forget_kept_out() noexcept { kept_out_ = kept_out_s_ = {}; }
+  void book_kept_out(const Measurement& m) noexcept;
   void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void take_in(const Measurement& m, const Surprise& now) noexcept;
   void wait(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
@@ -171,6 +173,7 @@ class Engine {
   Axes tested_for_{};               // measurements since the noise was known
   Axes untested_{};                 // angle fallen short of while the noise was not known, or the test blunt
   Axes kept_out_{};                 // angle of the measurements kept out in a row
+  Axes kept_out_s_{};               // that they covered
   Axes waiting_rate_{};             // that measurement
   std::uint32_t waiting_axes_ = 0;  // that it had
   std::uint32_t waiting_for_ = 0;   // of these the ones that nobody foresaw

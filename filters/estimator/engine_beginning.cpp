@@ -23,7 +23,8 @@ void Engine::begin() noexcept {
   motion_ = follow_manoeuvres_ ? Motion::beginning : Motion::at_rest;
   waiting_ = false;
   heard_before_ = knowledge_ == Knowledge::heard;
-  kept_out_ = surprised_ = {};
+  forget_kept_out();
+  surprised_ = {};
   mix_.begin(0.0);
 }
 
@@ -72,7 +73,19 @@ void Engine::begin_after_gap(const Measurement& m) noexcept {
 // Outliers or a jump: nobody will tell any more, and measured they were.
 void Engine::admit_kept_out() noexcept {
   for (std::size_t a = 0; a < axes_; ++a) ledger_.admit(a, kept_out(a));
-  kept_out_ = {};
+  forget_kept_out();
+}
+
+// Outliers they were, and no rotation, where this measurement is back: where it is nearer to them than to
+// what was published, they are what this one goes on with, and kept out was rotation.
+void Engine::book_kept_out(const Measurement& m) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(m.valid, a) || !(kept_out_s_[a] > 0.0)) continue;
+    const double away = kept_out_[a] / kept_out_s_[a];
+    if ((m.in.rate_radps[a] - published_.rate[a]) * away > 0.5 * away * away)
+      ledger_.admit_at_rest(a, kept_out_[a]);
+  }
+  forget_kept_out();
 }
 
 bool Engine::heard(std::uint32_t axes) const noexcept {
@@ -105,7 +118,7 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
     return;
   }
   waiting_ = still_waiting(m.valid);
-  if (!waiting_) kept_out_ = {};
+  if (!waiting_) book_kept_out(m);
   if (foreseen) {
     expect_surprise(least);
     mix_.judge(trackers_, now, least);
@@ -130,6 +143,7 @@ void Engine::wait(const Measurement& m, const Surprise& now, EstimatorOutput& ou
     if (!has(m.valid, a)) continue;
     const double apart = m.in.rate_radps[a] - published_.rate[a];
     kept_out_[a] = apart * m.covered_s(a);
+    kept_out_s_[a] = m.covered_s(a);
     published_.variance[a] += apart * apart;
   }
 }
