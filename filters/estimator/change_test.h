@@ -121,9 +121,11 @@ class ChangeTest {
     std::size_t trackers = 0;
     std::size_t longest = 1;  // of these horizons; 1: none is
     double gain = 0.0, forgets = 0.0;
+    double unseen = 0.0;  // normalised square of a sum that is a sign of a change
   };
 
-  [[nodiscard]] Measured measured(const Surprise& now, double most) noexcept;
+  [[nodiscard]] Measured measured(const Surprise& now, const std::array<NoiseScale, kMaxAxes>& noise,
+                                  double most) noexcept;
   void add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   void add_some(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   // By how much the test is to believe the sums wider than white noise's.
