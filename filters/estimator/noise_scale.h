@@ -52,6 +52,8 @@ class NoiseScale {
   // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   [[nodiscard]] bool white() const noexcept { return colour_ < kWhite; }
+  // It stands on as much rest as it is ever a mean over; before, it may be what a motion has left.
+  [[nodiscard]] bool colour_known() const noexcept { return colour_count_ >= kColourMemory; }
   // What the mean of a level that a coarse converter rounds is off by, mean square, where that mean is known
   // with this variance: by the first harmonics of the sawtooth of rounding, smoothed by the noise (Widrow and
   // Kollar, "Quantization Noise", 2008, chapter 4). It is little where the level is one of the converter's or

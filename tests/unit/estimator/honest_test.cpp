@@ -201,6 +201,19 @@ TEST(Honest, InASea) {
   EXPECT_LT(mean, 1.25);
 }
 
+// A swing looks like rest where it turns, again and again, and what the filter then lags behind by is no
+// colour, however long it goes on.
+TEST(Honest, InASwingOfHours) {
+  constexpr int kLong = 1'200'000;
+  constexpr double kSwing = 10'000.0;
+  const Record made = record(60, kLong, 1e-9, [](int i) {
+    return i < 200'000 ? 0.0 : 30.0 * std::sin(2.0 * std::numbers::pi * (i - 200'000) / kSwing);
+  });
+  const double found = squared_error_over_variance(told(1e-9), made, 400'000);
+  EXPECT_GT(found, 0.8);
+  EXPECT_LT(found, 1.25);
+}
+
 class Draws {
  public:
   explicit Draws(unsigned seed) : random_(seed) {}
