@@ -59,7 +59,7 @@ class ChangeTest {
   // Mean square of what the filter at rest may be off by, (rad/s)^2, where its innovations lately have a mean
   // that noise alone seldom gives: a change may have begun, long before there is evidence enough for one.
   [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[axis]; }
-  // There was motion within the last thousand samples: it may go on, and is no colour.
+  // There was motion within the last thousand samples.
   [[nodiscard]] bool lately_moved() const noexcept { return relaxed_ > kLately; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;

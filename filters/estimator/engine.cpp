@@ -283,8 +283,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     const double predicted = rest_->measurement_variance();
     const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
     update_rest(m, learns);
-    const std::uint32_t of = change_.lately_moved() ? m.valid & ~m.tested : m.valid;
-    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m, of);
+    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m, learning(m.valid));
     if (learns) average_rest(predicted);
   }
   publish_rest();

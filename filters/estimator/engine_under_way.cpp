@@ -186,6 +186,15 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   judge_manoeuvre();
 }
 
+// Where there was motion lately it may go on, and is no colour; but where no colour is known yet there may
+// have been none, and of what is to be learned it is found.
+std::uint32_t Engine::learning(std::uint32_t valid) const noexcept {
+  if (!change_.lately_moved()) return valid;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (noise_[a].colour_known()) valid &= ~(1U << a);
+  return valid;
+}
+
 // Of noise that is white, or may be, 1.
 Axes Engine::colours() const noexcept {
   Axes colour{};
