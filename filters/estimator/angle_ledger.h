@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keeps the angle: what the published rate has fallen short of the measured one, integrated, is paid back.
 //
-// Two accounts. A settled filter of gain K owes tau (y - y0), tau = T (1-K)/K, and gets it back by itself
+// Three accounts. A settled filter of gain K owes tau (y - y0), tau = T (1-K)/K, and gets it back by itself
 // when the rate returns: that is the account at rest, and what it holds beyond that lag is paid, no faster
 // than an eighth of the filter's own uncertainty. y0 follows y slowly, so that a rate that does not return
 // leaves no debt either; by two poles, as by one it would go along with a slow sea a quarter of a period
-// late, which is how the lag goes, and be paid on top of it. What is owed since a change of rate is the
-// account of the manoeuvre: paid quickly, within half the samples that the followers of the motion look back
-// on. Quickly for coning's sake: paid over n samples, shortfalls of a tracker of memory M at the frequency w
-// turn 2 (w M)^3 w n of a cone into drift. A debt of long rest is never paid quickly, however sharp the
-// manoeuvre that follows: it is not the manoeuvre's.
+// late, which is how the lag goes, and be paid on top of it. What is owed since a change of rate was
+// found is the account of the manoeuvre: paid quickly, within half the samples that the followers of the
+// motion look back on. Quickly for coning's sake: paid over n samples, shortfalls of a tracker of memory M at
+// the frequency w turn 2 (w M)^3 w n of a cone into drift. What came together before it was found has its
+// own, and is paid over as many samples as it came together in: of a motion that took thousands to find it
+// is a thousand times what one of them is off by, and paid at once puts the rate off by more than the motion
+// did. A debt of long rest is never paid quickly, however sharp the manoeuvre that follows: it is not the
+// manoeuvre's.
 #pragma once
 
 #include <algorithm>
@@ -25,16 +28,17 @@ class AngleLedger {
   // follows: changes of rate are followed. Where they are not, all debts are the lag's, and have no limit.
   AngleLedger(double period_s, bool follows) : period_s_(period_s), follows_(follows) {}
 
-  // Rates to be added to the output of this sample, for each account.
+  // Rates to be added to the output of this sample, for each account; before: what was owed when the change
+  // was found.
   struct Payment {
-    double quick = 0.0, slow = 0.0;
-    [[nodiscard]] double rate() const noexcept { return quick + slow; }
+    double quick = 0.0, before = 0.0, slow = 0.0;
+    [[nodiscard]] double rate() const noexcept { return quick + before + slow; }
   };
   // rest, variance: rate and variance of the filter at rest; dt_s: what the sample covers.
   [[nodiscard]] Payment payment(std::size_t axis, double rest, double variance, double dt_s) const noexcept {
     const double most = follows_ ? kSlowShare * std::sqrt(variance) : kNoLimit;
     const double beyond = at_rest_[axis] - lag_s_ * (rest - reference_[axis]);
-    return {manoeuvre_[axis] / std::max(quick_s_, dt_s),
+    return {manoeuvre_[axis] / std::max(quick_s_, dt_s), before_[axis] / std::max(before_s_[axis], dt_s),
             std::clamp(beyond / (kSlowLags * lag_s_ + kSlowSamples * period_s_), -most, most)};
   }
 
@@ -44,6 +48,7 @@ class AngleLedger {
               bool manoeuvre) noexcept {
     (manoeuvre ? manoeuvre_ : at_rest_)[axis] += short_by_rad;
     manoeuvre_[axis] -= paid.quick * dt_s;
+    before_[axis] -= paid.before * dt_s;
     at_rest_[axis] -= paid.slow * dt_s;
     if (manoeuvre) return -paid.slow * dt_s;
     const double share = dt_s / (kReturnLags * lag_s_ + kReturnSamples * period_s_);
@@ -56,6 +61,15 @@ class AngleLedger {
   void move_to_manoeuvre(std::size_t axis, double angle_rad) noexcept {
     at_rest_[axis] -= angle_rad;
     manoeuvre_[axis] += angle_rad;
+  }
+  // The same, of an angle that came together over so many samples before the change was found.
+  void move_to_before(std::size_t axis, double angle_rad, double samples) noexcept {
+    const double old = std::abs(before_[axis]), fresh = std::abs(angle_rad);
+    at_rest_[axis] -= angle_rad;
+    before_[axis] += angle_rad;
+    if (old + fresh > 0.0)
+      before_s_[axis] =
+          (old * before_s_[axis] + fresh * std::max(kQuickSamples, samples) * period_s_) / (old + fresh);
   }
   // Samples that were passed over as outliers turned out to be rotation: of a manoeuvre, or of rest.
   void admit(std::size_t axis, double angle_rad) noexcept { manoeuvre_[axis] += angle_rad; }
@@ -81,14 +95,16 @@ class AngleLedger {
     lag_s_ = lag_s;
   }
 
-  [[nodiscard]] double owed(std::size_t axis) const noexcept { return at_rest_[axis] + manoeuvre_[axis]; }
+  [[nodiscard]] double owed(std::size_t axis) const noexcept {
+    return at_rest_[axis] + manoeuvre_[axis] + before_[axis];
+  }
   // Takes over another ledger's debt, which its filter's lag no longer returns.
   void owe(std::size_t axis, double angle_rad) noexcept {
     manoeuvre_[axis] += angle_rad;
     quick_s_ = std::max(quick_s_, kOwedSamples * period_s_);
   }
   // Of a filter that is to begin again: all is owed to nobody, until it is told so anew.
-  void forget() noexcept { at_rest_ = manoeuvre_ = {}; }
+  void forget() noexcept { at_rest_ = manoeuvre_ = before_ = {}; }
 
  private:
   static constexpr double kNoLimit = 1e300;
@@ -111,7 +127,8 @@ class AngleLedger {
   double quick_s_ = kQuickSamples * period_s_;
   double common_ = 0.0;
   double lag_s_ = 0.0;
-  Axes at_rest_{}, manoeuvre_{};
+  Axes at_rest_{}, manoeuvre_{}, before_{};
+  Axes before_s_{};
   Axes followed_{}, reference_{};  // y0, and what it follows
 };
 

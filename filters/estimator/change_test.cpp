@@ -16,10 +16,12 @@ constexpr double kSuspicion = 0.5;
 // A sum of innovations two of its standard deviations from zero is a sign that a change may have begun. What
 // a motion adds to the mean normalised square of the filter's error until it is suspected depends on this
 // alone, not on how it begins: the evidence against rest is itself the sum of the squares of that error. Over
-// all horizons there is such a sum in a tenth of the time at rest. Lately there was motion: less is needed,
+// five horizons there is such a sum in a tenth of the time at rest; over more it is to be no more often, and
+// more is asked for: of any of n sums it is about n times as likely. Lately there was motion: less is needed,
 // by as much as for a change. In a ramp, which sums over half of its age show best, the filter is off by 1.8
 // times their mean.
 constexpr double kUnseen = 4.0;
+constexpr double kUnseenSums = 5.0;
 constexpr double kOffByMean = 3.1;
 // Sums over fewer samples than this tracker's say no more than the single measurement, which has a test of
 // its own.
@@ -42,6 +44,9 @@ constexpr double kWideLags = 2.0;
 constexpr double kHorizonsKnown = 100.0;
 constexpr double kLeastNoise = 0.1;
 constexpr double kLeastFollowed = 0.25;
+// Of what is clipped the mean is known from so many measurements at least: a change that is found leaves a
+// few in it.
+constexpr double kFewestClipped = 1024.0;
 // What was found may have been this much too small.
 constexpr double kWideningMargin = 1.25;
 // Squares are known to this many measurements' worth before there are any.
@@ -82,7 +87,9 @@ void ChangeTest::forget() noexcept {
   }
 }
 
-inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double most) noexcept {
+inline ChangeTest::Measured ChangeTest::measured(const Surprise& now,
+                                                 const std::array<NoiseScale, kMaxAxes>& noise,
+                                                 double most) noexcept {
   const double log_rest = logarithm(now.rest_factor), farthest = std::sqrt(2.0 * most);
   const double longest = horizons_[known_ - 1].samples;
   Measured out;
@@ -99,8 +106,11 @@ inline ChangeTest::Measured ChangeTest::measured(const Surprise& now, double mos
     const double part = std::clamp(whole, -farthest, farthest);
     // More than as much again is no tail of the noise.
     const double beyond = std::clamp(whole, -2.0 * farthest, 2.0 * farthest) - part;
-    clipped_count_[a] = std::min(clipped_count_[a] + 1.0, kHorizonsKept * longest);
-    clipped_[a] += (beyond - clipped_[a]) / std::max(clipped_count_[a], kHorizonsBelieved * longest);
+    // Before the noise is known it may be a motion that it began in.
+    if (noise[a].known()) {
+      clipped_count_[a] = std::min(clipped_count_[a] + 1.0, kHorizonsKept * longest);
+      clipped_[a] += (beyond - clipped_[a]) / std::max(clipped_count_[a], kFewestClipped);
+    }
     out.normalised[lane] = part + clipped_[a];
     out.angle[lane] = now.innovation[a] * now.covered_s[a];
     out.rest_square += std::min(rest, kSquareClip);
@@ -156,7 +166,7 @@ inline void ChangeTest::add(const Measured& now, const Horizon& over, std::uint3
   return out;
 }
 
-inline double ChangeTest::unusual() const noexcept { return std::max(0.0, kUnseen - relaxed_); }
+inline double ChangeTest::unusual() const noexcept { return std::max(0.0, behind_.unseen - relaxed_); }
 
 // Over the scale: the mean square of what the filter may be off by. square: of the sums, beyond the limit in
 // one of them at least.
@@ -190,7 +200,8 @@ inline double ChangeTest::unusual() const noexcept { return std::max(0.0, kUnsee
   unseen_ = {};
   std::optional<std::size_t> best;
   for (; known_ < trackers.size(); ++known_) horizons_[known_] = Horizon(horizon(trackers.memory(known_)));
-  const Measured all = measured(now, most);
+  look_behind(trackers, lag);
+  const Measured all = measured(now, noise, most);
   std::uint32_t coloured = 0;
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((now.valid >> a & 1U) != 0 && !noise[a].white()) coloured |= 1U << a;
@@ -267,7 +278,13 @@ void ChangeTest::look_behind(const TrackerBank& trackers, double lag) noexcept {
   if (lag == behind_.lag && trackers.size() == behind_.trackers) return;
   std::size_t longest = 1;
   while (longest + 1 < trackers.size() && horizon(trackers.memory(longest + 1)) <= kWideLags * lag) ++longest;
-  behind_ = {lag, trackers.size(), longest, 1.0 / (1.0 + lag), 1.0 / horizon(trackers.memory(longest))};
+  const double sums = static_cast<double>(longest + 1) - static_cast<double>(kShortestSum);
+  behind_ = {lag,
+             trackers.size(),
+             longest,
+             1.0 / (1.0 + lag),
+             1.0 / horizon(trackers.memory(longest)),
+             kUnseen + 2.0 * logarithm(std::max(1.0, sums / kUnseenSums))};
 }
 
 // In white noise of variance 1 behind a gain K the innovations' sums, that forget with b, have of the noise

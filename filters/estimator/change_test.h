@@ -59,6 +59,8 @@ class ChangeTest {
   // Mean square of what the filter at rest may be off by, (rad/s)^2, where its innovations lately have a mean
   // that noise alone seldom gives: a change may have begun, long before there is evidence enough for one.
   [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[axis]; }
+  // There was motion within the last thousand samples.
+  [[nodiscard]] bool lately_moved() const noexcept { return relaxed_ > kLately; }
   // The change was dealt with. Lately there was motion: the next one needs less evidence for a while.
   void restart() noexcept;
   // What has come together until now was no evidence.
@@ -121,9 +123,11 @@ class ChangeTest {
     std::size_t trackers = 0;
     std::size_t longest = 1;  // of these horizons; 1: none is
     double gain = 0.0, forgets = 0.0;
+    double unseen = 0.0;  // normalised square of a sum that is a sign of a change
   };
 
-  [[nodiscard]] Measured measured(const Surprise& now, double most) noexcept;
+  [[nodiscard]] Measured measured(const Surprise& now, const std::array<NoiseScale, kMaxAxes>& noise,
+                                  double most) noexcept;
   void add(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   void add_some(const Measured& now, const Horizon& over, std::uint32_t valid, Sums& sums) const noexcept;
   // By how much the test is to believe the sums wider than white noise's.
@@ -137,6 +141,9 @@ class ChangeTest {
   [[nodiscard]] double walk(std::size_t axis, double expected) const noexcept;
   [[nodiscard]] double coloured(const TrackerBank& trackers, std::size_t axis, double lag,
                                 double share) const noexcept;
+
+  // Of relaxed_ what is left after the samples that it is named by.
+  static constexpr double kLately = 3.7;
 
   bool rate_alone_;
   std::uint32_t axes_;  // of the sensor, bit i

@@ -114,9 +114,7 @@ void Engine::recall_colour(const Axes& colour) noexcept {
 Axes Engine::owed() const noexcept {
   Axes angle{};
   if (!conserve_angle_) return angle;
-  for (std::size_t a = 0; a < axes_; ++a) {
-    angle[a] = ledger_.owed(a) + kept_out(a);
-  }
+  for (std::size_t a = 0; a < axes_; ++a) angle[a] = ledger_.owed(a) + kept_out(a);
   return angle;
 }
 
@@ -289,7 +287,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     const double predicted = rest_->measurement_variance();
     const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
     update_rest(m, learns);
-    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m, m.valid);
+    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m, learning(m.valid));
     if (learns) average_rest(predicted);
   }
   publish_rest();
@@ -341,7 +339,7 @@ void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
     double variance = unmeasured_.variance(a, published_.variance[a]);
     if (conserve_angle_) {
       const double dt_s = m.covered_s(a);
-      const AngleLedger::Payment paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);
+      const auto paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);
       rate += paid.rate();
       // Of a lag that lasts the payments are the return: the rate is off by the greater of the two.
       variance += std::max(0.0, paid.rate() * paid.rate() - published_.returned[a]) + published_.shared[a];

@@ -122,6 +122,8 @@ class Engine {
   void grade(std::size_t axis, double normalised) noexcept;
   void doubt(std::size_t axis, double normalised) noexcept;
   [[nodiscard]] bool hardly_tested(std::size_t axis) const noexcept;
+  [[nodiscard]] std::uint32_t learning(std::uint32_t valid) const noexcept;
+  [[nodiscard]] Axes colours() const noexcept;
   void refresh_lag() noexcept;
   [[nodiscard]] double lag_samples() const noexcept;
   // The filter's own figures are for the mean of all axes. Those of one, whose gain is the same, are as much

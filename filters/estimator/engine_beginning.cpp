@@ -121,7 +121,9 @@ void Engine::follow_beginning(const Measurement& m, const Surprise& now, Estimat
   if (!waiting_) book_kept_out(m);
   if (foreseen) {
     expect_surprise(least);
-    mix_.judge(trackers_, now, least);
+    // What is louder than it is rough may be the motion that it began in.
+    constexpr Axes kWhite{1.0, 1.0, 1.0};
+    mix_.judge(trackers_, now, least, kWhite);
   }
   const bool changed =
       heard(m.valid) && change_.take(trackers_, now, noise_, outliers_.most(), lag_samples());

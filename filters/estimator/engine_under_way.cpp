@@ -72,7 +72,9 @@ void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, Estimato
   for (std::size_t a = 0; a < axes_; ++a) {
     rate[a] = trackers_.rate(tracker, a);
     // What the test has seen is among what it was too blunt for.
-    if (!hardly_tested(a)) ledger_.move_to_manoeuvre(a, change_.fallen_short(tracker, a));
+    if (!hardly_tested(a))
+      ledger_.move_to_before(a, change_.fallen_short(tracker, a),
+                             ChangeTest::horizon(trackers_.memory(tracker)));
     owe_to_manoeuvre(a);
   }
   ledger_.pace(trackers_.length(tracker));
@@ -174,7 +176,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   }
   waiting_ = still_waiting(m.valid);
   expect_surprise(least);
-  mix_.judge(trackers_, now, least);
+  mix_.judge(trackers_, now, least, colours());
   trackers_.correct(m.in.rate_radps, m.valid);
   update_rest(m, false);
   mix_.weigh(trackers_);
@@ -182,6 +184,23 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   publish_mix(now);
   ledger_.pace(mix_.length(trackers_, rest_->gain()));
   judge_manoeuvre();
+}
+
+// Where there was motion lately it may go on, and is no colour; but where no colour is known yet there may
+// have been none, and of what is to be learned it is found.
+std::uint32_t Engine::learning(std::uint32_t valid) const noexcept {
+  if (!change_.lately_moved()) return valid;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (noise_[a].colour_known()) valid &= ~(1U << a);
+  return valid;
+}
+
+// Of noise that is white, or may be, 1.
+Axes Engine::colours() const noexcept {
+  Axes colour{};
+  for (std::size_t a = 0; a < axes_; ++a)
+    colour[a] = noise_[a].white() || !noise_[a].colour_known() ? 1.0 : noise_[a].colour();
+  return colour;
 }
 
 // Who is to begin afresh, and whether the motion is over.

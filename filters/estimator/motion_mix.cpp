@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "filters/random/log_exp.h"
 
@@ -60,38 +61,40 @@ void MotionMix::begin(double failed_after) noexcept {
   failed_after_ = failed_after;
 }
 
-void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Axes& least) noexcept {
+// Of coloured noise a tracker foresees part. At rest, too: so it is no reason against the filter at rest that
+// it foresees less than what it is known by. And what speaks for either comes in rows as long as its
+// neighbours are alike, about the square root of its colour times as wide as in white noise.
+void MotionMix::judge(const TrackerBank& trackers, const Surprise& now, const Axes& least,
+                      const Axes& colour) noexcept {
   std::array<double, TrackerBank::kMost> log{};
-  double of_rest = 0.0;
+  const double sum = std::accumulate(weight_.begin(), weight_.begin() + trackers.size(), 0.0);
+  double for_rest = 0.0;
   for (std::size_t a = 0; a < kMaxAxes; ++a) {
     if ((now.valid >> a & 1U) == 0) continue;
     const double scale = now.scale[a], degrees = now.degrees[a];
     const double foreseen = unlikely(least[a], degrees);
+    double mean = 0.0;
     for (std::size_t j = 0; j < trackers.size(); ++j) {
-      if (!trackers.foresees(j, a)) {
-        log[j] += kNothingForeseen;
-        continue;
+      double here = kNothingForeseen;
+      if (trackers.foresees(j, a)) {
+        const double apart = now.rate[a] - trackers.rate(j, a);
+        const double factor = trackers.factor(j, a);
+        const double log_factor = trackers.since(a) == 1.0 ? trackers.log_factor(j) : logarithm(factor);
+        const double square = apart * apart / (factor * scale);
+        here = -0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + log_factor);
       }
-      const double apart = now.rate[a] - trackers.rate(j, a);
-      const double factor = trackers.factor(j, a);
-      const double log_factor = trackers.since(a) == 1.0 ? trackers.log_factor(j) : logarithm(factor);
-      const double square = apart * apart / (factor * scale);
-      log[j] -= 0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + log_factor);
+      log[j] += here;
+      mean += sum > 1e-9 ? weight_[j] * here / sum : (j == 0 ? here : 0.0);
     }
     const double square = now.innovation[a] * now.innovation[a] / (now.rest_factor * scale);
-    of_rest -=
-        0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + logarithm(now.rest_factor));
+    const double of_rest =
+        -0.5 * (std::min(unlikely(square, degrees) - foreseen, kMostSquare) + logarithm(now.rest_factor));
+    if (colour[a] > 1.0) mean = std::min(mean, -0.5 * (1.0 - foreseen));
+    for_rest += (of_rest - mean) / std::sqrt(colour[a]);
   }
-  double mean = 0.0, sum = 0.0;
-  for (std::size_t j = 0; j < trackers.size(); ++j) {
-    mean += weight_[j] * log[j];
-    sum += weight_[j];
-    if (j == 0) continue;
-    const double horizon = ChangeTest::horizon(trackers.length(j - 1));
-    link_[j] += log[j] - log[j - 1] - link_[j] / horizon;
-  }
-  mean = sum > 1e-9 ? mean / sum : log[0];
-  rest_ratio_ = std::min(rest_ratio_ + of_rest - mean, kMostRatio);
+  for (std::size_t j = 1; j < trackers.size(); ++j)
+    link_[j] += log[j] - log[j - 1] - link_[j] / ChangeTest::horizon(trackers.length(j - 1));
+  rest_ratio_ = std::min(rest_ratio_ + for_rest, kMostRatio);
   rest_age_ += 1.0;
 }
 

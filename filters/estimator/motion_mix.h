@@ -23,8 +23,10 @@ class MotionMix {
   void begin(double failed_after) noexcept;
 
   // After trackers.predict(), before correct(): judges the predictions. least: per axis the least normalised
-  // square of all trackers; what none of them foresaw speaks against none of them.
-  void judge(const TrackerBank& trackers, const Surprise& now, const Axes& least) noexcept;
+  // square of all trackers; what none of them foresaw speaks against none of them. colour: per axis, of its
+  // noise, as it is known from rest; 1: white.
+  void judge(const TrackerBank& trackers, const Surprise& now, const Axes& least,
+             const Axes& colour) noexcept;
   // After everybody has taken the measurement in: the weights; and what two trackers differ by.
   void weigh(const TrackerBank& trackers) noexcept;
   void compare(const TrackerBank& trackers, const Surprise& now) noexcept;

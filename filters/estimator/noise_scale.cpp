@@ -9,6 +9,20 @@
 #include "filters/random/log_exp.h"
 
 namespace ifog {
+namespace {
+
+// What rounding takes from the mean of a level so many turns between two steps, over the first harmonic's
+// amplitude, and its slope by the angle.
+struct Sawtooth {
+  double off = 0.0, slope = 1.0;
+};
+
+Sawtooth sawtooth(double turns, double second) noexcept {
+  const OnCircle at = on_circle(turns);
+  return {at.sine * (1.0 - second * at.cosine), at.cosine - second * (2.0 * at.cosine * at.cosine - 1.0)};
+}
+
+}  // namespace
 
 // Rounding to a digit d has variance d^2 / 12: a single one of them is never far out.
 double NoiseScale::now() const noexcept { return std::max({rest_, local_, digit_variance_}); }
@@ -23,31 +37,33 @@ void NoiseScale::round_to(double digit) noexcept {
   if (digit_ > 1e150) return;
   constexpr double kPi = std::numbers::pi;
   const double hidden = 4.0 * kPi * kPi * told_ / (digit_ * digit_);
+  second_ = exponential(-1.5 * std::min(hidden, 50.0));
   rounding_ = hidden < 50.0 ? digit_ * digit_ / (2.0 * kPi * kPi) * exponential(-hidden) : 0.0;
 }
 
-// A level x has the mean x - B sin u, u its place between two steps in radians: Kepler's equation, which
-// Newton's way from the far end solves. Where noise is so small that it has more than one solution the mean
-// does not say where the level lies. The mean may be elsewhere by its noise: at three places, that have the
-// moments of a normal distribution, each as likely as many levels have that mean.
+// A level x has the mean x - B sin u (1 - q cos u), u its place between two steps in radians: the sawtooth's
+// first two harmonics, q twice the second one's share. Newton's way from the far end solves it. Where noise
+// is so small that three harmonics are needed the mean is not asked where the level lies. It may be elsewhere
+// by its noise: at three places, that have the moments of a normal distribution, each as likely as many
+// levels have that mean.
 double NoiseScale::rounding(double mean, double variance) const noexcept {
   if (!(rounding_ > 0.0)) return 0.0;
+  if (second_ >= kMostSecond) return rounding_ * (1.0 + 0.25 * second_ * second_);
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const double steep = kTurn * std::sqrt(2.0 * rounding_) / digit_;
-  if (steep >= 1.0) return rounding_;
   const double aside = std::sqrt(3.0 * std::max(0.0, variance));
   double squares = 0.0, levels = 0.0;
   for (const int to : {-1, 0, 1}) {
     double turns = (mean + to * aside - last_[2]) / digit_;
     turns -= std::nearbyint(turns);
     double level = turns > 0.0 ? 0.5 : -0.5;
-    OnCircle at = on_circle(level);
+    Sawtooth at = sawtooth(level, second_);
     for (int i = 0; i < 5; ++i) {
-      level -= (level - steep / kTurn * at.sine - turns) / (1.0 - steep * at.cosine);
-      at = on_circle(level);
+      level -= (level - steep / kTurn * at.off - turns) / (1.0 - steep * at.slope);
+      at = sawtooth(level, second_);
     }
-    const double likely = (to == 0 ? 4.0 : 1.0) / (1.0 - steep * at.cosine);
-    squares += likely * at.sine * at.sine;
+    const double likely = (to == 0 ? 4.0 : 1.0) / (1.0 - steep * at.slope);
+    squares += likely * at.off * at.off;
     levels += likely;
   }
   return 2.0 * rounding_ * squares / levels;
@@ -74,7 +90,7 @@ void NoiseScale::take(double rate, double steps) noexcept {
     rough_count_ = std::min(rough_count_ + 1.0, kMemory);
     // Beside the scale, so that a coarse sensor's runs of equal values do not end in a variance of zero that
     // nothing could raise again.
-    bound_ = kClip * std::max(rough_, 0.5 * rest_);
+    bound_ = kClip * std::max({rough_, 0.5 * rest_, digit_variance_});
     third_ = std::min(square, bound_);
     rough_ += (third_ - rough_) / rough_count_;
     if (known_) rest_ = colour_ * std::max(rough_, 1e-9 * told_);

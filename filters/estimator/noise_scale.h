@@ -52,8 +52,10 @@ class NoiseScale {
   // Variance of the innovations over that of white noise which is as rough as they are; 1: white.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   [[nodiscard]] bool white() const noexcept { return colour_ < kWhite; }
+  // It stands on as much rest as it is ever a mean over; before, it may be what a motion has left.
+  [[nodiscard]] bool colour_known() const noexcept { return colour_count_ >= kColourMemory; }
   // What the mean of a level that a coarse converter rounds is off by, mean square, where that mean is known
-  // with this variance: by the first harmonic of the sawtooth of rounding, smoothed by the noise (Widrow and
+  // with this variance: by the first harmonics of the sawtooth of rounding, smoothed by the noise (Widrow and
   // Kollar, "Quantization Noise", 2008, chapter 4). It is little where the level is one of the converter's or
   // lies between two, and most in a quarter of the way. No filter sees it.
   [[nodiscard]] double rounding(double mean, double variance) const noexcept;
@@ -98,6 +100,8 @@ class NoiseScale {
   static constexpr double kClip = 25.0;
   // The ratio of two variances is spoiled by less.
   static constexpr double kColourClip = 9.0;
+  // More, and the mean is not everywhere the steeper, the further a level is from the converter's own.
+  static constexpr double kMostSecond = 0.25;
   // Of the limit above the roughness, whose own error is 4 %.
   static constexpr double kMargin = 1.05;
 
@@ -116,7 +120,8 @@ class NoiseScale {
   double squares_ = 0.0;
   double digit_ = 1e300;         // least difference of two neighbours
   double digit_variance_ = 0.0;  // of what rounding to it adds to a measurement
-  double rounding_ = 0.0;        // over where the level lies
+  double rounding_ = 0.0;        // of the first harmonic, over where the level lies
+  double second_ = 0.0;          // twice the second one's share of it
   int learned_ = 0, different_ = 0, in_a_row_ = 0;
   bool known_ = false;
   std::array<double, 3> last_{};

@@ -9,10 +9,12 @@
 namespace ifog::bench {
 namespace {
 
-// Samples: a filter of that ratio is five time constants old before anything is judged, and forty (at rest)
-// or ten (in motion) of them are judged, where that is more than the least.
+// Samples: a filter of that ratio is five time constants old before anything is judged, and forty (at rest),
+// eighty (in motion) or ten (started in one) of them are judged, where that is more than the least. In motion
+// the variance is judged by its mean, and until a motion is suspected at all its beginning alone is worth as
+// much as six time constants of rest.
 struct Lengths {
-  std::size_t settle, rest, motion;
+  std::size_t settle, rest, motion, started;
 };
 
 std::size_t time_constants(double ratio, double number) {
@@ -22,7 +24,8 @@ std::size_t time_constants(double ratio, double number) {
 Lengths lengths(double ratio) {
   return {.settle = std::max<std::size_t>(20'000, time_constants(ratio, 5.0)),
           .rest = std::max<std::size_t>(128'000, time_constants(ratio, 40.0)),
-          .motion = std::max<std::size_t>(80'000, time_constants(ratio, 10.0))};
+          .motion = std::max<std::size_t>(80'000, time_constants(ratio, 80.0)),
+          .started = std::max<std::size_t>(80'000, time_constants(ratio, 10.0))};
 }
 
 enum Stream : std::uint32_t { kWalk, kNoise, kMotion, kOffset };
@@ -74,9 +77,10 @@ Regime at_rest(const std::string& name, double limit, NoiseKind noise) {
           .judge_variance = true,
           .make = [name, noise = std::move(noise)](double ratio, std::uint64_t seed) {
             const Streams streams(name, ratio, seed);
-            const auto [settle, judged, motion] = lengths(ratio);
+            const Lengths length = lengths(ratio);
             Random random = streams(kNoise);
-            return compose(streams, ratio, settle, noise(random, settle + judged, settle), {});
+            return compose(streams, ratio, length.settle,
+                           noise(random, length.settle + length.rest, length.settle), {});
           }};
 }
 
@@ -147,7 +151,7 @@ Regime started_moving(const std::string& name, bool told) {
             constexpr std::size_t kSwing = 20'000;
             constexpr auto kMinute = static_cast<std::size_t>(60.0 * kSampleRate_hz);
             const Streams streams(name, ratio, seed);
-            const std::size_t samples = kSwing + kMinute + lengths(ratio).motion;
+            const std::size_t samples = kSwing + kMinute + lengths(ratio).started;
             Random of_noise = streams(kNoise), of_motion = streams(kMotion);
             RegimeRecord record = compose(streams, ratio, kSwing + kMinute, gaussian_noise(of_noise, samples),
                                           sway_that_ends(of_motion, samples, kSwing, 30.0, 0.02));

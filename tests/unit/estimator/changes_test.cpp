@@ -44,6 +44,23 @@ TEST(DriftThenStep, PaysQuicklyOnlyWhatTheStepOwes) {
   }
 }
 
+// A drift that takes thousands of samples to find is off by little all that time, and paying for it is no
+// more than that either.
+TEST(SlowDrift, ThatIsFoundPaysAsSlowlyAsItOwed) {
+  constexpr int kFrom = 20'000;
+  double worst = 0.0;
+  std::uint64_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Record r = record(60 + seed, 80'000, 1e-6, [](int i) { return 1e-4 * std::max(0, i - kFrom); });
+    const Filtered got = run(told(1e-6), r.measured);
+    found += got.health.manoeuvres;
+    for (std::size_t i = kFrom; i < r.truth.size(); ++i)
+      worst = std::max(worst, std::abs(got.denoised[i] - r.truth[i]));
+  }
+  EXPECT_GT(found, 0U);
+  EXPECT_LT(worst, 1.0);
+}
+
 TEST(SlowMotion, IsFollowedBesideALongLag) {
   constexpr int kFrom = 20'000;
   const auto sea = [](int i) { return i < kFrom ? 0.0 : 3.0 * std::sin(6.2831853 * (i - kFrom) / 1000.0); };

@@ -103,6 +103,25 @@ TEST(StronglyColouredNoise, IsNotFollowedForEver) {
   }
 }
 
+// Nor where a motion has made them follow: it ends, and the noise is no motion by being foreseen.
+TEST(StronglyColouredNoise, IsNotFollowedOnceAMotionIsOver) {
+  constexpr int kFrom = 40'000, kUntil = 44'000, kLength = 100'000;
+  for (const double correlation : {0.8, 0.9, 0.95}) {
+    double moving = 0.0;
+    constexpr int kSeeds = 4;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      std::vector<double> measured = coloured({"", correlation, 0.0, 0.0}, 10 + seed, kLength);
+      for (std::size_t i = kFrom; i < kUntil; ++i)
+        measured[i] += 30.0 * std::sin(2 * std::numbers::pi * static_cast<double>(i - kFrom) / 2000.0);
+      const Filtered got = run(told(1e-3), measured);
+      EXPECT_GE(got.health.manoeuvres, 1U);
+      for (std::size_t i = kUntil; i < measured.size(); ++i)
+        moving += (got.flags[i] & ifog::kManoeuvre) != 0 ? 1.0 / (kSeeds * (kLength - kUntil)) : 0.0;
+    }
+    EXPECT_LT(moving, 0.2) << "correlation " << correlation;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, ColouredNoise,
                          testing::Values(Colour{"correlated", 0.5, 0.0, 0.0}, Colour{"line", 0.0, 0.8, 0.0},
                                          Colour{"tails", 0.0, 0.0, 0.02}, Colour{"all", 0.3, 0.5, 0.01}));
