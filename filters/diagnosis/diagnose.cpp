@@ -34,6 +34,7 @@
 #include "filters/diagnosis/residual/two_states.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "filters/diagnosis/search/acceptance.h"
+#include "filters/diagnosis/search/complete_laws.h"
 #include "filters/diagnosis/search/earth_rate.h"
 
 namespace ifog {
@@ -74,6 +75,7 @@ class Run {
     drop_what_a_capture_denies();
     drop_what_stands_twice();
     drop_what_is_not_proven();
+    complete_laws(data_, reconstructed_, found_);
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
       say(harmful_in_words(result_.effects[*harmful].effect));

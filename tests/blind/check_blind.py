@@ -10,6 +10,7 @@ except ModuleNotFoundError:
     print("check_blind: skipped, numpy is missing for this Python; install python3-numpy")
     sys.exit(77)
 
+import best_possible
 import judge
 import sensor
 import signals
@@ -145,6 +146,30 @@ class JudgeTest(unittest.TestCase):
     def test_means_leave_out_what_is_missing(self):
         x = np.array([1.0, 1.0, np.nan, 3.0, np.nan, np.nan])
         np.testing.assert_array_equal(signals.means(x, 1.0, 2.0), [1.0, 3.0])
+
+
+class BestPossibleTest(unittest.TestCase):
+    def test_without_noise_the_law_is_found(self):
+        made = sensor.make(12, "coil lags the thermometer").making
+        law = best_possible.Law(made.hidden[:1], made.laws[:1], [2e-6], made.worlds[0].plan)
+        truth = law.start.copy()
+        law.start = truth * [0.8, 1.2]
+        at = best_possible.fitted(law, made.worlds[0], law.effect(made.worlds[0], truth), made.noise)
+        np.testing.assert_allclose(at, truth, rtol=0.02)
+
+    def test_what_is_left_scatters_as_the_bound_says(self):
+        seeds = [s for s in range(1, 60) if sensor.draw_role(np.random.default_rng([s, 0x1F06]), s, "supply")[0]
+                 == "visible"][:25]
+        ratios = []
+        for s in seeds:
+            one = sensor.make(s, "supply")
+            if len(one.truth["effects"]) == 1 and not one.truth["faults"]:
+                second = one.captures[1]
+                own = signals.rms(second.own, 1 / one.truth["sample_rate_hz"])
+                ratios.append(best_possible.floor(s, "supply") * own / one.truth["limit_radps"])
+        # the better of two nearly equal fits, so a little less than one
+        self.assertGreater(len(ratios), 10)
+        self.assertTrue(0.5 < np.sqrt(np.mean(np.square(ratios))) < 1.5, ratios)
 
 
 if __name__ == "__main__":

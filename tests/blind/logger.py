@@ -56,7 +56,7 @@ def apply(rng, faults, columns, t, accidents):
         elif f["kind"] in ACCIDENTS:
             _accident(rng, f["kind"], x, f["column"], dt)
         else:
-            columns[f["column"]] = _wiring(f, x, dt)
+            columns[f["column"]] = wiring(f, x, dt)
     return keep
 
 
@@ -78,7 +78,7 @@ def _accident(rng, name, x, column, dt):
             x[start : start + int(rng.integers(1, 6))] = np.nan
 
 
-def _wiring(f, x, dt):
+def wiring(f, x, dt):
     if f["kind"] == "coarse":
         return np.round(x / f["step"]) * f["step"]
     steps = max(1, int(round(f["seconds"] / dt)))

@@ -27,9 +27,23 @@ class Capture:
 
 
 @dataclass
+class Making:
+    """What a sensor was made of, for whoever asks what could be known of it."""
+    hidden: list  # kinds of the effects
+    laws: list
+    sizes: list
+    noise: Noise
+    worlds: list
+    intact: list  # of each capture the columns before a logger's faults
+    uncut: list  # captures with the faults, before rows are cut
+    kept: list  # which rows are in the capture
+
+
+@dataclass
 class Sensor:
     truth: dict
     captures: list
+    making: Making
 
 
 def draw_role(rng, seed, only):
@@ -85,14 +99,16 @@ def make(seed, only=None, several=False):
     truth = _truth(seed, role, hidden, laws, plan, noise, sizes, sigmas, faults, intact)
     truth["limit_radps"] = limit
     truth["stale_radps"] = limits.from_stale_channels(worlds[1], intact[1].effect, logger.staleness(faults, causal))
-    captures = [_damage(rng, w, capture, faults) for w, capture in zip(worlds, intact)]
+    columns = [{name: x.copy() for name, x in capture.columns.items()} for capture in intact]
+    captures, kept = zip(*(_damage(rng, w, capture, faults) for w, capture in zip(worlds, intact)))
+    captures = list(captures)
     if several:
         again = np.random.default_rng([seed, 0x1F06, 2])
         world = World(again, plan, 1)
         extra = _record(again, world, noise, hidden, laws, sizes, wanted, flags, host_law)
-        captures.append(_damage(again, world, extra, faults))
+        captures.append(_damage(again, world, extra, faults)[0])
     truth["samples"], truth["accidents"] = len(captures[0].t), [c.accidents for c in captures]
-    return Sensor(truth, captures)
+    return Sensor(truth, captures, Making(hidden, laws, sizes, noise, worlds, columns, intact, list(kept)))
 
 
 def _surroundings(rng, noise, plan):
@@ -198,12 +214,13 @@ def _faults(rng, capture, causal, flags):
 
 
 def _damage(rng, w, capture, faults):
-    """Rows cut, columns spoilt; accidents befall the second capture only one time in four."""
+    """Rows cut, columns spoilt, and which rows stayed; accidents befall the second capture only one time in four."""
     struck = w.which == 0 or bool(rng.uniform() < 0.25)
     keep = logger.apply(rng, faults, capture.columns, w.t, struck)
     cut = {name: x[keep] for name, x in capture.columns.items()}
+    struck = struck and any(f["kind"] in logger.ACCIDENTS for f in faults)
     return Capture(capture.t[keep], cut, capture.effect[keep], [p[keep] for p in capture.parts], capture.rate[keep],
-                   capture.own[keep], struck and any(f["kind"] in logger.ACCIDENTS for f in faults))
+                   capture.own[keep], struck), keep
 
 
 def _share_outside(captures, column):

@@ -48,6 +48,11 @@ def _kept_out(r):
     return not any({"descriptive", "first capture only"} & set(e["flags"]) for e in r["truth"]["effects"])
 
 
+def judged_by_error(r):
+    """Whether what is left of its effect counts: a form covers it, and a correction can take it away elsewhere."""
+    return bool(r["error"]) and _strong(r) and cover(r) in ("design", "grammar") and _kept_out(r)
+
+
 def summary(records):
     done = [r for r in records if r["error"]]
     covered = [r for r in records if _strong(r) and cover(r) in ("design", "grammar")]

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A candidate as an effect of the model, and the other way; what its form costs.
+// A candidate as an effect of the model, and the other way; what its form costs, and which harmonics an angle
+// has.
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/meaning.h"
 #include "filters/effects/shape.h"
 
 namespace ifog {
 namespace {
+
+// Of a turn. A shorter arc tells no harmonics apart, and then it is the first that a field or a tilt makes;
+// of a still shorter one a straight line is all that is seen.
+constexpr double kSeenTurn = 0.5;
+constexpr double kSeenArc = 0.15;
+constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
 
 double complexity_of_form(const Candidate& candidate) {
   switch (candidate.form) {
@@ -35,6 +42,13 @@ double complexity_of_form(const Candidate& candidate) {
 }
 
 }  // namespace
+
+int harmonics_told_apart(const BlockData& data, std::size_t channel) {
+  const FineChannel& angle = data.channels[channel];
+  const double seen = (angle.high - angle.low) / angle.period;
+  if (seen < kSeenArc) return 0;
+  return seen < kSeenTurn ? 1 : kHarmonics;
+}
 
 double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
 

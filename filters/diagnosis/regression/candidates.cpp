@@ -22,11 +22,6 @@ constexpr double kShortestWarmUp_s = 10.0;
 // Of a sample: a band power that weighs the frequencies near half the sample rate most.
 constexpr double kHighest = 0.5;
 constexpr double kInside = 0.1;  // of the range from its edge: of a transition both levels have to be seen
-// Of a turn. A shorter arc tells no harmonics apart, and then it is the first that a field or a tilt makes;
-// of a still shorter one a straight line is all that is seen.
-constexpr double kSeenTurn = 0.5;
-constexpr double kSeenArc = 0.15;
-constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
 constexpr double kOfDifference =
     3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
 constexpr double kOfOtherAxis = 2.0;
@@ -78,11 +73,7 @@ void add_difference(const BlockData& data, std::size_t channel, std::vector<Cand
 }
 
 void add_angle(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
-  const FineChannel& angle = data.channels[channel];
-  const double seen = (angle.high - angle.low) / angle.period;
-  if (seen < kSeenArc) return;
-  const int most = seen < kSeenTurn ? 1 : kHarmonics;
-  for (int times = 1; times <= most; ++times) {
+  for (int times = 1; times <= harmonics_told_apart(data, channel); ++times) {
     for (const Form form : {Form::kCosine, Form::kSine}) {
       found.push_back(candidate_of(form, channel));
       found.back().period = data.channels[channel].period / times;

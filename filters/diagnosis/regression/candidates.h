@@ -28,6 +28,7 @@ struct Candidate {
   double period = 0.0;                  // cosine, sine
   double centre = 0.0;                  // transition: the channel's value in its middle
   double half_width = 0.0;  // transition; dead_zone, which no search tries, see residual/dead_zone.h
+  double expected = 0.0;    // size of its coefficient, standard deviation about zero; 0: any
   double of_channel = 0.0;  // what its channel adds to the complexity: one that no logger wrote
   FirstReading first_reading = FirstReading::kError;
 
@@ -55,6 +56,9 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form);
 // which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same regressor as
 // acceleration, see findings.cpp.
 std::vector<Candidate> library(const BlockData& data);
+
+// Of an angle: harmonics of the turn that the arc on which it was seen tells apart, 0 on a short one.
+int harmonics_told_apart(const BlockData& data, std::size_t channel);
 
 // Two effects that are one law together, each of which may be hidden while the other is missing: a law about
 // a point that nobody knows, k (c - c0)^2, k g (c - c0) while a switch g is on, or k w (c - c0) of a scale

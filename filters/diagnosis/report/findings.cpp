@@ -21,6 +21,7 @@ namespace {
 constexpr double kFarthest = 0.3;
 // Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
 constexpr double kWellKnown = 5.0;
+constexpr int kTermsOfSwing = 4;     // once and twice a turn
 constexpr double kKnownRound = 0.2;  // error of a harmonic of an arc, of its size
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
 
@@ -286,14 +287,17 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
   return covariance;
 }
 
-// Whether what repeats with the angle is known all round: it was seen all round, or over an arc that tells
-// its cosine and its sine so well that the circle follows.
+// Whether what repeats with the angle is known all round: it was seen all round, or over an arc from which
+// the circle follows. Of a complete law it does, because its coefficients are no larger than was to be
+// expected: they are the best guess all round, and beyond the arc better than the arc's end.
 bool known_all_round(const FineChannel& angle, const std::vector<FoundEffect>& effects) {
   if (angle.high - angle.low >= angle.period) return true;
   double size = 0.0, doubt = 0.0;
   int halves = 0;
+  int terms = 0;
   for (const FoundEffect& found : effects) {
     if (found.effect.channel != angle.name) continue;
+    ++terms;
     if (found.effect.form != name_of(Form::kCosine) && found.effect.form != name_of(Form::kSine))
       return false;
     const ModelParameter& coefficient = found.effect.parameters.front();
@@ -301,7 +305,7 @@ bool known_all_round(const FineChannel& angle, const std::vector<FoundEffect>& e
     size += coefficient.value * coefficient.value;
     doubt += coefficient.std_error * coefficient.std_error;
   }
-  return halves == 0 && doubt < kKnownRound * kKnownRound * size;
+  return halves == 0 && (terms == kTermsOfSwing || doubt < kKnownRound * kKnownRound * size);
 }
 
 namespace {
