@@ -261,11 +261,8 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
     out.flags |= kGated;
     ++health_.gated;
     published_.passed_over = true;
-    for (std::size_t a = 0; a < axes_; ++a) {
-      if (!has(m.valid, a)) continue;
-      kept_out_[a] += (m.in.rate_radps[a] - rest_->rate(a)) * m.covered_s(a);
-      kept_out_s_[a] += m.covered_s(a);
-    }
+    for (std::size_t a = 0; a < axes_; ++a)
+      if (has(m.valid, a)) add_kept_out(m, a, m.in.rate_radps[a] - rest_->rate(a));
   }
   std::optional<std::size_t> changed;
   if (keep_out && outliers_.run().size() == 1) {

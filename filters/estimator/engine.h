@@ -87,6 +87,7 @@ class Engine {
   void begin_after_gap(const Measurement& m) noexcept;
   void admit_kept_out() noexcept;
   void forget_kept_out() noexcept { kept_out_ = kept_out_s_ = {}; }
+  void add_kept_out(const Measurement& m, std::size_t axis, double apart) noexcept;
   void book_kept_out(const Measurement& m) noexcept;
   void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void take_in(const Measurement& m, const Surprise& now) noexcept;

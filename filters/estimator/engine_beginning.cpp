@@ -76,6 +76,11 @@ void Engine::admit_kept_out() noexcept {
   forget_kept_out();
 }
 
+void Engine::add_kept_out(const Measurement& m, std::size_t axis, double apart) noexcept {
+  kept_out_[axis] += apart * m.covered_s(axis);
+  kept_out_s_[axis] += m.covered_s(axis);
+}
+
 // Outliers they were, and no rotation, where this measurement is back: where it is nearer to them than to
 // what was published, they are what this one goes on with, and kept out was rotation.
 void Engine::book_kept_out(const Measurement& m) noexcept {
@@ -136,6 +141,7 @@ void Engine::wait(const Measurement& m, const Surprise& now, EstimatorOutput& ou
   out.flags |= kGated;
   ++health_.gated;
   waiting_ = published_.passed_over = true;
+  forget_kept_out();
   waited_ = 0;
   waiting_rate_ = now.rate;
   waiting_axes_ = m.valid;
@@ -144,8 +150,7 @@ void Engine::wait(const Measurement& m, const Surprise& now, EstimatorOutput& ou
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a)) continue;
     const double apart = m.in.rate_radps[a] - published_.rate[a];
-    kept_out_[a] = apart * m.covered_s(a);
-    kept_out_s_[a] = m.covered_s(a);
+    add_kept_out(m, a, apart);
     published_.variance[a] += apart * apart;
   }
 }
