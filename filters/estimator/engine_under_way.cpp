@@ -34,6 +34,7 @@ void Engine::forget_unmeasured(std::uint32_t valid) noexcept {
 // What a change of rate that was just found has left behind beside what the test has seen of it.
 void Engine::owe_to_manoeuvre(std::size_t axis) noexcept {
   ledger_.admit(axis, kept_out_[axis]);
+  kept_out_[axis] = kept_out_s_[axis] = 0.0;
   ledger_.move_to_manoeuvre(axis, untested_[axis]);
   untested_[axis] = 0.0;
   noise_[axis].follow_motion();

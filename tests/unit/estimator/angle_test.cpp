@@ -2,6 +2,7 @@
 // The angle: integral of (denoised - measured) back at zero after manoeuvres, and coning not rectified.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -83,6 +84,28 @@ TEST(Heading, IsKeptWhereAFilterIsNewAtTheStartOfATurn) {
     for (std::size_t a = 0; a < 2; ++a) most = std::max(most, std::abs(lost[a] + owed[a]));
   }
   EXPECT_LT(most, 6.0 * kNoise * kStep);
+}
+
+// Jumps of one axis beside one that has noise only. The first measurement of each is kept out of both until
+// it is known what it was, and then is owed: once, whatever comes at rest afterwards.
+TEST(Heading, WhatWasKeptOutOfAJumpIsOwedOnce) {
+  ifog::Estimator estimator(told(1e-6), 2, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::array<double, 2> lost{};
+  for (std::uint64_t i = 0; i < 200'000; ++i) {
+    in.sequence = i;
+    in.dt_s = kPeriod;
+    in.valid_axes = 3;
+    in.rate_radps[0] = (i / 2000 % 2 == 0 ? 0.0 : 20.0) + std::clamp(normal(random), -4.0, 4.0);
+    in.rate_radps[1] = std::clamp(normal(random), -4.0, 4.0);
+    estimator.step(in, out);
+    for (std::size_t a = 0; a < 2; ++a) lost[a] += (out.denoised_radps[a] - in.rate_radps[a]) * kPeriod;
+  }
+  EXPECT_GT(estimator.health().gated, 50U);
+  for (std::size_t a = 0; a < 2; ++a) EXPECT_NEAR(lost[a] + estimator.owed()[a], 0.0, 1e-6) << a;
 }
 
 TEST(Heading, IsKeptOverATurnWithASharpStartAndASlowStop) {
