@@ -5,7 +5,9 @@
 // when the rate returns: that is the account at rest, and what it holds beyond that lag is paid, no faster
 // than an eighth of the filter's own uncertainty. y0 follows y slowly, so that a rate that does not return
 // leaves no debt either; by two poles, as by one it would go along with a slow sea a quarter of a period
-// late, which is how the lag goes, and be paid on top of it. What is owed since a change of rate was
+// late, which is how the lag goes, and be paid on top of it. In the tail of a motion, while the filter is a
+// mean of what came since, nothing comes back by itself: all is paid, over as long as the mean is, no faster
+// than that eighth either. What is owed since a change of rate was
 // found is the account of the manoeuvre: paid quickly, within half the samples that the followers of the
 // motion look back on. Quickly for coning's sake: paid over n samples, shortfalls of a tracker of memory M at
 // the frequency w turn 2 (w M)^3 w n of a cone into drift. What came together before it was found has its
@@ -38,8 +40,9 @@ class AngleLedger {
   [[nodiscard]] Payment payment(std::size_t axis, double rest, double variance, double dt_s) const noexcept {
     const double most = follows_ ? kSlowShare * std::sqrt(variance) : kNoLimit;
     const double beyond = at_rest_[axis] - lag_s_ * (rest - reference_[axis]);
+    const double over_s = tail_s_ > 0.0 ? tail_s_ : kSlowLags * lag_s_;
     return {manoeuvre_[axis] / std::max(quick_s_, dt_s), before_[axis] / std::max(before_s_[axis], dt_s),
-            std::clamp(beyond / (kSlowLags * lag_s_ + kSlowSamples * period_s_), -most, most)};
+            std::clamp(beyond / (over_s + kSlowSamples * period_s_), -most, most)};
   }
 
   // Books one sample: what the filter's own output falls short of the measured rate, times dt, and what was
@@ -71,6 +74,9 @@ class AngleLedger {
       before_s_[axis] =
           (old * before_s_[axis] + fresh * std::max(kQuickSamples, samples) * period_s_) / (old + fresh);
   }
+  // From here on it is remembered what the account at rest grows by.
+  void mark(std::size_t axis) noexcept { marked_[axis] = at_rest_[axis]; }
+  [[nodiscard]] double since_mark(std::size_t axis) const noexcept { return at_rest_[axis] - marked_[axis]; }
   // Samples that were passed over as outliers turned out to be rotation: of a manoeuvre, or of rest.
   void admit(std::size_t axis, double angle_rad) noexcept { manoeuvre_[axis] += angle_rad; }
   void admit_at_rest(std::size_t axis, double angle_rad) noexcept { at_rest_[axis] += angle_rad; }
@@ -83,6 +89,8 @@ class AngleLedger {
   // Twice the covariance, by the measurements' noise, of what follows the motion and its payments, over the
   // variance of the former.
   [[nodiscard]] double common() const noexcept { return common_; }
+  // In the tail of a motion the filter at rest is a mean over so long, s; 0: it has settled.
+  void follow_tail(double mean_s) noexcept { tail_s_ = mean_s; }
   // From this rate on the filter at rest owes by its lag what it moves by. What the account holds now no
   // return of the rate pays back.
   void refer(std::size_t axis, double rest) noexcept { followed_[axis] = reference_[axis] = rest; }
@@ -127,8 +135,9 @@ class AngleLedger {
   double quick_s_ = kQuickSamples * period_s_;
   double common_ = 0.0;
   double lag_s_ = 0.0;
+  double tail_s_ = 0.0;
   Axes at_rest_{}, manoeuvre_{}, before_{};
-  Axes before_s_{};
+  Axes before_s_{}, marked_{};
   Axes followed_{}, reference_{};  // y0, and what it follows
 };
 

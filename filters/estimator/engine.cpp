@@ -2,15 +2,12 @@
 #include "filters/estimator/engine.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
 namespace ifog {
 namespace {
 
-// Average of the filter at rest, in samples.
-constexpr double kRestMemory = 64.0;
 // Samples between refreshes of the settled filter's lag, a small linear solve; by the sequence, so that a
 // part of a recording has them where the whole has.
 constexpr std::uint64_t kLagEvery = 256;
@@ -18,8 +15,6 @@ constexpr std::uint64_t kLagEvery = 256;
 constexpr double kUntestedKept = 256.0;
 // Where the noise looks coloured and how slow it is has yet to be found, a test of this many more is blunt.
 constexpr double kColouredUntested = 4096.0;
-// After so many samples that nobody has measured, what is rough by the next one is no noise.
-constexpr double kMostSteps = 16.0;
 // So many lags after it was moved the filter at rest has settled; until then it is a mean, with gain 1 / n.
 constexpr double kSettledLags = 2.0;
 // A motion that ends slowly is taken for over while it goes on below the noise: so many lags after that its
@@ -61,6 +56,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     if (noise_[a].known()) m.tested |= 1U << a;
   }
   out.innovation_radps = m.innovation;
+  since_blow_ = std::min(since_blow_ + 1.0, kBlow);
   published_.passed_over = false;
   published_.returned = published_.shared = {};
 
@@ -144,8 +140,14 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
     return;
   }
   // The first measurement sets the state; its innovation is zero by construction and no evidence.
-  rest_->update(m.in.rate_radps, m.valid, m.noise_scale, m.in.sequence,
-                learn && knowledge_ != Knowledge::nothing);
+  const bool learns = learn && knowledge_ != Knowledge::nothing;
+  double noise_scale = m.noise_scale;
+  if (follow_manoeuvres_ && steady_ != nullptr) {
+    const double louder = louder_by(m.valid);
+    steady_->hear_louder(louder);
+    if (!learns) noise_scale *= louder;
+  }
+  rest_->update(m.in.rate_radps, m.valid, noise_scale, m.in.sequence, learns);
   if (knowledge_ == Knowledge::nothing) knowledge_ = Knowledge::told;
   since_moved_ += 1.0;
   // Where it goes under way, in the tail of a motion, or while its gain is that of a filter that was moved,
@@ -153,6 +155,7 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   at_rest_for_ = in_manoeuvre() ? 0.0 : at_rest_for_ + 1.0;
   const bool settled = at_rest_for_ * rest_->gain() > kTailLags;
   for (std::size_t a = 0; !settled && a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
+  ledger_.follow_tail(!settled && rest_->gain() > 0.0 ? period_s_ / rest_->gain() : 0.0);
   // Under way, too, a filter that has had time to settle and was not found wrong is to be as far from the
   // measurements as it believes; that of a larger model is only moved by its level, and may take longer.
   const bool doubtful = learn || (rest_->rate_alone() && since_moved_ > kSettledLags * lag_samples());
@@ -206,44 +209,6 @@ void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
   }
 }
 
-// The noise under way, whether the sensor moves or not.
-void Engine::hear(const Measurement& m) noexcept {
-  // Scaled alike, the rate itself is none of a third difference; scaled differently it is all of it.
-  const bool alike = m.noise_scale == heard_scale_;
-  heard_scale_ = m.noise_scale;
-  for (std::size_t a = 0; a < axes_; ++a) {
-    unheard_s_[a] += m.dt_s;
-    if (!alike) noise_[a].break_off();
-    if (!has(m.valid, a)) continue;
-    const bool next = unheard_s_[a] == period_s_;
-    const double steps = next ? 1.0 : std::max(1.0, std::round(unheard_s_[a] / period_s_));
-    if (steps > kMostSteps) noise_[a].break_off();
-    noise_[a].take(m.in.rate_radps[a] * m.to_nominal, steps);
-    unheard_s_[a] = 0.0;
-  }
-}
-
-void Engine::learn_noise(const Measurement& m, std::uint32_t of) noexcept {
-  bool all = m.valid != 0;
-  double rest = 0.0, greatest = 0.0;
-  const double lag = lag_samples();
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(m.valid, a)) continue;
-    if (has(of, a))
-      noise_[a].learn(m.innovation[a] * m.to_nominal, lag, noise_[a].known() ? 0.0 : foresight_[a].least());
-    all = all && noise_[a].known();
-    rest += noise_[a].rest();
-    greatest += noise_[a].greatest_noise();
-  }
-  if (steady_ == nullptr || !all) return;
-  const double axes = std::popcount(m.valid);
-  if (knowledge_ != Knowledge::heard) steady_->begin(rest / axes, kRestMemory);
-  knowledge_ = Knowledge::heard;
-  steady_->limit(greatest / axes);
-  for (std::size_t a = 0; a < axes_; ++a)
-    if (has(m.valid, a) && rest > 0.0) loudness_[a] = noise_[a].rest() * axes / rest;
-}
-
 void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
   const double lag = lag_samples();
   if (now.valid != 0) outliers_.take(now, lag);
@@ -256,7 +221,7 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
   }
   hear(m);
   if (now.valid != 0 && outliers_.run().empty()) book_kept_out(m);
-  if (now.valid != 0 && outliers_.began()) forget_kept_out();
+  if (now.valid != 0 && outliers_.began()) begin_kept_out();
   if (keep_out) {
     out.flags |= kGated;
     ++health_.gated;
@@ -291,11 +256,6 @@ void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOut
   // Until the next measurement says which, it may be the first of a jump.
   for (std::size_t a = 0; keep_out && a < axes_; ++a)
     published_.variance[a] += m.innovation[a] * m.innovation[a];
-}
-
-// Variance of the rate predicted at rest: what the filter told itself last, until the noise was heard.
-void Engine::average_rest(double predicted) noexcept {
-  rest_variance_ += (knowledge_ == Knowledge::heard ? 1.0 / kRestMemory : 1.0) * (predicted - rest_variance_);
 }
 
 bool Engine::rests(const Measurement& m) const noexcept {

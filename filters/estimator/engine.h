@@ -87,6 +87,7 @@ class Engine {
   void begin_after_gap(const Measurement& m) noexcept;
   void admit_kept_out() noexcept;
   void forget_kept_out() noexcept { kept_out_ = kept_out_s_ = {}; }
+  void begin_kept_out() noexcept;
   void add_kept_out(const Measurement& m, std::size_t axis, double apart) noexcept;
   void book_kept_out(const Measurement& m) noexcept;
   void follow_beginning(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
@@ -113,7 +114,8 @@ class Engine {
   void begin_again(const Measurement& m, const Surprise& now, const Axes& least) noexcept;
   void judge_manoeuvre() noexcept;
   void begin_manoeuvre(const Measurement& m, std::size_t tracker, EstimatorOutput& out) noexcept;
-  void owe_to_manoeuvre(std::size_t axis) noexcept;
+  [[nodiscard]] bool of_blow(std::size_t axis, double seen_over) const noexcept;
+  void owe_to_manoeuvre(std::size_t axis, double seen_over) noexcept;
   void move_rest(const Axes& rate, double variance) noexcept;
   void guard(const Measurement& m, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool rests(const Measurement& m) const noexcept;
@@ -122,6 +124,10 @@ class Engine {
   void publish(const Measurement& m, EstimatorOutput& out) noexcept;
   void grade(std::size_t axis, double normalised) noexcept;
   void doubt(std::size_t axis, double normalised) noexcept;
+  // Noise as it is now over what the filter at rest has learned, 1 where they agree. What is learned slowly,
+  // or not at all under way, comes too late for a filter that has just been moved: it would know its rate as
+  // well as in the quiet, and be as slow as that once it has heard how loud it is.
+  [[nodiscard]] double louder_by(std::uint32_t valid) const noexcept;
   [[nodiscard]] bool hardly_tested(std::size_t axis) const noexcept;
   [[nodiscard]] std::uint32_t learning(std::uint32_t valid) const noexcept;
   [[nodiscard]] Axes colours() const noexcept;
@@ -142,6 +148,11 @@ class Engine {
   [[nodiscard]] double walk_share(std::size_t axis) const noexcept {
     return walk_ * (walk_share_ ? (*walk_share_)[axis] : loudness_[axis]);
   }
+
+  // Average of the filter at rest, in samples.
+  static constexpr double kRestMemory = 64.0;
+  // So many measurements after the first of a row that was kept out a motion that is found began with it.
+  static constexpr double kBlow = 64.0;
 
   bool follow_manoeuvres_, conserve_angle_, guard_;
   std::size_t axes_;
@@ -177,6 +188,7 @@ class Engine {
   Axes untested_{};                 // angle fallen short of while the noise was not known, or the test blunt
   Axes kept_out_{};                 // angle of the measurements kept out in a row
   Axes kept_out_s_{};               // that they covered
+  double since_blow_ = kBlow;       // measurements since the first that was kept out, up to kBlow
   Axes waiting_rate_{};             // that measurement
   std::uint32_t waiting_axes_ = 0;  // that it had
   std::uint32_t waiting_for_ = 0;   // of these the ones that nobody foresaw

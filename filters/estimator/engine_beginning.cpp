@@ -76,19 +76,31 @@ void Engine::admit_kept_out() noexcept {
   forget_kept_out();
 }
 
+// Where there was such a row a moment ago this one may belong to the same blow.
+void Engine::begin_kept_out() noexcept {
+  forget_kept_out();
+  if (since_blow_ < kBlow) return;
+  since_blow_ = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a) ledger_.mark(a);
+}
+
 void Engine::add_kept_out(const Measurement& m, std::size_t axis, double apart) noexcept {
   kept_out_[axis] += apart * m.covered_s(axis);
   kept_out_s_[axis] += m.covered_s(axis);
 }
 
-// Outliers they were, and no rotation, where this measurement is back: where it is nearer to them than to
-// what was published, they are what this one goes on with, and kept out was rotation.
+// An outlier it was, and no rotation, where this measurement is back: where it is nearer to what was kept out
+// than to what was published, it goes on with that, and kept out was rotation. So were several in a row, as a
+// blow's first half period is: outliers seldom come together, and what they add to the angle is paid slowly.
 void Engine::book_kept_out(const Measurement& m) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(m.valid, a) || !(kept_out_s_[a] > 0.0)) continue;
     const double away = kept_out_[a] / kept_out_s_[a];
-    if ((m.in.rate_radps[a] - published_.rate[a]) * away > 0.5 * away * away)
-      ledger_.admit_at_rest(a, kept_out_[a]);
+    const bool several = kept_out_s_[a] > 1.5 * m.covered_s(a);
+    const bool on = several || (m.in.rate_radps[a] - published_.rate[a]) * away > 0.5 * away * away;
+    if (!on) continue;
+    ledger_.admit_at_rest(a, kept_out_[a]);
+    if (hardly_tested(a)) untested_[a] += kept_out_[a];
   }
   forget_kept_out();
 }
@@ -203,7 +215,7 @@ void Engine::find_moving(const Measurement& m, EstimatorOutput& out) noexcept {
   ++health_.manoeuvres;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (has(m.valid, a)) noise_[a].take_roughness();
-    owe_to_manoeuvre(a);
+    owe_to_manoeuvre(a, kBlow);
   }
   ledger_.pace(mix_.length(trackers_, rest_->gain()));
   motion_ = Motion::manoeuvre;

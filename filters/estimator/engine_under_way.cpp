@@ -31,8 +31,15 @@ void Engine::forget_unmeasured(std::uint32_t valid) noexcept {
     if (has(valid, a)) unmeasured_.forget(a);
 }
 
-// What a change of rate that was just found has left behind beside what the test has seen of it.
-void Engine::owe_to_manoeuvre(std::size_t axis) noexcept {
+// It began with what was kept out a moment ago, longer ago than the test has looked back.
+bool Engine::of_blow(std::size_t axis, double seen_over) const noexcept {
+  return since_blow_ < kBlow && since_blow_ >= seen_over && !hardly_tested(axis);
+}
+
+// What a change of rate that was just found has left behind beside what the test has seen of it. seen_over:
+// samples that the test has looked back on.
+void Engine::owe_to_manoeuvre(std::size_t axis, double seen_over) noexcept {
+  if (of_blow(axis, seen_over)) ledger_.move_to_manoeuvre(axis, ledger_.since_mark(axis));
   ledger_.admit(axis, kept_out_[axis]);
   kept_out_[axis] = kept_out_s_[axis] = 0.0;
   ledger_.move_to_manoeuvre(axis, untested_[axis]);
@@ -49,8 +56,9 @@ void Engine::jump(EstimatorOutput& out) noexcept {
   Axes mean{};
   for (std::size_t a = 0; a < axes_; ++a) {
     for (const Axes& rate : run) mean[a] += rate[a] / count;
-    owe_to_manoeuvre(a);
+    owe_to_manoeuvre(a, 0.0);
   }
+  since_blow_ = kBlow;
   ledger_.pace(count);
   trackers_.begin(run);
   move_rest(mean, rest_->rule().measurement_noise() / count);
@@ -70,14 +78,15 @@ void Engine::begin_manoeuvre(const Measurement& m, std::size_t tracker, Estimato
   out.flags |= kManoeuvre;
   ++health_.manoeuvres;
   Axes rate{};
+  const double seen_over = ChangeTest::horizon(trackers_.memory(tracker));
   for (std::size_t a = 0; a < axes_; ++a) {
     rate[a] = trackers_.rate(tracker, a);
-    // What the test has seen is among what it was too blunt for.
-    if (!hardly_tested(a))
-      ledger_.move_to_before(a, change_.fallen_short(tracker, a),
-                             ChangeTest::horizon(trackers_.memory(tracker)));
-    owe_to_manoeuvre(a);
+    // What the test has seen is among what it was too blunt for, and of a blow.
+    if (!hardly_tested(a) && !of_blow(a, seen_over))
+      ledger_.move_to_before(a, change_.fallen_short(tracker, a), seen_over);
+    owe_to_manoeuvre(a, seen_over);
   }
+  since_blow_ = kBlow;
   ledger_.pace(trackers_.length(tracker));
   mix_.begin(std::min(since_moved_, ChangeTest::horizon(trackers_.memory(tracker))));
   trackers_.begin_from(std::min(tracker + 1, trackers_.size()), tracker);

@@ -71,6 +71,7 @@ double NoiseScale::rounding(double mean, double variance) const noexcept {
 
 void NoiseScale::take(double rate, double steps) noexcept {
   const double step = std::abs(rate - last_[2]);
+  changing_for_ = step > 0.0 ? std::min(changing_for_ + 1, kDifferent) : 0;
   if (step > 0.0) {
     different_ = std::min(different_ + 1, kDifferent);
     if (in_a_row_ > 0 && step < digit_) round_to(step);
@@ -93,11 +94,23 @@ void NoiseScale::take(double rate, double steps) noexcept {
     bound_ = kClip * std::max({rough_, 0.5 * rest_, digit_variance_});
     third_ = std::min(square, bound_);
     rough_ += (third_ - rough_) / rough_count_;
+    follow_roughness();
     if (known_) rest_ = colour_ * std::max(rough_, 1e-9 * told_);
   }
   in_a_row_ = std::min(in_a_row_ + 1, 3);
   last_ = {last_[1], last_[2], rate};
   steps_ = {steps_[1], steps};
+}
+
+// Noise that has become louder by more than any draw of it is believed sooner. Of a blow only its edges are
+// rough, and what swings after it is no noise because of them: where the last measurements are so much
+// smoother that chance does not explain it, what came before them is forgotten. Neither a converter that
+// shows one value for a while nor a sensor that hangs has become quieter.
+void NoiseScale::follow_roughness() noexcept {
+  if (known_ && local_ > kRougher * rough_) rough_count_ = std::min(rough_count_, kRougherMemory);
+  if (local_ >= kSmoother * rough_ || local_ <= digit_variance_ || changing_for_ < kDifferent) return;
+  rough_ = local_;
+  rough_count_ = std::min(rough_count_, kLocalMemory);
 }
 
 void NoiseScale::recall(double colour) noexcept {

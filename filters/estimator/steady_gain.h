@@ -22,7 +22,7 @@ class SteadyGain final : public Rule {
       : rule_(std::move(rule)), told_(rule_->measurement_noise()), noise_(told_) {}
 
   double innovation_covariance(const RuleInput& in) noexcept override {
-    const double c = in.projected + noise_ * in.noise_scale;
+    const double c = in.projected + louder_ * noise_ * in.noise_scale;
     const double found = (rule_->innovation_covariance(in) - in.projected) / in.noise_scale;
     if (averaged_ > 0.0) {
       averaged_ = std::min(averaged_ + 1.0, kMemory);
@@ -38,6 +38,8 @@ class SteadyGain final : public Rule {
     noise_ = std::max(noise, least());
     averaged_ = samples;
   }
+  // Of the next measurement R is so many times what has been learned of it so far.
+  void hear_louder(double times) noexcept { louder_ = times; }
   // R is at most this; what is above it is motion that the filter lags behind.
   void limit(double noise) noexcept { most_ = std::max(noise, least()); }
 
@@ -46,6 +48,7 @@ class SteadyGain final : public Rule {
     noise_ = told_;
     averaged_ = 0.0;
     most_ = 1e300;
+    louder_ = 1.0;
   }
   std::uint64_t floor_hits() const noexcept override { return rule_->floor_hits(); }
 
@@ -61,6 +64,7 @@ class SteadyGain final : public Rule {
   std::unique_ptr<Rule> rule_;
   double told_, noise_;
   double most_ = 1e300;
+  double louder_ = 1.0;
   double averaged_ = 0.0;  // samples; 0: not begun
 };
 

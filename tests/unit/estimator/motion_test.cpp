@@ -77,22 +77,6 @@ TEST(Sine, IsFollowedBetterThanByTheBestFixedGain) {
   }
 }
 
-// A hammer blow on the structure: it rings, and every sample is thousands of sigmas from the one before. None
-// of them is an outlier, and what is published must not overshoot them.
-TEST(Blow, IsFollowed) {
-  constexpr int kAt = 3000;
-  const auto rings = [](int i) {
-    return i < kAt ? 0.0 : 3000.0 * std::exp((kAt - i) / 60.0) * std::sin(0.7 * (i - kAt));
-  };
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Record r = record(seed, kAt + 400, 1e-3, rings);
-    const Filtered got = run(told(1e-3), r.measured);
-    const double error = mean_square_error(got.denoised, r.truth, kAt);
-    const double blow = mean_square_error(std::vector<double>(r.truth.size(), 0.0), r.truth, kAt);
-    EXPECT_LT(std::sqrt(error / blow), 0.35) << seed;
-  }
-}
-
 // A motion that grows out of the noise is noise to the rule at first. After it the rule must learn again.
 TEST(AfterAManoeuvre, TheRuleUnlearnsWhatItTookForNoise) {
   const auto swings = [](int i) {
