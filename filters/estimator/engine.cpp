@@ -96,6 +96,7 @@ void Engine::restart() noexcept {
   for (NoiseScale& noise : noise_) noise.break_off();
   started_ = 0;
   knowledge_ = Knowledge::nothing;
+  doubted_motion_ = {};
   begin();
   untested_ = {};
   unmeasured_ = {};

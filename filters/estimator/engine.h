@@ -9,6 +9,7 @@
 
 #include "filters/estimator/angle_ledger.h"
 #include "filters/estimator/change_test.h"
+#include "filters/estimator/doubted_motion.h"
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/foresight.h"
 #include "filters/estimator/motion_mix.h"
@@ -94,6 +95,7 @@ class Engine {
   void take_in(const Measurement& m, const Surprise& now) noexcept;
   void wait(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept;
+  void doubt_motion(const Measurement& m) noexcept;
   void find_moving(const Measurement& m, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool heard(std::uint32_t axes) const noexcept;
   void update_rest(const Measurement& m, bool learn) noexcept;
@@ -113,6 +115,7 @@ class Engine {
   void jump(EstimatorOutput& out) noexcept;
   void begin_again(const Measurement& m, const Surprise& now, const Axes& least) noexcept;
   void judge_manoeuvre() noexcept;
+  void come_to_rest() noexcept;
   void begin_manoeuvre(const Measurement& m, std::size_t tracker, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool of_blow(std::size_t axis, double seen_over) const noexcept;
   void owe_to_manoeuvre(std::size_t axis, double seen_over) noexcept;
@@ -164,6 +167,7 @@ class Engine {
   std::array<Foresight, kMaxAxes> foresight_;
   TrackerBank trackers_;
   ChangeTest change_;
+  DoubtedMotion doubted_motion_;
   OutlierRun outliers_;
   MotionMix mix_;
   AngleLedger ledger_;

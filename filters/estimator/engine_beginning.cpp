@@ -202,11 +202,30 @@ void Engine::judge_beginning(const Measurement& m, bool changed, EstimatorOutput
     find_moving(m, out);
     judge_manoeuvre();
   } else if (mix_.rest_is_right() || !white) {
-    motion_ = Motion::at_rest;
+    come_to_rest();
     if (!white) change_.forget();
-    outliers_.clear();
-    publish_rest();
   }
+}
+
+// Of one axis that is not the noise it was told all of them move.
+void Engine::doubt_motion(const Measurement& m) noexcept {
+  if (!doubted_motion_.take(m.in.rate_radps, m.valid)) return;
+  Axes mean{};
+  double variance = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(started_, a)) continue;
+    if (!(doubted_motion_.count(a) > 0.0) || !noise_[a].explains(doubted_motion_.variance(a))) return;
+    mean[a] = doubted_motion_.mean(a);
+  }
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(started_, a)) continue;
+    noise_[a].take_for_colour(doubted_motion_.variance(a));
+    // Of a mean of noise whose neighbours are alike for as long as its colour says.
+    variance = std::max(variance, noise_[a].rest() * noise_[a].colour() / doubted_motion_.count(a));
+  }
+  move_rest(mean, variance);
+  come_to_rest();
+  change_.forget();
 }
 
 // What was fallen short of until now is the manoeuvre's.

@@ -194,6 +194,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   publish_mix(now);
   ledger_.pace(mix_.length(trackers_, rest_->gain()));
   judge_manoeuvre();
+  if (in_manoeuvre()) doubt_motion(m);
 }
 
 // Where there was motion lately it may go on, and is no colour; but where no colour is known yet there may
@@ -227,11 +228,16 @@ void Engine::judge_manoeuvre() noexcept {
   if (const std::size_t broken = mix_.broken(trackers_); broken < trackers_.size())
     trackers_.begin_from(broken, broken - 1);
   if (mix_.rest_is_right()) {
-    motion_ = Motion::at_rest;
     change_.restart();
-    outliers_.clear();
-    publish_rest();
+    come_to_rest();
   }
+}
+
+void Engine::come_to_rest() noexcept {
+  motion_ = Motion::at_rest;
+  doubted_motion_ = {};
+  outliers_.clear();
+  publish_rest();
 }
 
 void Engine::publish_mix(const Surprise& now) noexcept {

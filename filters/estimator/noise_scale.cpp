@@ -138,6 +138,12 @@ void NoiseScale::take_roughness() noexcept {
   if (!known_) settle(0.0);
 }
 
+void NoiseScale::take_for_colour(double variance) noexcept {
+  colour_ = variance / std::max(rough_, 1e-9 * told_);
+  colour_count_ = kMemory;
+  rest_ = variance;
+}
+
 bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept {
   if (!known_) {
     squares_ += innovation * innovation;

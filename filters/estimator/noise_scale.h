@@ -45,6 +45,13 @@ class NoiseScale {
   [[nodiscard]] bool heard() const noexcept { return known_ || rough_count_ >= kHeard; }
   // The sensor moves, and what it is rough by is all that is its noise: known from here on.
   void take_roughness() noexcept;
+  // What looked like a motion of this variance may be the noise that was told: it is no louder, and what is
+  // heard is quieter.
+  [[nodiscard]] bool explains(double variance) const noexcept {
+    return known_ && !colour_known() && variance <= kLouder * told_ && kLouder * rough_ <= told_;
+  }
+  // It is that.
+  void take_for_colour(double variance) noexcept;
   // At rest, over the last thousand samples.
   [[nodiscard]] double rest() const noexcept { return rest_; }
   // The same with outliers that were taken in, whole: what a mean of the measurements has of them.

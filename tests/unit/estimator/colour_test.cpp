@@ -122,6 +122,34 @@ TEST(StronglyColouredNoise, IsNotFollowedOnceAMotionIsOver) {
   }
 }
 
+// Nor where it begins like a motion, as it does once in a hundred and fifty records: what goes about a mean,
+// no louder than the noise that was told, is that noise.
+TEST(StronglyColouredNoise, ThatBeginsLikeAMotionIsNotFollowedForEver) {
+  for (const auto& [correlation, seeds] : {std::pair{0.9, 40U}, {0.98, 180U}}) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> normal;
+      std::vector<double> measured;
+      double walk = 0.0, noise = normal(random);
+      for (int i = 0; i < 8000; ++i) {
+        walk += 1e-3 * normal(random);
+        noise = correlation * noise + std::sqrt(1.0 - correlation * correlation) * normal(random);
+        measured.push_back(walk + noise);
+      }
+      EXPECT_EQ(run(told(1e-6), measured).flags.back() & ifog::kManoeuvre, 0U)
+          << "correlation " << correlation << ", seed " << seed;
+    }
+  }
+}
+
+// But a motion beside the noise that was told is one, from the first sample on.
+TEST(SmallMotion, ThatItBeginsInIsNotTakenForColour) {
+  const Record r =
+      record(8, 20'000, 1e-6, [](int i) { return 1.3 * std::sin(2 * std::numbers::pi * i / 100.0); });
+  const Filtered got = run(told(1e-6), r.measured);
+  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 10'000)), 0.5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, ColouredNoise,
                          testing::Values(Colour{"correlated", 0.5, 0.0, 0.0}, Colour{"line", 0.0, 0.8, 0.0},
                                          Colour{"tails", 0.0, 0.0, 0.02}, Colour{"all", 0.3, 0.5, 0.01}));
