@@ -100,6 +100,7 @@ void Engine::restart() noexcept {
   begin();
   untested_ = {};
   unmeasured_ = {};
+  in_tail_ = false;
   since_moved_ = at_rest_for_ = 0.0;
   lag_turn_ = kNoTurn;
 }
@@ -146,6 +147,7 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   if (follow_manoeuvres_ && steady_ != nullptr) {
     const double louder = louder_by(m.valid);
     steady_->hear_louder(louder);
+    louder_ = louder;
     if (!learns) noise_scale *= louder;
   }
   rest_->update(m.in.rate_radps, m.valid, noise_scale, m.in.sequence, learns);
@@ -156,7 +158,9 @@ void Engine::update_rest(const Measurement& m, bool learn) noexcept {
   at_rest_for_ = in_manoeuvre() ? 0.0 : at_rest_for_ + 1.0;
   const bool settled = at_rest_for_ * rest_->gain() > kTailLags;
   for (std::size_t a = 0; !settled && a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
-  ledger_.follow_tail(!settled && rest_->gain() > 0.0 ? period_s_ / rest_->gain() : 0.0);
+  // A filter that has just begun has no motion behind it, and owes but its noise.
+  in_tail_ = !settled && (in_tail_ || in_manoeuvre());
+  ledger_.follow_tail(in_tail_ && rest_->gain() > 0.0 ? period_s_ / rest_->gain() : 0.0);
   // Under way, too, a filter that has had time to settle and was not found wrong is to be as far from the
   // measurements as it believes; that of a larger model is only moved by its level, and may take longer.
   const bool doubtful = learn || (rest_->rate_alone() && since_moved_ > kSettledLags * lag_samples());
@@ -275,7 +279,7 @@ bool Engine::rests(const Measurement& m) const noexcept {
 void Engine::publish_rest() noexcept {
   published_.gain = rest_->gain();
   // Of an innovation, as the filter believes it to be.
-  const double believed = rest_variance_ + rest_->rule().measurement_noise();
+  const double believed = rest_variance_ + louder_ * rest_->rule().measurement_noise();
   const double lag = lag_samples();
   for (std::size_t a = 0; a < axes_; ++a) {
     published_.rate[a] = rest_->rate(a);

@@ -200,8 +200,10 @@ class Engine {
   std::size_t waited_ = 0;          // samples since, without those
   Axes surprised_{};                // running mean of the least normalised square in the manoeuvre
   double noise_of_one_;             // variance of a measurement, as set
+  double louder_ = 1.0;             // the noise at the last measurement, over what was learned
   double rest_variance_ = 0.0;      // of the predicted rate at rest, averaged
   double at_rest_for_ = 0.0;        // measurements since the end of the last manoeuvre
+  bool in_tail_ = false;            // of a motion, until the filter at rest has settled
   double since_moved_ = 0.0;        // measurements since the filter at rest was last moved
   Axes loudness_{1.0, 1.0, 1.0};    // variance of an axis' noise over the mean of all
   std::optional<Axes> walk_share_;  // its driving noise over the settings'; not known: as its noise
