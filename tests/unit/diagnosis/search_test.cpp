@@ -49,6 +49,23 @@ TEST(Search, OfATransitionBothLevelsHaveToBeSeen) {
   }
 }
 
+// One that levels out just within the range may fit a little better still wider, and is none then; of those
+// that are one, the likeliest counts.
+TEST(Refine, ATransitionStaysOneWhoseLevelsAreSeen) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    BlockData data = white_with_temperature(kBlocks, seed);
+    Candidate truth = of(0, Form::kTransition);
+    truth.centre = 24.0;
+    truth.half_width = 8.5;
+    add(data, truth, 1.0);
+    std::vector<Candidate> model = {truth};
+    const NoiseShape shape = fit_noise(data.grid, design(data, model)).shape;
+    refine_shape(data, shape, model, 0);
+    EXPECT_TRUE(levels_seen(data, model)) << seed << ": " << model[0].half_width;
+    EXPECT_NEAR(model[0].centre, 24.0, 3.0) << seed;
+  }
+}
+
 Scored best_of(const std::vector<Scored>& scored) {
   return *std::max_element(scored.begin(), scored.end(),
                            [](const Scored& a, const Scored& b) { return a.ratio < b.ratio; });
