@@ -36,6 +36,7 @@ double complexity_of_form(const Candidate& candidate) {
       return 5.0;
     case Form::kSeptic:
       return 6.0;
+    case Form::kLagged:  // the channel itself is one without a lag, which noise likes with a short one
     case Form::kWarmUp:
     case Form::kTransition:  // its middle and its width are free
       return 8.0;
