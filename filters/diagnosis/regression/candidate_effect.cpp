@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A candidate as an effect of the model, and the other way; what its form costs, and which harmonics an angle
 // has.
+#include <cmath>
+
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/meaning.h"
 #include "filters/effects/shape.h"
@@ -8,10 +10,13 @@
 namespace ifog {
 namespace {
 
-// Of a turn. A shorter arc tells no harmonics apart, and then it is the first that a field or a tilt makes;
-// of a still shorter one a straight line is all that is seen.
+// Of a turn. A shorter arc tells no harmonics apart, and then it is the first that a field or a tilt makes.
+// Of a still shorter one a straight line is nearly all that is seen, and what swings over it evenly has an
+// angle that is its acceleration as well, by which a late reference errs.
 constexpr double kSeenTurn = 0.5;
 constexpr double kSeenArc = 0.15;
+constexpr double kLeastArc = 0.03;
+constexpr double kPictureOfAcceleration = 0.8;  // correlation
 constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
 
 double complexity_of_form(const Candidate& candidate) {
@@ -31,6 +36,7 @@ double complexity_of_form(const Candidate& candidate) {
       return 5.0;
     case Form::kSeptic:
       return 6.0;
+    case Form::kLagged:  // the channel itself is one without a lag, which noise likes with a short one
     case Form::kWarmUp:
     case Form::kTransition:  // its middle and its width are free
       return 8.0;
@@ -41,6 +47,20 @@ double complexity_of_form(const Candidate& candidate) {
   }
 }
 
+// Whether an angle is a picture of what the reference changes by; so it is taken where there is none.
+bool follows_acceleration(const BlockData& data, std::size_t channel) {
+  if (data.reference < 0) return true;
+  const auto reference = static_cast<std::size_t>(data.reference);
+  Eigen::VectorXd angle = column(data, ShapeSettings{}, channel);
+  ShapeSettings change;
+  change.form = Form::kRate;
+  Eigen::VectorXd acceleration = column(data, change, reference);
+  centre_records(data.grid, angle);
+  centre_records(data.grid, acceleration);
+  const double both = angle.norm() * acceleration.norm();
+  return !(both > 0.0) || std::abs(angle.dot(acceleration)) > kPictureOfAcceleration * both;
+}
+
 }  // namespace
 
 int harmonics_told_apart(const BlockData& data, std::size_t channel) {
@@ -48,6 +68,13 @@ int harmonics_told_apart(const BlockData& data, std::size_t channel) {
   const double seen = (angle.high - angle.low) / angle.period;
   if (seen < kSeenArc) return 0;
   return seen < kSeenTurn ? 1 : kHarmonics;
+}
+
+int harmonics_tried(const BlockData& data, std::size_t channel) {
+  const FineChannel& angle = data.channels[channel];
+  const bool arc = angle.high - angle.low > kLeastArc * angle.period;
+  const int told = harmonics_told_apart(data, channel);
+  return told == 0 && arc && !follows_acceleration(data, channel) ? 1 : told;
 }
 
 double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }

@@ -73,7 +73,7 @@ void add_difference(const BlockData& data, std::size_t channel, std::vector<Cand
 }
 
 void add_angle(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
-  for (int times = 1; times <= harmonics_told_apart(data, channel); ++times) {
+  for (int times = 1; times <= harmonics_tried(data, channel); ++times) {
     for (const Form form : {Form::kCosine, Form::kSine}) {
       found.push_back(candidate_of(form, channel));
       found.back().period = data.channels[channel].period / times;

@@ -23,6 +23,7 @@ constexpr double kFarthest = 0.3;
 constexpr double kWellKnown = 5.0;
 constexpr int kTermsOfSwing = 4;     // once and twice a turn
 constexpr double kKnownRound = 0.2;  // error of a harmonic of an arc, of its size
+constexpr double kDoubtOfLaw = 1.5;  // of all four together
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
@@ -288,10 +289,13 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
 }
 
 // Whether what repeats with the angle is known all round: it was seen all round, or over an arc from which
-// the circle follows. Of a complete law it does, because its coefficients are no larger than was to be
-// expected: they are the best guess all round, and beyond the arc better than the arc's end.
-bool known_all_round(const FineChannel& angle, const std::vector<FoundEffect>& effects) {
+// the circle follows. Of a complete law it does while its coefficients, which are no larger than was to be
+// expected, are not much smaller than their doubt: all four are at right angles round the circle, so that
+// their squares add up. An arc too short to tell a harmonic knows the law within and nothing of the rest,
+// whatever four coefficients make of it: its nearer end is held there.
+bool known_all_round(const FineChannel& angle, int harmonics_told, const std::vector<FoundEffect>& effects) {
   if (angle.high - angle.low >= angle.period) return true;
+  if (harmonics_told == 0) return false;
   double size = 0.0, doubt = 0.0;
   int halves = 0;
   int terms = 0;
@@ -305,7 +309,8 @@ bool known_all_round(const FineChannel& angle, const std::vector<FoundEffect>& e
     size += coefficient.value * coefficient.value;
     doubt += coefficient.std_error * coefficient.std_error;
   }
-  return halves == 0 && (terms == kTermsOfSwing || doubt < kKnownRound * kKnownRound * size);
+  const double most = terms == kTermsOfSwing ? kDoubtOfLaw : kKnownRound;
+  return halves == 0 && doubt < most * most * size;
 }
 
 namespace {
@@ -340,10 +345,12 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
   if (ramp)
     ranges.push_back(
         {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
-  for (const FineChannel& channel : data.channels) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const FineChannel& channel = data.channels[c];
+    const bool everywhere =
+        channel.period > 0.0 && known_all_round(channel, harmonics_told_apart(data, c), effects);
     const auto uses = [&](const FoundEffect& found) {
-      if (found.effect.shown_only || (channel.period > 0.0 && known_all_round(channel, effects)))
-        return false;
+      if (found.effect.shown_only || everywhere) return false;
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
     };
     if (std::any_of(effects.begin(), effects.end(), uses))

@@ -19,7 +19,10 @@ constexpr double kExpected = 0.0;  // it is there
 // Of the size expected of once a turn: what bends twice a turn is the smaller part.
 constexpr double kOfTwice = 0.5;
 constexpr double kNothing = 1e-3;
-constexpr double kDenied = 6.0;  // twice the log-likelihood
+// Twice the log-likelihood by which once a turn alone has to be likelier: where it was seen over so much of
+// the circle that harmonics are told apart, and on a shorter arc, where twice a turn is most of the doubt.
+constexpr double kDenied = 6.0;
+constexpr double kDeniedOnArc = 2.0;
 
 bool is_swing(const Candidate& each) { return each.form == Form::kCosine || each.form == Form::kSine; }
 
@@ -136,16 +139,14 @@ Likeliest likeliest(const Swing& swing, double of_twice) {
 }
 
 // Cosine and sine of once and of twice a turn, whichever of them was found; twice a turn not where the record
-// shows that there is nothing of it, nor on an arc that tells no harmonics apart and told once a turn whole.
+// shows that there is nothing of it.
 void complete_swing(const BlockData& data, std::size_t at, SearchResult& found) {
   const Candidate one = found.fitted[at];
   const double turn = data.channels[one.channel].period;
   const double p_value = found.chosen[at].p_value;
-  int once_found = 0;
   bool twice_found = false;
   for (const Candidate& each : found.fitted) {
     if (!is_swing(each) || each.channel != one.channel) continue;
-    once_found += is_once(each, turn) ? 1 : 0;
     twice_found |= !is_once(each, turn);
   }
   std::vector<Candidate> whole = found.fitted;
@@ -159,8 +160,8 @@ void complete_swing(const BlockData& data, std::size_t at, SearchResult& found) 
   const Swing swing = swing_of(data, whole, one.channel, found.noise.shape);
   Likeliest expected = likeliest(swing, kOfTwice);
   const Likeliest once = likeliest(swing, kNothing);
-  const bool told = once_found == 2 && harmonics_told_apart(data, one.channel) == 1;
-  const bool denied = !twice_found && (told || expected.value < once.value - kDenied);
+  const double asked = harmonics_told_apart(data, one.channel) > 1 ? kDenied : kDeniedOnArc;
+  const bool denied = !twice_found && expected.value < once.value - asked;
   if (denied) expected = once;
   std::vector<Candidate> kept;
   for (std::size_t i = 0; i < whole.size(); ++i) {

@@ -105,6 +105,22 @@ TEST(CompleteLaws, ASwingOfWhichTheCosineWasFoundHasASine) {
   EXPECT_LT(with, 0.5 * without);
 }
 
+// What turns bends as well: the arc shows too little of it to miss it, and the circle all of it.
+TEST(CompleteLaws, AnArcThatToldOnceATurnLeavesTwiceToBeExpected) {
+  double with = 0.0, without = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    BlockData data = on_an_arc(0.4, 0.7, seed);
+    once_a_turn(data, 2.0, 0.8, 0.5);
+    SearchResult found = found_in(data, {swing(Form::kCosine), swing(Form::kSine)});
+    const double before = left_round_the_circle(data, found, 2.0, 0.8, 0.5);
+    complete_laws(data, data, found);
+    const double after = left_round_the_circle(data, found, 2.0, 0.8, 0.5);
+    with += after * after;
+    without += before * before;
+  }
+  EXPECT_LT(with, 0.5 * without);
+}
+
 // An arc that tells a sine from a straight line no better than this: least squares on all four would make of
 // them what it likes.
 TEST(CompleteLaws, CoefficientsAreNoLargerThanTheSwing) {

@@ -8,6 +8,7 @@
 #include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
+#include "filters/diagnosis/search/search.h"
 #include "filters/linear/least_squares.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
@@ -47,6 +48,47 @@ TEST(Search, OfATransitionBothLevelsHaveToBeSeen) {
     transition.centre = centre;
     EXPECT_EQ(levels_seen(data, {of(0, Form::kLinear), transition}), seen) << centre;
   }
+}
+
+// One that levels out just within the range may fit a little better still wider, and is none then; of those
+// that are one, the likeliest counts.
+TEST(Refine, ATransitionStaysOneWhoseLevelsAreSeen) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    BlockData data = white_with_temperature(kBlocks, seed);
+    Candidate truth = of(0, Form::kTransition);
+    truth.centre = 24.0;
+    truth.half_width = 8.5;
+    add(data, truth, 1.0);
+    std::vector<Candidate> model = {truth};
+    const NoiseShape shape = fit_noise(data.grid, design(data, model)).shape;
+    refine_shape(data, shape, model, 0);
+    EXPECT_TRUE(levels_seen(data, model)) << seed << ": " << model[0].half_width;
+    EXPECT_NEAR(model[0].centre, 24.0, 3.0) << seed;
+  }
+}
+
+// Of a channel that acts at once noise likes a short lag now and then, for a lag is one parameter more: by
+// chance it gains the price in less than one sensor of a hundred.
+TEST(Refine, WhatActsAtOnceSeldomGetsALag) {
+  constexpr std::uint64_t kSensors = 300;
+  int lags = 0;
+  for (std::uint64_t seed = 1; seed <= kSensors; ++seed) {
+    BlockData data = with_supply(seed);
+    add(data, of(1, Form::kLinear), 0.5);
+    std::vector<Candidate> model = {of(1, Form::kLinear)};
+    const NoiseShape white;
+    const double at_once = fit_whitened(data.grid, white, design(data, model)).log_likelihood;
+    const double price = complexity(of(1, Form::kLagged)) - complexity(model[0]);
+    double gain = 0.0;
+    for (const double lag : {3.0, 7.0, 18.0}) {
+      model[0] = of(1, Form::kLagged, lag);
+      refine(data, white, model, 0);
+      gain = std::max(gain,
+                      2.0 * (fit_whitened(data.grid, white, design(data, model)).log_likelihood - at_once));
+    }
+    lags += gain > price ? 1 : 0;
+  }
+  EXPECT_LT(lags, 0.01 * kSensors);
 }
 
 Scored best_of(const std::vector<Scored>& scored) {
