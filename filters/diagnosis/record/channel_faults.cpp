@@ -129,10 +129,11 @@ struct Run {
 };
 
 // First reading from `from` on, within a minute, whose value is beside `value` again; none: it stays away.
-std::optional<std::size_t> return_to(const Readings& of, std::size_t from, double value, double beside) {
-  for (std::size_t i = from + 1;
-       i < of.values.size() && of.time_s[i] - of.time_s[from] <= kLongestExcursion_s; ++i)
-    if (std::abs(of.values[i] - value) <= beside) return i;
+std::optional<std::size_t> return_to(const Readings& of, std::span<const double> values, std::size_t from,
+                                     double value, double beside) {
+  for (std::size_t i = from + 1; i < values.size() && of.time_s[i] - of.time_s[from] <= kLongestExcursion_s;
+       ++i)
+    if (std::abs(values[i] - value) <= beside) return i;
   return std::nullopt;
 }
 
@@ -144,31 +145,50 @@ bool repeats(std::span<const double> values, const Run& run) {
   return run.to - run.from >= kFewest && std::all_of(first, last, [&](double v) { return v == *first; });
 }
 
+// Such a number that is far from all that is usual: no reading, whatever the channel does besides and however
+// often it leaps of itself, as an angle does that wraps.
+std::vector<Run> placeholders(std::span<const double> values, const Usual& usual) {
+  const double far = kFar * (usual.high - usual.low);
+  ReadingAhead ahead(values);
+  const auto is_far = [&](std::size_t i) {
+    return values[i] > usual.high + far || values[i] < usual.low - far;
+  };
+  std::vector<Run> found;
+  for (std::size_t from = 0; from < values.size();) {
+    from = first_where(ahead, from, values.size(), is_far);
+    std::size_t to = from;
+    while (to < values.size() && values[to] == values[from]) ++to;
+    if (repeats(values, {from, to})) found.push_back({from, to});
+    from = std::max(to, from + 1);
+  }
+  return found;
+}
+
 // Jumps as the channel never makes, and back again. A record may begin or end away: there one way is seen.
-std::vector<Run> excursions(const Readings& of, const Usual& usual) {
+std::vector<Run> excursions(const Readings& of, std::span<const double> values, const Usual& usual) {
   const double span = usual.high - usual.low;
   const double jump = usual.slow ? std::max(kJump * usual.change, kAway * span) : kFar * span;
   const auto elsewhere = [&](double value) { return value > usual.high + jump || value < usual.low - jump; };
-  const std::size_t n = of.values.size();
+  const std::size_t n = values.size();
   std::vector<Run> found;
   std::size_t samples = 0;
   std::size_t i = 0;
-  while (i < n && elsewhere(of.values[i])) ++i;
+  while (i < n && elsewhere(values[i])) ++i;
   if (i == n || of.time_s[i] - of.time_s[0] > kLongestExcursion_s) return {};
   if (i > 0) found.push_back({0, i});
   samples += i;
-  ReadingAhead ahead(of.values);
-  const auto jumps = [&](std::size_t at) { return std::abs(of.values[at] - of.values[at - 1]) > jump; };
+  ReadingAhead ahead(values);
+  const auto jumps = [&](std::size_t at) { return std::abs(values[at] - values[at - 1]) > jump; };
   for (++i; i < n; ++i) {
     i = first_where(ahead, i, n, jumps);
     if (i >= n) break;
-    const double away = std::abs(of.values[i] - of.values[i - 1]);
-    auto back = return_to(of, i, of.values[i - 1], kBeside * away);
+    const double away = std::abs(values[i] - values[i - 1]);
+    auto back = return_to(of, values, i, values[i - 1], kBeside * away);
     const bool ends = of.time_s[n - 1] - of.time_s[i] <= kLongestExcursion_s;
-    if (!back && ends && elsewhere(of.values[i])) back = n;
+    if (!back && ends && elsewhere(values[i])) back = n;
     if (!back) continue;
     found.push_back({i, *back});
-    if (!repeats(of.values, {i, *back})) samples += *back - i;
+    if (!repeats(values, {i, *back})) samples += *back - i;
     i = *back;
   }
   if (static_cast<double>(samples) > kMostOfRecord * static_cast<double>(n)) return {};
@@ -239,6 +259,13 @@ std::string excursions_in_words(std::span<const double> values, const std::vecto
       found.size(), samples, values[found.front().from]);
 }
 
+std::string placeholders_in_words(std::span<const double> values, const std::vector<Run>& found) {
+  std::size_t samples = 0;
+  for (const Run& run : found) samples += run.to - run.from;
+  return text(" says %.6g %zu time(s), for %zu sample(s) in all: no reading, interpolated for up to %g s",
+              values[found.front().from], found.size(), samples, kLongestExcursion_s);
+}
+
 struct RepairedChannel {
   std::optional<Samples> values;  // none: it has no fault
   std::vector<std::string> remarks;
@@ -251,14 +278,21 @@ RepairedChannel repaired_channel(const Record& record, std::size_t index, const 
   const Readings of(record, channel.values);
   const Usual usual = usual_of(of.values);
   if (!usual.varied) return repaired;
-  const std::vector<Run> away = excursions(of, usual);
+  const std::vector<Run> none = placeholders(of.values, usual);
   Samples values;  // none where they are as they were read
-  if (!away.empty()) values.assign(of.values.begin(), of.values.end());
+  if (!none.empty()) values.assign(of.values.begin(), of.values.end());
+  for (const Run& run : none) interpolate(of, run, values);
+  const std::vector<Run> away =
+      excursions(of, none.empty() ? of.values : std::span<const double>(values), usual);
+  if (none.empty() && !away.empty()) values.assign(of.values.begin(), of.values.end());
   for (const Run& run : away) interpolate(of, run, values);
+  const bool as_read = none.empty() && away.empty();
   const std::vector<Stuck> stuck =
-      usual.slow ? stuck_stretches(away.empty() ? of.values : values, usual) : std::vector<Stuck>{};
-  if (away.empty() && stuck.empty()) return repaired;
-  if (away.empty()) values.assign(of.values.begin(), of.values.end());
+      usual.slow ? stuck_stretches(as_read ? of.values : values, usual) : std::vector<Stuck>{};
+  if (as_read && stuck.empty()) return repaired;
+  if (as_read) values.assign(of.values.begin(), of.values.end());
+  if (!none.empty())
+    repaired.remarks.push_back(channel.name + where + placeholders_in_words(of.values, none));
   if (!away.empty()) repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
   const auto told = [&](std::size_t i) { return told_time(record.origin.told(of.time_s[i])); };
   for (const auto& [run, leaps] : stuck) {
@@ -269,6 +303,9 @@ RepairedChannel repaired_channel(const Record& record, std::size_t index, const 
     repaired.stuck.push_back({index, channel.name, of.time_s[run.from], of.time_s[run.to]});
     interpolate(of, {run.from + 1, run.to}, values);
   }
+  for (const Run& run : none)
+    if (of.time_s[run.to - 1] - of.time_s[run.from] > kLongestExcursion_s)
+      for (std::size_t i = run.from; i < run.to; ++i) values[i] = std::nan("");
   if (of.rows.empty()) {
     repaired.values = std::move(values);
     return repaired;

@@ -2,7 +2,9 @@
 #include "filters/diagnosis/record/derived_channels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -188,8 +190,19 @@ double angle_period_by_reference(const std::string& channel, const Record& recor
   return same_slope && xy * xy > kSameCourse * kSameCourse * xx * yy ? period : 0.0;
 }
 
+namespace {
+
+std::string outside_in_words(const std::string& channel, std::size_t samples, double first) {
+  std::array<char, 96> line{};
+  std::snprintf(line.data(), line.size(),
+                " is outside the turn in %zu sample(s), first %.6g: no angle, left out", samples, first);
+  return channel + line.data();
+}
+
+}  // namespace
+
 DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
-  DerivedRecords derived{records, {}};
+  DerivedRecords derived{records, {}, {}};
   if (records.empty()) return derived;
   for (const RecordChannel& channel : records.front().channels) {
     double period = 0.0;
@@ -203,14 +216,22 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
         Samples& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
         const std::optional<Turn> turn = turn_of(mine.values, period);
         double before = std::nan("");
+        double first = 0.0;
+        std::size_t outside = 0;
         for (double& value : whole) {
-          if (turn && !turn->has(value)) value = std::nan("");  // no angle of this table
+          if (turn && std::isfinite(value) && !turn->has(value)) {
+            if (outside++ == 0) first = value;
+            value = std::nan("");
+          }
           if (!std::isfinite(value)) continue;
           if (std::isfinite(before)) value -= period * std::round((value - before) / period);
           before = value;
         }
         mine.values = whole;
         mine.period = period;
+        if (outside > 0)
+          derived.remarks.push_back(outside_in_words(
+              records.size() > 1 ? mine.name + " (" + record.name + ")" : mine.name, outside, first));
       }
     }
   }
@@ -218,7 +239,7 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
 }
 
 DerivedRecords with_differences(const std::vector<Record>& records) {
-  DerivedRecords derived{records, {}};
+  DerivedRecords derived{records, {}, {}};
   if (!records.empty()) add_differences(records, derived);
   return derived;
 }

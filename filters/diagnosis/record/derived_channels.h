@@ -16,7 +16,8 @@ namespace ifog {
 
 struct DerivedRecords {
   std::vector<Record> records;
-  std::list<Samples> values;  // which new channels' spans show; keep as long as `records`
+  std::list<Samples> values;           // which new channels' spans show; keep as long as `records`
+  std::vector<std::string> remarks{};  // of what was left out, for people
 };
 
 // 2 pi, 360 or 1 when the channel is an angle by its unit (rad, deg, turns) that stays within a turn and

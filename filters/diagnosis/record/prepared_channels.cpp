@@ -67,6 +67,7 @@ std::vector<Record> PreparedChannels::with_rates_of(const std::vector<Record>& c
 std::vector<std::string> PreparedChannels::remarks_of_times() const {
   std::vector<std::string> all = timed_.remarks;
   all.insert(all.end(), parted_.remarks.begin(), parted_.remarks.end());
+  all.insert(all.end(), unwrapped_.remarks.begin(), unwrapped_.remarks.end());
   return all;
 }
 

@@ -72,6 +72,35 @@ TEST(ChannelFaults, ANumberInPlaceOfAVibrationIsNoneHoweverOftenItStands) {
   }
 }
 
+// Whatever the channel does besides: an angle that wraps leaps by itself every few seconds, and a supply that
+// others load for half a minute at a time. Where it stands for minutes nothing is put in its place.
+TEST(ChannelFaults, ANumberInPlaceOfWhatLeapsByItselfIsNone) {
+  const auto angle = [](double t) { return std::fmod(0.37 * t, 6.28318530718); };
+  const auto supply = [](double t) {
+    return 12.0 + 0.2 * std::sin(t / 500.0) + (std::fmod(t, 400.0) < 30.0 ? 0.3 : 0.0);
+  };
+  for (const auto& [name, value] :
+       {std::pair<const char*, double (*)(double)>{"table_rad", angle}, {"supply_V", supply}}) {
+    Logged logged(value);
+    const std::vector<double> before = logged.channel;
+    for (const auto& [from, to] : {std::pair{500U, 540U}, {1700U, 1710U}, {2900U, 3100U}})
+      for (std::size_t i = from; i < to; ++i) logged.channel[i] = -999.0;
+    const RepairedRecords repaired = logged.repaired(name);
+    const auto values = repaired.records[0].channels[0].values;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      EXPECT_FALSE(values[i] < -1.0) << name << i;
+      EXPECT_EQ(std::isnan(values[i]), i >= 2900 && i < 3100) << name << i;
+      if (logged.channel[i] != -999.0) {
+        EXPECT_EQ(values[i], before[i]) << name << i;
+      }
+    }
+    ASSERT_FALSE(repaired.remarks.empty()) << name;
+    EXPECT_NE(repaired.remarks[0].find(" says -999 3 time(s), for 250 sample(s) in all: no reading"),
+              std::string::npos)
+        << repaired.remarks[0];
+  }
+}
+
 TEST(ChannelFaults, WhatStoodStillIsInterpolated) {
   Logged logged(warming);
   for (std::size_t i = 1500; i < 2300; ++i) logged.channel[i] = logged.channel[1500];
