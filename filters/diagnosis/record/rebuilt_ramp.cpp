@@ -21,6 +21,7 @@ namespace {
 
 // What a comb that follows the angle has to gain beyond its harmonics at fixed frequencies, each at its best.
 constexpr double kOverFixed = 30.0;
+constexpr double kNearly = 0.01;  // of its frequency
 // Slower sensors cannot show a ramp, and nothing is said of it.
 constexpr double kQuickSensor_hz = 20.0;
 constexpr double kUsualCycles = 1e5;  // a coil of 10 cm at 1.55 um has 7e4
@@ -169,6 +170,14 @@ double energy_taken(const std::vector<Record>& records, const RampFit& fit) {
   return taken;
 }
 
+// One line that follows the angle, and at nearly its frequency one that does not and takes more: then what
+// stands there wanders by itself, and of a hundred thousand ramps that were tried one goes a part of its way.
+bool wanders_by_itself(const RampComb& comb, const std::optional<RampComb>& fixed, const UnbrokenPart& part) {
+  if (!fixed || comb.harmonics > 1 || fixed->ratio < comb.ratio) return false;
+  const double moving_hz = frequency_of(comb, part);
+  return std::abs(frequency_of(*fixed, part) - moving_hz) < kNearly * moving_hz;
+}
+
 // With the ramp's table and what the tracker makes of it; nothing where it does not help.
 std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at, const UnbrokenPart& part,
                               const RampComb& comb, double p_value, double most_walk) {
@@ -227,8 +236,10 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
       continue;
     }
     combs[r] = find_ramp_comb(part);
-    if (!combs[r] || combs[r]->over_fixed < kOverFixed) {
-      const std::optional<RampComb> fixed = find_fixed_comb(part);
+    const bool weak = !combs[r] || combs[r]->over_fixed < kOverFixed;
+    const std::optional<RampComb> fixed =
+        weak || combs[r]->harmonics == 1 ? find_fixed_comb(part) : std::nullopt;
+    if (weak || wanders_by_itself(*combs[r], fixed, part)) {
       if (fixed && (!combs[r] || combs[r]->ratio < fixed->ratio)) combs[r] = fixed;
       if (fixed && worth_a_word(*fixed, part) && out.remark.empty())
         out.remark = fixed_in_words(*fixed, part);
