@@ -101,6 +101,7 @@ void Engine::restart() noexcept {
   untested_ = {};
   unmeasured_ = {};
   in_tail_ = false;
+  since_blow_ = kBlow;
   since_moved_ = at_rest_for_ = 0.0;
   lag_turn_ = kNoTurn;
 }

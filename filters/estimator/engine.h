@@ -95,7 +95,9 @@ class Engine {
   void take_in(const Measurement& m, const Surprise& now) noexcept;
   void wait(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept;
   void judge_beginning(const Measurement& m, bool changed, EstimatorOutput& out) noexcept;
-  void doubt_motion(const Measurement& m) noexcept;
+  // Of none of these axes the noise is known by a long rest.
+  [[nodiscard]] bool hardly_known(std::uint32_t axes) const noexcept;
+  void doubt_motion() noexcept;
   void find_moving(const Measurement& m, EstimatorOutput& out) noexcept;
   [[nodiscard]] bool heard(std::uint32_t axes) const noexcept;
   void update_rest(const Measurement& m, bool learn) noexcept;

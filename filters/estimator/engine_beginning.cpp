@@ -207,14 +207,21 @@ void Engine::judge_beginning(const Measurement& m, bool changed, EstimatorOutput
   }
 }
 
+bool Engine::hardly_known(std::uint32_t axes) const noexcept {
+  for (std::size_t a = 0; a < axes_; ++a)
+    if (has(axes, a) && noise_[a].colour_known()) return false;
+  return true;
+}
+
 // Of one axis that is not the noise it was told all of them move.
-void Engine::doubt_motion(const Measurement& m) noexcept {
-  if (!doubted_motion_.take(m.in.rate_radps, m.valid)) return;
+void Engine::doubt_motion() noexcept {
   Axes mean{};
   double variance = 0.0;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!has(started_, a)) continue;
-    if (!(doubted_motion_.count(a) > 0.0) || !noise_[a].explains(doubted_motion_.variance(a))) return;
+    if (!(doubted_motion_.count(a) > 0.0) ||
+        !noise_[a].explains(doubted_motion_.variance(a), doubted_motion_.foreseen(a)))
+      return;
     mean[a] = doubted_motion_.mean(a);
   }
   for (std::size_t a = 0; a < axes_; ++a) {

@@ -54,11 +54,18 @@ void Engine::learn_noise(const Measurement& m, std::uint32_t of) noexcept {
     if (has(m.valid, a) && rest > 0.0) loudness_[a] = noise_[a].rest() * axes / rest;
 }
 
+// Of those measured now and of all together: R is a mean of what both have been, and where the axes are
+// unlike, one of them alone is louder than the mean without having become so.
 double Engine::louder_by(std::uint32_t valid) const noexcept {
-  double greatest = 0.0;
-  for (std::size_t a = 0; a < axes_; ++a)
-    if (has(valid, a) && noise_[a].known()) greatest += noise_[a].greatest_noise();
-  const double ratio = greatest / (std::popcount(valid) * rest_->rule().measurement_noise());
+  double measured = 0.0, all = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!has(started_, a) || !noise_[a].known()) continue;
+    const double noise = noise_[a].greatest_noise();
+    all += noise;
+    if (has(valid, a)) measured += noise;
+  }
+  const double ratio = std::min(measured / std::popcount(valid), all / std::popcount(started_)) /
+                       rest_->rule().measurement_noise();
   return ratio > kLouder ? ratio : 1.0;
 }
 

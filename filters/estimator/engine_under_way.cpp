@@ -187,6 +187,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   waiting_ = still_waiting(m.valid);
   expect_surprise(least);
   mix_.judge(trackers_, now, least, colours());
+  if (hardly_known(m.valid)) doubted_motion_.take(trackers_, m.in.rate_radps, m.valid, m.noise_scale);
   trackers_.correct(m.in.rate_radps, m.valid);
   update_rest(m, false);
   mix_.weigh(trackers_);
@@ -194,7 +195,7 @@ void Engine::follow_manoeuvre(const Measurement& m, const Surprise& now, Estimat
   publish_mix(now);
   ledger_.pace(mix_.length(trackers_, rest_->gain()));
   judge_manoeuvre();
-  if (in_manoeuvre()) doubt_motion(m);
+  if (in_manoeuvre() && doubted_motion_.complete()) doubt_motion();
 }
 
 // Where there was motion lately it may go on, and is no colour; but where no colour is known yet there may

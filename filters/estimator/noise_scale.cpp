@@ -139,9 +139,10 @@ void NoiseScale::take_roughness() noexcept {
 }
 
 void NoiseScale::take_for_colour(double variance) noexcept {
-  colour_ = variance / std::max(rough_, 1e-9 * told_);
+  const double rough = std::max(rough_, 1e-9 * told_);
+  colour_ = std::max(1.0, variance / rough);
   colour_count_ = kMemory;
-  rest_ = variance;
+  rest_ = colour_ * rough;
 }
 
 bool NoiseScale::learn(double innovation, double lag, double foreseen) noexcept {

@@ -45,10 +45,12 @@ class NoiseScale {
   [[nodiscard]] bool heard() const noexcept { return known_ || rough_count_ >= kHeard; }
   // The sensor moves, and what it is rough by is all that is its noise: known from here on.
   void take_roughness() noexcept;
-  // What looked like a motion of this variance may be the noise that was told: it is no louder, and what is
-  // heard is quieter.
-  [[nodiscard]] bool explains(double variance) const noexcept {
-    return known_ && !colour_known() && variance <= kLouder * told_ && kLouder * rough_ <= told_;
+  // What looks like a motion of this variance may be the noise that was told: as loud as that, much quieter
+  // to be heard, foreseen no better than strong colour can be, and no rest has yet been long enough to know
+  // it by.
+  [[nodiscard]] bool explains(double variance, double foreseen) const noexcept {
+    return known_ && !colour_known() && variance <= kLouder * told_ && kTold * variance >= told_ &&
+           kLouder * rough_ <= told_ && foreseen > kForeseenColour * rough_;
   }
   // It is that.
   void take_for_colour(double variance) noexcept;
@@ -107,6 +109,11 @@ class NoiseScale {
   // nearly to the roughness.
   static constexpr double kLouder = 2.0;
   static constexpr double kForeseen = 1.4;
+  // Noise whose neighbours are correlated by 0.8 or more is foreseen by nobody to less than 2.7 times its
+  // roughness (innovation variance over that of third differences; 3.0 at 0.9, 3.2 at 0.98). And a motion may
+  // be as quick as that: unless its variance is about what was told, too, it is one.
+  static constexpr double kForeseenColour = 2.5;
+  static constexpr double kTold = 4.0;
   // A square counts for this many variances at most, so that an outlier is none.
   static constexpr double kClip = 25.0;
   // The ratio of two variances is spoiled by less.

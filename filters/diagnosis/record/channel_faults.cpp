@@ -26,6 +26,7 @@ constexpr double kSlow = 0.1;    // of the span, the most that a slow channel mo
 constexpr double kLongestExcursion_s = 60.0;
 // In excursions together but for those to one number; the least of a stretch that stands still.
 constexpr double kMostOfRecord = 0.02;
+constexpr double kMostNone = 0.1;      // of the record, without a reading
 constexpr double kJump = 8.0;          // usual changes
 constexpr std::size_t kAlone = 20;     // times as long as any other stretch of one value
 constexpr double kPlaceholder = 30.0;  // interquartile ranges from the median
@@ -128,6 +129,12 @@ struct Run {
   std::size_t from, to;  // readings [from, to)
 };
 
+std::size_t samples_in(const std::vector<Run>& runs) {
+  std::size_t samples = 0;
+  for (const Run& run : runs) samples += run.to - run.from;
+  return samples;
+}
+
 // First reading from `from` on, within a minute, whose value is beside `value` again; none: it stays away.
 std::optional<std::size_t> return_to(const Readings& of, std::span<const double> values, std::size_t from,
                                      double value, double beside) {
@@ -145,8 +152,8 @@ bool repeats(std::span<const double> values, const Run& run) {
   return run.to - run.from >= kFewest && std::all_of(first, last, [&](double v) { return v == *first; });
 }
 
-// Such a number that is far from all that is usual: no reading, whatever the channel does besides and however
-// often it leaps of itself, as an angle does that wraps.
+// Such a number far from all that is usual, however often the channel leaps of itself, as an angle does. But
+// zero may be a reading, of what is switched off, and what stands for long is a state.
 std::vector<Run> placeholders(std::span<const double> values, const Usual& usual) {
   const double far = kFar * (usual.high - usual.low);
   ReadingAhead ahead(values);
@@ -158,9 +165,10 @@ std::vector<Run> placeholders(std::span<const double> values, const Usual& usual
     from = first_where(ahead, from, values.size(), is_far);
     std::size_t to = from;
     while (to < values.size() && values[to] == values[from]) ++to;
-    if (repeats(values, {from, to})) found.push_back({from, to});
+    if (repeats(values, {from, to}) && values[from] != 0.0) found.push_back({from, to});
     from = std::max(to, from + 1);
   }
+  if (kMostNone * static_cast<double>(values.size()) < static_cast<double>(samples_in(found))) found.clear();
   return found;
 }
 
@@ -171,8 +179,7 @@ std::vector<Run> excursions(const Readings& of, std::span<const double> values, 
   const auto elsewhere = [&](double value) { return value > usual.high + jump || value < usual.low - jump; };
   const std::size_t n = values.size();
   std::vector<Run> found;
-  std::size_t samples = 0;
-  std::size_t i = 0;
+  std::size_t samples = 0, i = 0;
   while (i < n && elsewhere(values[i])) ++i;
   if (i == n || of.time_s[i] - of.time_s[0] > kLongestExcursion_s) return {};
   if (i > 0) found.push_back({0, i});
@@ -251,19 +258,15 @@ std::string text(const char* format, Values... values) {
 }
 
 std::string excursions_in_words(std::span<const double> values, const std::vector<Run>& found) {
-  std::size_t samples = 0;
-  for (const Run& run : found) samples += run.to - run.from;
   return text(
       " leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: taken for faults of "
       "logging, interpolated",
-      found.size(), samples, values[found.front().from]);
+      found.size(), samples_in(found), values[found.front().from]);
 }
 
 std::string placeholders_in_words(std::span<const double> values, const std::vector<Run>& found) {
-  std::size_t samples = 0;
-  for (const Run& run : found) samples += run.to - run.from;
   return text(" says %.6g %zu time(s), for %zu sample(s) in all: no reading, interpolated for up to %g s",
-              values[found.front().from], found.size(), samples, kLongestExcursion_s);
+              values[found.front().from], found.size(), samples_in(found), kLongestExcursion_s);
 }
 
 struct RepairedChannel {

@@ -32,9 +32,8 @@ struct RepairedRecords {
 //   those of twenty spans, for a blow is no fault of an accelerometer;
 // - of slow channels, stretches of one value, a fiftieth of the record or more, that end in such a leap or
 //   are twenty times as long as any other;
-// - one number, again and again, twenty spans from all that is usual: no reading, and missing where it stands
-// for
-//   more than a minute.
+// - one number but zero, again and again, twenty spans from all that is usual, in a tenth of the record at
+//   most: no reading, and missing where it stands for more than a minute.
 // Channels of a few values are left alone: a switch may be off for an hour. Missing values stay missing.
 // threads: channels looked at at a time; 0: as many as there are processors.
 RepairedRecords repair_channels(const std::vector<Record>& records, unsigned threads = 1);

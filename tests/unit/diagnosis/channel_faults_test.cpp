@@ -160,6 +160,12 @@ TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
   blow.channel[2000] = 10.0;  // nineteen of its standard deviations
   untouched(blow, "accel_z_mps2");
   untouched(Logged([](double t) { return t > 1000.0 && t < 1030.0 ? 1.0 : 0.0; }), "heater_on");
+  // Full scale of the converter, for a fifth of the record; and a load that is off for longer than a minute
+  // now and then.
+  untouched(Logged([&](double t) { return std::fmod(t, 800.0) < 640.0 ? 1.0 + 0.01 * normal(random) : 5.0; }),
+            "valve_V");
+  untouched(Logged([&](double t) { return std::fmod(t, 1800.0) < 1730.0 ? 250.0 + normal(random) : 0.0; }),
+            "heater_mA");
   // A supply that another consumer pulls down for good: a step, and no return.
   untouched(Logged([&](double t) { return (t < 2000.0 ? 12.0 : 11.2) + 0.01 * std::sin(t / 300.0); }),
             "supply_V");

@@ -83,6 +83,26 @@ TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
   }
 }
 
+// One axis that is five times as loud as the two others is no louder than it was where it comes alone: the
+// gain, which is one for all, is the same for it.
+TEST(UnlikeAxes, TheLoudOneAloneHasNotBecomeLouder) {
+  Estimator estimator(test::told(1e-4, 9.0), kAxes, kPeriod);
+  EstimatorInput in;
+  EstimatorOutput out;
+  in.dt_s = kPeriod;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  double alone = 0.0, together = 0.0;
+  for (std::size_t i = 0; i < 40'000; ++i) {
+    in.sequence = i;
+    in.valid_axes = i % 4 == 3 ? 4U : 7U;
+    for (std::size_t a = 0; a < kAxes; ++a) in.rate_radps[a] = (a == 2 ? 5.0 : 1.0) * normal(random);
+    estimator.step(in, out);
+    if (i >= 20'000) (i % 4 == 3 ? alone : together) += out.gain[2];
+  }
+  EXPECT_NEAR(alone * 3.0 / together, 1.0, 0.1);
+}
+
 // One of three that is not measured for a while, or repeats a value: as a walk it is known less by its
 // driving noise times the time, whatever the others are known by.
 TEST(UnlikeAxes, OneThatIsNotMeasuredIsKnownEverLess) {
