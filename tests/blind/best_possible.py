@@ -159,7 +159,8 @@ def floor(seed, only=None):
               made.worlds[0].plan)
     faults = sensor.truth["faults"]
     first, after = ((w, c.columns, i) for w, c, i in zip(made.worlds, made.uncut, made.intact))
-    measured = next(iter(made.uncut[0].columns.values())) - made.uncut[0].rate
+    # the structure's motion stays in what is fitted: no instrument beside the sensor tells it
+    measured = next(iter(made.uncut[0].columns.values())) - made.worlds[0].rate
     here = Readings(*after, faults, repaired=False)
     left = []
     for world in (made.worlds[0], Readings(*first, faults, repaired=True)):

@@ -18,6 +18,7 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/fractional_shift.h"
 #include "filters/diagnosis/record/record_clock.h"
+#include "filters/diagnosis/record/table_turns.h"
 #include "filters/linear/normal_equations.h"
 
 namespace ifog {
@@ -33,7 +34,6 @@ constexpr double kSettled = 1e-5;       // of a step
 constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPowers = 4;  // of the reference: constant to cubic
-constexpr double kThere = 0.99;     // of an angle's values
 using Series = std::vector<double>;
 
 struct Pair {
@@ -106,25 +106,6 @@ Series means(std::span<const double> series, std::size_t count) {
   return out;
 }
 
-// Cosine and sine of each channel that is an angle and hardly has a gap.
-std::vector<Series> turns_of(const Record& record, double period_s, std::size_t count) {
-  std::vector<Series> turns;
-  for (const RecordChannel& channel : record.channels) {
-    const double period = channel.period;
-    const auto there = std::count_if(channel.values.begin(), channel.values.end(),
-                                     [](double value) { return std::isfinite(value); });
-    if (!(period > 0.0) || static_cast<double>(there) < kThere * static_cast<double>(channel.values.size()))
-      continue;
-    for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
-      Samples turn(channel.values.size());
-      for (std::size_t i = 0; i < turn.size(); ++i)
-        turn[i] = std::cos(2.0 * std::numbers::pi / period * channel.values[i] - phase);
-      turns.push_back(means(on_even_grid(record, period_s, turn), count));
-    }
-  }
-  return turns;
-}
-
 std::optional<Pair> pair_of(const Record& record) {
   if (record.reference_radps.empty() || record.time_s.size() < kLeast) return std::nullopt;
   double period_s = 0.0;
@@ -136,7 +117,7 @@ std::optional<Pair> pair_of(const Record& record) {
     const std::size_t count = (rate.size() + kMost - 1) / kMost;
     pair.rate = means(rate, count);
     pair.reference = means(on_even_grid(record, period_s, record.reference_radps), count);
-    pair.beside = turns_of(record, period_s, count);
+    for (const Samples& turn : turns_of(record, period_s)) pair.beside.push_back(means(turn, count));
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // no even clock, or hardly anything on it
