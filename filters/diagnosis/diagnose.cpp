@@ -9,6 +9,7 @@
 #include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/record/blocks.h"
+#include "filters/diagnosis/record/own_rotation.h"
 #include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/record/stuck_blocks.h"
@@ -94,6 +95,7 @@ class Run {
     std::vector<std::string> ramps;
     for (const RampFit& ramp : ramps_) ramps.push_back(ramp.effect.channel);
     say(unused_channels(records_, data_, ramps));
+    for (std::string& each : mark_own_rotation(data_)) say(std::move(each));
     reconstructed_ = with_reconstructed_channels(data_);
   }
 

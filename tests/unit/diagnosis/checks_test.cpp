@@ -67,6 +67,31 @@ TEST(CrossValidation, SubtractsAnEffectFromTheSamples) {
   EXPECT_LT(variance_of(errors[0].held_out), 1e-20);  // but for the mean
 }
 
+// A swing of ten blocks a period, of which samples are told by block means: what beats with the blocks would
+// be taken for a line (0.036 of the swing with straight lines between the means).
+TEST(CrossValidation, LeavesNothingOfASwingThatBeatsWithTheBlocks) {
+  constexpr std::size_t kBlocks = 400, kSamplesOfBlock = 10;
+  BlockData data = white_with_temperature(kBlocks, 3);
+  data.grid.sample_s = data.grid.block_s / kSamplesOfBlock;
+  data.grid.fine_s = data.grid.sample_s;
+  data.grid.fine = kSamplesOfBlock;
+  std::vector<double> swing;
+  for (std::size_t i = 0; i < kBlocks * kSamplesOfBlock; ++i)
+    swing.push_back(std::sin(2.0 * M_PI * static_cast<double>(i) / (10.0 * kSamplesOfBlock)));
+  data.channels = {channel_of("accel_x_mps2", swing)};
+  std::vector<EvenError> errors(1);
+  errors[0].rest.own().assign(swing.begin(), swing.end());
+  errors[0].rest_held_out = errors[0].rest;
+  Eigen::VectorXd coefficients(2);
+  coefficients << 0.0, 1.0;
+  subtract_effects(data, {candidate_of(Form::kLinear)}, {}, coefficients, errors);
+  const std::span<const double> left = errors[0].after.values();
+  double square = 0.0;
+  const std::size_t edge = 3 * kSamplesOfBlock;
+  for (std::size_t i = edge; i + edge < left.size(); ++i) square += left[i] * left[i];
+  EXPECT_LT(std::sqrt(square / static_cast<double>(left.size() - 2 * edge)), 0.004);
+}
+
 TEST(Outliers, AnEffectOfThreeBlocksIsGoneWithoutThem) {
   BlockData data = white_with_temperature(2000, 4);
   std::vector<double> spikes(2000, 12.0);

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where nothing beside the sensor tells its rotation, an accelerometer may: what runs with it then is motion.
+#include "filters/diagnosis/record/own_rotation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/diagnose.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kGravity = 9.80665;
+constexpr double kStep_s = 0.1;
+constexpr std::size_t kSamples = 12000;
+
+// A ship at its moorings: it rolls every eight seconds or so, by some four times roll_rad.
+struct Ship {
+  std::vector<double> time, rate, across, along, reference;
+
+  Ship(std::uint64_t seed, double roll_rad, double noise_radps = 2e-6) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    // A damped swing, driven by the sea; the same in angle and rate.
+    const double turn = 2.0 * M_PI * 0.12 * kStep_s, left = std::exp(-0.03 * turn);
+    double x = 0.0, y = 0.0;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const double next = left * (std::cos(turn) * x - std::sin(turn) * y) + 0.25 * normal(random);
+      y = left * (std::sin(turn) * x + std::cos(turn) * y) + 0.25 * normal(random);
+      const double before = roll_rad * x;
+      x = next;
+      time.push_back(kStep_s * static_cast<double>(i));
+      reference.push_back((roll_rad * x - before) / kStep_s);
+      rate.push_back(reference.back() + 4e-5 + noise_radps * normal(random));
+      across.push_back(kGravity * std::sin(0.5 * (roll_rad * x + before)) + 2e-3 * normal(random));
+      along.push_back(0.05 * std::sin(0.3 * time.back()) + 2e-3 * normal(random));
+    }
+  }
+  [[nodiscard]] Record record(bool with_reference = false) const {
+    Record record;
+    record.name = "ship";
+    record.time_s = time;
+    record.rate_radps = rate;
+    if (with_reference) record.reference_radps = reference;
+    record.channels = {{"accel_x_mps2", along}, {"accel_y_mps2", across}};
+    return record;
+  }
+};
+
+TEST(OwnRotation, IsToldByTheAccelerationAcrossIt) {
+  for (const double roll_rad : {0.02, 0.002, 0.0002}) {
+    const Ship ship(7, roll_rad);
+    BlockData data = cut_to_blocks({ship.record()});
+    const std::vector<std::string> said = mark_own_rotation(data);
+    ASSERT_EQ(said.size(), 1U) << roll_rad;
+    EXPECT_EQ(said[0].find("accel_y_mps2 tells how the sensor itself tilts"), 0U) << said[0];
+    EXPECT_FALSE(data.channels[0].rotates);
+    EXPECT_TRUE(data.channels[1].rotates);
+  }
+}
+
+TEST(OwnRotation, IsKnownWhereAReferenceStandsBeside) {
+  const Ship ship(7, 0.02);
+  BlockData data = cut_to_blocks({ship.record(true)});
+  EXPECT_TRUE(mark_own_rotation(data).empty());
+}
+
+// What an acceleration does to a bias, at once or through a lag, is an error however large it is.
+TEST(OwnRotation, IsNotWhatAnAccelerationDoesToABias) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    for (const double lag_s : {0.0, 3.0}) {
+      Ship ship(seed, 0.02);
+      const Ship still(seed + 100, 0.0);
+      double late = 0.0;
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        late += (ship.across[i] - late) * (lag_s > 0.0 ? -std::expm1(-kStep_s / lag_s) : 1.0);
+        ship.rate[i] = still.rate[i] + 1e-4 * late;  // 20 deg/h for 1 m/s^2
+      }
+      BlockData data = cut_to_blocks({ship.record()});
+      EXPECT_TRUE(mark_own_rotation(data).empty()) << seed << ' ' << lag_s;
+    }
+  }
+}
+
+// Nothing is subtracted of a roll, and what else is wrong with the sensor is still traced.
+TEST(OwnRotation, StaysInTheRateAndHidesNoOtherCause) {
+  Ship ship(9, 2e-4);
+  std::vector<double> supply;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    supply.push_back(24.0 + 0.5 * std::sin(2.0 * M_PI * ship.time[i] / 400.0));
+    ship.rate[i] += 2e-5 * (supply.back() - 24.0);
+  }
+  Record record = ship.record();
+  record.channels.push_back({"supply_V", supply});
+  const Diagnosis found = diagnose({record}, {});
+  bool traced = false;
+  for (const FoundEffect& each : found.effects) {
+    EXPECT_EQ(each.effect.channel.find("accel"), std::string::npos) << each.effect.form;
+    traced = traced || each.effect.channel == "supply_V";
+  }
+  EXPECT_TRUE(traced);
+}
+
+}  // namespace
+}  // namespace ifog
