@@ -2,7 +2,9 @@
 #include "filters/effects/meaning.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <iomanip>
 #include <numbers>
 #include <sstream>
@@ -73,6 +75,14 @@ std::string of_angle(const Effect& effect) {
          std::string(
              " a turn: what the sensor meets in a direction of the room, as a magnetic field or the "
              "Earth's rate, or a part of it that runs out of true");
+}
+
+std::string of_fringe(const Effect& effect) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "fringe: light of a second path interferes, and the bias swings once for every %.3g %s",
+                effect.period, unit_of(effect.channel).c_str());
+  return text.data();
 }
 
 std::string of_temperature(Form form) {
@@ -261,7 +271,7 @@ std::string meaning_of(const Effect& effect) {
       return "the rate comes in steps";
     case Form::kCosine:
     case Form::kSine:
-      return of_angle(effect);
+      return kind_of(effect.channel) == ChannelKind::kTemperature ? of_fringe(effect) : of_angle(effect);
     default:
       return of_channel(kind_of(effect.channel), *form, effect.channel);
   }

@@ -37,8 +37,8 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
 }
 
 // What is smooth at a sample, from means over blocks: straight lines between means would leave of a swing
-// what beats with the blocks (4e-3 of it for ten blocks a period, where this leaves 1e-4), and that is a
-// line.
+// what beats with the blocks (a hundredth of it at ten blocks a period, where this leaves a thousandth), and
+// that is a line.
 class BetweenBlocks {
  public:
   // values: by block. Blocks of one sample, and dwells, are taken as they are.

@@ -79,6 +79,12 @@ int harmonics_tried(const BlockData& data, std::size_t channel) {
 
 double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
 
+double complexity(const std::vector<Candidate>& effects) {
+  double sum = 0.0;
+  for (const Candidate& each : effects) sum += complexity(each);
+  return sum;
+}
+
 Effect effect_of(const BlockData& data, const Candidate& candidate) {
   Effect effect;
   effect.form = name_of(candidate.form);

@@ -195,7 +195,9 @@ bool complete_laws(const BlockData& data, const BlockData& reconstructed, Search
     any = true;
   }
   for (std::size_t i = 0; i < proven; ++i) {
-    if (!is_swing(found.fitted[i]) || found.fitted[i].expected > 0.0) continue;
+    const Candidate& each = found.fitted[i];
+    if (!is_swing(each) || each.expected > 0.0 || !(reconstructed.channels[each.channel].period > 0.0))
+      continue;
     complete_swing(reconstructed, i, found);
     any = true;
   }

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "filters/diagnosis/checks/proof.h"
 #include "filters/diagnosis/regression/harmonics.h"
 #include "filters/diagnosis/search/channels_first.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
+#include "filters/diagnosis/search/fringes.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/diagnosis/search/unfold.h"
@@ -44,11 +47,8 @@ class EffectSearch {
     noise_ = fit_noise(data_.grid, design(data_, model_));
     result.noise_without = noise_;
     count_tries();
-    while (model_.size() < options_.most_effects + options_.given.size()) {
-      if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
-      if (!add_one() && !add_pair()) break;
-      revise();
-    }
+    do add_effects();
+    while (add_fringe());
     // Beside the effects there may be fewer harmonics, or one that they had hidden.
     noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
     revise_pairs();
@@ -59,6 +59,25 @@ class EffectSearch {
   }
 
  private:
+  void add_effects() {
+    while (model_.size() < options_.most_effects + options_.given.size()) {
+      if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
+      if (!add_one() && !add_pair()) break;
+      revise();
+    }
+  }
+
+  // When all else is in: what polynomials of a temperature stood for, or what is still slow.
+  bool add_fringe() {
+    if (model_.size() + 1 >= options_.most_effects + options_.given.size()) return false;
+    std::optional<FittedModel> found = with_fringe(data_, options_.given.size(), {model_, noise_},
+                                                   {options_.significance, tries_of_channels_});
+    if (!found) return false;
+    model_ = std::move(found->effects);
+    noise_ = std::move(found->noise);
+    return true;
+  }
+
   // The chance of a false effect is shared out between channels and steps.
   void count_tries() {
     const double level = 20.0;  // near what will be asked for
@@ -84,19 +103,13 @@ class EffectSearch {
     std::size_t added = 1;  // the last so many effects
   };
 
-  static double penalty(const std::vector<Candidate>& model) {
-    double sum = 0.0;
-    for (const Candidate& candidate : model) sum += complexity(candidate);
-    return sum;
-  }
-
   Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
     Trial trial;
     if (model[at].searched()) refine_shape(data_, start, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
     if (model[at].searched()) refine_shape(data_, trial.noise.shape, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
-    if (levels_seen(data_, model)) trial.score = 2.0 * trial.noise.log_likelihood - penalty(model);
+    if (levels_seen(data_, model)) trial.score = 2.0 * trial.noise.log_likelihood - complexity(model);
     trial.model = std::move(model);
     return trial;
   }
@@ -148,7 +161,7 @@ class EffectSearch {
     const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
     const std::vector<Candidate> added(best.model.end() - static_cast<std::ptrdiff_t>(best.added),
                                        best.model.end());
-    const double gain = ratio - penalty(added);
+    const double gain = ratio - complexity(added);
     const double p = best.added == 2 ? std::min(1.0, kProfiled * tail(gain, 2) * tries_of_channels_)
                                      : p_value(added.back(), gain);
     if (p > options_.significance || !proven(best)) return false;
@@ -212,7 +225,9 @@ class EffectSearch {
     trial = refined(trial.model, model.size() - 2, trial.noise.shape);
     const double ratio = 2.0 * (trial.noise.log_likelihood - noise_.log_likelihood);
     // Tries grow as the square, and so does what two have to bring.
-    if (ratio < 2.0 * least_ratio_ + penalty({trial.model.end() - 2, trial.model.end()}) || !proven(trial))
+    if (ratio < 2.0 * least_ratio_ +
+                    complexity(std::vector<Candidate>{trial.model.end() - 2, trial.model.end()}) ||
+        !proven(trial))
       return false;
     model_ = trial.model;
     noise_ = trial.noise;
@@ -233,7 +248,7 @@ class EffectSearch {
         continue;
       }
       const Trial other = best_addition(rest, without, false);
-      const double score = 2.0 * noise_.log_likelihood - penalty(model_);
+      const double score = 2.0 * noise_.log_likelihood - complexity(model_);
       if (!other.model.empty() && other.score > score + kSwapGain) {
         model_ = other.model;
         noise_ = other.noise;
@@ -259,7 +274,7 @@ class EffectSearch {
         if (is_event(model_[i]) || is_event(model_[j]) || !depend(i, j)) continue;
         const Trial other = best_instead_of(i, j);
         if (other.model.empty()) continue;
-        if (other.score < 2.0 * noise_.log_likelihood - penalty(model_) + kSwapGain || !proven(other))
+        if (other.score < 2.0 * noise_.log_likelihood - complexity(model_) + kSwapGain || !proven(other))
           continue;
         model_ = other.model;
         noise_ = other.noise;

@@ -27,12 +27,6 @@ double gained(const NoiseFit& with, const NoiseFit& without) {
   return 2.0 * (with.log_likelihood - without.log_likelihood);
 }
 
-double complexity_of(const std::vector<Candidate>& effects) {
-  double sum = 0.0;
-  for (const Candidate& each : effects) sum += complexity(each);
-  return sum;
-}
-
 // Beside the rate at `at` a second one, that begins at `start_s`. None where there are no two layers.
 std::optional<FittedModel> with_layer(const BlockData& data, const FittedModel& model, std::size_t at,
                                       double start_s) {
@@ -118,7 +112,7 @@ void try_factors_apart(const BlockData& data, std::size_t first, FittedModel& mo
     const auto apart = factors_of(data, model.effects, i);
     if (!apart) continue;
     const NoiseFit noise = fit_noise(data.grid, design(data, *apart), model.noise.shape);
-    const double plainer = complexity_of(model.effects) - complexity_of(*apart);
+    const double plainer = complexity(model.effects) - complexity(*apart);
     const double more = apart->size() > model.effects.size() ? kOneMore : 0.0;
     if (gained(noise, model.noise) + plainer > kApart + more) model = {*apart, noise};
   }
