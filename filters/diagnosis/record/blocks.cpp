@@ -218,18 +218,46 @@ FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& gr
   return channel;
 }
 
+// On or off, and by a meter that reads either level with a little noise: of the distance of the two this
+// much.
+constexpr double kOfLevels = 0.05;
+constexpr double kOnTheWay = 0.02;    // of the readings, that lie between
+constexpr double kOfEither = 0.01;    // of the readings, at least, that either level has
+constexpr double kBesideLevel = 0.2;  // of the distance: farther is between
+
 // A thermometer of whole degrees in a steady room takes two values and is no switch.
 bool is_switch(const std::vector<Record>& records, const std::string& name) {
   if (kind_of(name) != ChannelKind::kOther) return false;
-  std::vector<double> seen;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Record& record : records)
+    for (const double value : values_of(record, name))
+      if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+  const double apart = high - low;
+  if (!(apart > 0.0)) return false;
+  struct Level {
+    double count = 0.0, sum = 0.0, square = 0.0;  // about the end that is its own
+    void add(double off) { ++count, sum += off, square += off * off; }
+    [[nodiscard]] double spread() const {
+      return std::sqrt(std::max(0.0, square / count - sum * sum / count / count));
+    }
+  };
+  Level off, on;
+  double between = 0.0;
   for (const Record& record : records) {
     for (const double value : values_of(record, name)) {
-      if (!std::isfinite(value) || std::find(seen.begin(), seen.end(), value) != seen.end()) continue;
-      if (seen.size() == 2) return false;
-      seen.push_back(value);
+      if (!std::isfinite(value)) continue;
+      if (value - low < kBesideLevel * apart)
+        off.add(value - low);
+      else if (high - value < kBesideLevel * apart)
+        on.add(high - value);
+      else
+        ++between;
     }
   }
-  return seen.size() == 2;
+  if (between == 0.0 && off.spread() == 0.0 && on.spread() == 0.0) return true;
+  const double all = off.count + on.count + between;
+  return std::min(off.count, on.count) > kOfEither * all && between <= kOnTheWay * all &&
+         std::max(off.spread(), on.spread()) < kOfLevels * apart;
 }
 
 }  // namespace
