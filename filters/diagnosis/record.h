@@ -2,6 +2,8 @@
 // One capture of the sensor, as a diagnosis takes it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -46,8 +48,9 @@ struct Record {
   std::vector<RecordChannel> channels;
   // Rates of the same sensor, by the names of their columns: it rests when all of them do.
   std::vector<RecordChannel> other_axes;
-  std::vector<Stretch> at_rest;             // samples, in order; empty: not looked for, all
-  RecordOrigin origin;                      // that time_s is counted from
+  std::vector<std::span<const double>> other_references{};  // of those, in their order; empty: none
+  std::vector<Stretch> at_rest;                             // samples, in order; empty: not looked for, all
+  RecordOrigin origin;                                      // that time_s is counted from
   std::shared_ptr<const KnownClock> clock;  // null: not looked at; of other times: says nothing of these
   std::shared_ptr<KnownColumns> known;      // of its columns, shared with the other axes; null: nothing
 };
@@ -58,6 +61,13 @@ inline std::span<const double> values_of(const Record& record, std::string_view 
     if (channel.name == name) return channel.values;
   }
   return {};
+}
+
+// Whether there are two values.
+inline bool moves(std::span<const double> values) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  const auto first = std::find_if(values.begin(), values.end(), finite);
+  return std::any_of(first, values.end(), [&](double value) { return finite(value) && value != *first; });
 }
 
 }  // namespace ifog

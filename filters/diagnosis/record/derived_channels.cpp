@@ -33,12 +33,6 @@ double period_by_unit(const std::string& channel) {
   return unit == "turns" ? 1.0 : 0.0;
 }
 
-bool moves(std::span<const double> values) {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  const auto first = std::find_if(values.begin(), values.end(), finite);
-  return std::any_of(first, values.end(), [&](double value) { return finite(value) && value != *first; });
-}
-
 struct Turn {
   double low = 0.0, high = 0.0;
   [[nodiscard]] bool has(double value) const { return value >= low && value <= high; }
@@ -242,20 +236,6 @@ DerivedRecords with_differences(const std::vector<Record>& records) {
   DerivedRecords derived{records, {}, {}};
   if (!records.empty()) add_differences(records, derived);
   return derived;
-}
-
-DerivedRecords with_derived_channels(const std::vector<Record>& records) {
-  DerivedRecords derived = with_differences(records);
-  derived.records = with_other_axes(std::move(derived.records));
-  return derived;
-}
-
-std::vector<Record> with_other_axes(std::vector<Record> records) {
-  const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
-  if (records.empty() || !std::all_of(records.begin(), records.end(), referenced)) return records;
-  for (Record& record : records)
-    for (const RecordChannel& axis : record.other_axes) record.channels.push_back(axis);
-  return records;
 }
 
 }  // namespace ifog

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that no logger writes and that physics asks for: the difference of two like channels (two
-// thermometers on one coil see its gradient), the rates of the sensor's other axes, and angles without their
-// wraps.
+// thermometers on one coil see its gradient), and angles without their wraps.
 #pragma once
 
 #include <list>
@@ -36,11 +35,7 @@ bool of_one_vector(const std::string& one, const std::string& other);
 DerivedRecords with_unwrapped_angles(const std::vector<Record>& records);
 
 // Adds, of the channels that all records have and that move, the differences of like ones (at most six),
-// named as difference_of() does, and where there is a reference the measured rates of the other axes: without
-// one, what two axes have in common is rotation, and a correction must not take it away.
-DerivedRecords with_derived_channels(const std::vector<Record>& records);
-// The one and the other of these.
+// named as difference_of() does.
 DerivedRecords with_differences(const std::vector<Record>& records);
-std::vector<Record> with_other_axes(std::vector<Record> records);
 
 }  // namespace ifog

@@ -26,6 +26,8 @@ Record part_of(const Record& record, const SampleRange& samples) {
   for (RecordChannel& channel : part.channels)
     channel.values = channel.values.subspan(samples.from, samples.size());
   for (RecordChannel& axis : part.other_axes) axis.values = axis.values.subspan(samples.from, samples.size());
+  for (std::span<const double>& reference : part.other_references)
+    if (!reference.empty()) reference = reference.subspan(samples.from, samples.size());
   const Stretch all{samples.from, samples.to};
   part.at_rest = common(record.at_rest, {&all, 1});
   for (Stretch& stretch : part.at_rest) stretch = {stretch.begin - samples.from, stretch.end - samples.from};

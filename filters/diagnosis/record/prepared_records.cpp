@@ -10,7 +10,7 @@ PreparedRecords::PreparedRecords(const std::vector<Record>& captures, const Time
       quiet_(leave_out_knocks(channels_.of_axis(captures))),
       aligned_(align_references(quiet_.records)),
       derived_(with_other_axes(aligned_.records)),
-      resting_(without_turns(derived_)),
+      resting_(without_turns(derived_.records)),
       fitted_(share.whole() ? resting_.records : fitted_parts(resting_.records, share)),
       without_(take_out_ramps(fitted_, significance)) {
   if (channels_.has_faults() || !quiet_.values.empty()) logged_ = channels_.as_logged(captures);

@@ -12,6 +12,7 @@
 #include "filters/diagnosis/record/channel_faults.h"
 #include "filters/diagnosis/record/derived_channels.h"
 #include "filters/diagnosis/record/fitted_part.h"
+#include "filters/diagnosis/record/other_axes.h"
 #include "filters/diagnosis/record/prepared_channels.h"
 #include "filters/diagnosis/record/ramps_out.h"
 #include "filters/diagnosis/record/reference_delay.h"
@@ -44,7 +45,7 @@ class PreparedRecords {
   std::vector<Record> logged_;  // none where nothing was repaired
   RepairedRecords quiet_;
   AlignedRecords aligned_;
-  std::vector<Record> derived_;
+  AlongAxes derived_;
   WithoutTurns resting_;
   std::vector<Record> fitted_;
   WithoutRamps without_;

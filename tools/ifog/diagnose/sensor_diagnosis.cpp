@@ -18,6 +18,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/record/other_axes.h"
 #include "filters/diagnosis/record/prepared_channels.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
@@ -50,9 +51,11 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
       capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
   for (const CaptureView::Channel& column : capture.channels)
     if (!reads_as_difference(column.name)) record.channels.push_back({column.name, column.values});
-  for (std::size_t other = 0; other < capture.axes.size(); ++other)
-    if (other != axis)
-      record.other_axes.push_back({rate_of_axis(capture.axes[other]), capture.rate_radps[other]});
+  for (std::size_t other = 0; other < capture.axes.size(); ++other) {
+    if (other == axis) continue;
+    record.other_axes.push_back({rate_of_axis(capture.axes[other]), capture.rate_radps[other]});
+    record.other_references.emplace_back(capture.reference_rate_radps[other]);
+  }
   return record;
 }
 
@@ -302,13 +305,15 @@ std::string diagnosis_report(const std::vector<CaptureView>& captures,
     page.inputs.push_back({names[c], hashes[c], captures[c].comments});
   const std::vector<std::string>& axes = captures.front().axes;
   std::list<DerivedRecords> derived;  // whose columns the page draws
+  std::list<AlongAxes> along;
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
     const auto index =
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
     const std::vector<Record> records = records_of(captures, names, index);
-    derived.push_back(with_derived_channels(records));
-    axis.records = derived.back().records;
+    derived.push_back(with_differences(records));
+    along.push_back(with_other_axes(derived.back().records));
+    axis.records = along.back().records;
     page.axes.push_back(std::move(axis));
   }
   return report::diagnosis_page(page);

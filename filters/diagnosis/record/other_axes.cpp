@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/record/other_axes.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "filters/linear/normal_equations.h"
+
+namespace ifog {
+namespace {
+
+// Measured rate less reference, on a constant and all references that move, in the order given. Empty where
+// there is nothing to tell them by.
+Eigen::VectorXd shares_of(std::span<const double> measured, std::span<const double> reference,
+                          const std::vector<std::span<const double>>& along) {
+  const auto p = static_cast<Eigen::Index>(along.size()) + 1;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(p + 1, p + 1);
+  Eigen::VectorXd row(p + 1);
+  row[1] = 1.0;
+  double rows = 0.0;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    row[0] = measured[i] - reference[i];
+    for (std::size_t a = 0; a < along.size(); ++a) row[2 + static_cast<Eigen::Index>(a)] = along[a][i];
+    if (!row.allFinite()) continue;
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    ++rows;
+  }
+  if (rows < 10.0 * static_cast<double>(p)) return {};
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  return NormalEquations::of_measured_first(gram).coefficients().tail(p - 1);
+}
+
+Samples less_its_own(std::span<const double> measured, std::span<const double> reference,
+                     const std::vector<std::span<const double>>& along) {
+  Samples corrected(measured.begin(), measured.end());
+  const Eigen::VectorXd shares = shares_of(measured, reference, along);
+  if (shares.size() == 0) return corrected;
+  for (std::size_t a = 0; a < along.size(); ++a) {
+    const double share = shares[static_cast<Eigen::Index>(a)];
+    for (std::size_t i = 0; i < corrected.size(); ++i)
+      if (std::isfinite(along[a][i])) corrected[i] -= share * along[a][i];
+  }
+  return corrected;
+}
+
+}  // namespace
+
+AlongAxes with_other_axes(std::vector<Record> records) {
+  AlongAxes out;
+  const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
+  if (!records.empty() && std::all_of(records.begin(), records.end(), referenced)) {
+    for (Record& record : records) {
+      std::vector<std::span<const double>> along{record.reference_radps};
+      for (const std::span<const double> each : record.other_references)
+        if (moves(each)) along.push_back(each);
+      for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
+        RecordChannel axis = record.other_axes[a];
+        if (a < record.other_references.size() && moves(record.other_references[a]))
+          axis.values = out.values.emplace_back(less_its_own(axis.values, record.other_references[a], along));
+        record.channels.push_back(axis);
+      }
+    }
+  }
+  out.records = std::move(records);
+  return out;
+}
+
+}  // namespace ifog
