@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <iomanip>
 #include <numbers>
 #include <sstream>
@@ -211,6 +212,19 @@ std::string of_rebuilt_ramp(const Effect& effect) {
 
 }  // namespace
 
+bool tells_motion(std::string_view channel) {
+  const auto in = [&](std::initializer_list<std::string_view> units) {
+    return std::any_of(units.begin(), units.end(),
+                       [&](std::string_view unit) { return channel.ends_with(unit); });
+  };
+  // Air, and what moves it, go past.
+  if (has(channel, "wind") || has(channel, "air") || has(channel, "fan") || has(channel, "pump"))
+    return false;
+  return in({"_rpm", "_mps", "_kmh", "_kmph", "_knots", "_kn", "_radps", "_degps", "_dps", "_degph", "_perm",
+             "_permm", "_perkm"}) ||
+         has(channel, "steer") || has(channel, "curvature") || has(channel, "odometer");
+}
+
 ChannelKind kind_of(std::string_view channel) {
   if (is_reference_rate(channel)) return ChannelKind::kReferenceRate;
   if (!axis_of_rate(channel).empty()) return ChannelKind::kOtherAxis;
@@ -278,7 +292,10 @@ std::string meaning_of(const Effect& effect) {
 }
 
 std::string meaning_of_earth_rate(const Effect& effect) {
-  const bool first = power_of(form_named(effect.form).value_or(Form::kEarthRate)) == 1;
+  const Form form = form_named(effect.form).value_or(Form::kEarthRate);
+  if (form == Form::kCosine || form == Form::kSine)
+    return "the Earth's rate turning into the axis as the sensor is turned to other headings";
+  const bool first = power_of(form) == 1;
   return std::string("the Earth's rate turning into the axis as the sensor tilts") +
          (first ? "" : ", what its straight line leaves");
 }

@@ -25,6 +25,9 @@ enum class ChannelKind {
 
 [[nodiscard]] ChannelKind kind_of(std::string_view channel);
 
+// How the sensor is carried about: a speed, a shaft's revolutions, what is steered, how a track bends.
+[[nodiscard]] bool tells_motion(std::string_view channel);
+
 // The channel's value at which effects are zero by convention, so that coefficients of different records
 // compare: 25 degC, 12 V, 0 otherwise and for differences of two.
 [[nodiscard]] double reference_of(std::string_view channel);

@@ -81,6 +81,50 @@ bool is_left_by_the_line(const BlockData& data, const Candidate& candidate, doub
   return swing <= kEarth / gravity_in(channel.name) * (channel.high - channel.low);
 }
 
+// Of an angle by which the sensor is turned to other headings, where no reference stands beside: once a turn
+// it meets the horizontal part of the Earth's rate, and what bends that little is left of it.
+bool is_of_turn(const BlockData& data, const Candidate& candidate) {
+  return (candidate.form == Form::kCosine || candidate.form == Form::kSine) && data.reference < 0 &&
+         data.channels[candidate.channel].period > 0.0;
+}
+
+bool is_once_a_turn(const BlockData& data, const Candidate& candidate) {
+  return is_of_turn(data, candidate) && candidate.period > 0.75 * data.channels[candidate.channel].period;
+}
+
+struct OfHeading {
+  double size = 0.0, error = 0.0;
+};
+
+// Of once a turn of this angle.
+OfHeading swing_of_turn(const BlockData& data, std::size_t channel, const SearchResult& found) {
+  double square = 0.0, doubt = 0.0;
+  Eigen::Index at = data.grid.constants();
+  for (const Candidate& each : found.fitted) {
+    if (each.channel == channel && is_once_a_turn(data, each)) {
+      square += found.fitted_coefficients[at] * found.fitted_coefficients[at];
+      doubt += std::max(0.0, found.covariance(at, at));
+    }
+    at += each.width();
+  }
+  return {std::sqrt(square), std::sqrt(doubt)};
+}
+
+double most_of_turn(const EarthRateOptions& options) {
+  return kEarth * (options.latitude_rad ? std::cos(*options.latitude_rad) : 1.0);
+}
+
+void read_turns(const BlockData& data, const EarthRateOptions& options, FirstReading reading,
+                SearchResult& found) {
+  for (std::size_t i = 0; i < found.fitted.size(); ++i) {
+    if (!is_of_turn(data, found.fitted[i])) continue;
+    const OfHeading swing = swing_of_turn(data, found.fitted[i].channel, found);
+    if (!(swing.size > 0.0) || swing.size - kWithin * swing.error > most_of_turn(options)) continue;
+    found.fitted[i].first_reading = reading;
+    found.chosen[i].candidate.first_reading = reading;
+  }
+}
+
 }  // namespace
 
 bool may_be_tilt(const BlockData& data, std::size_t channel) {
@@ -121,6 +165,7 @@ double largest_earth_rate(const std::string& channel, const EarthRateOptions& op
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found) {
   const FirstReading reading =
       options.subtract ? FirstReading::kEarthRateSubtracted : FirstReading::kEarthRateShown;
+  read_turns(data, options, reading, found);
   bool line = false;
   for (const bool first : {true, false}) {
     Eigen::Index at = data.grid.constants();
@@ -154,8 +199,19 @@ std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& o
                   name.c_str(), largest_earth_rate(name, options) * scale);
     words += (words.empty() ? "" : " and ") + std::string(line.data());
   }
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const bool read = std::any_of(found.fitted.begin(), found.fitted.end(), [&](const Candidate& each) {
+      return each.channel == c && is_once_a_turn(data, each) && each.first_reading != FirstReading::kError;
+    });
+    if (!read) continue;
+    std::array<char, 160> line{};
+    std::snprintf(line.data(), line.size(), "%.3g °/h once a turn of %s (at most %.3g)",
+                  swing_of_turn(data, c, found).size / kDegreePerHour, data.channels[c].name.c_str(),
+                  most_of_turn(options) / kDegreePerHour);
+    words += (words.empty() ? "" : " and ") + std::string(line.data());
+  }
   if (words.empty()) return "";
-  return words + " is what the Earth's rate makes in a gyro that tilts: that is rotation, " +
+  return words + " is what the Earth's rate makes in a gyro that is turned or tilts: that is rotation, " +
          (options.subtract
               ? "subtracted as asked for with --earth; on another heading it is another"
               : "shown and not subtracted (--earth subtracts it). The same capture with the heading "

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -101,6 +102,76 @@ TEST(OwnRotation, StaysInTheRateAndHidesNoOtherCause) {
     traced = traced || each.effect.channel == "supply_V";
   }
   EXPECT_TRUE(traced);
+}
+
+// In a curve the force across is the rate times the speed.
+TEST(OwnRotation, IsToldByTheForceOfACurve) {
+  Ship train(11, 0.0);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double turning = 1e-4 * std::sin(2.0 * M_PI * train.time[i] / 90.0);
+    train.rate[i] += turning;
+    train.across[i] = 20.0 * turning + 1e-3 * train.across[i];
+  }
+  BlockData data = cut_to_blocks({train.record()});
+  const std::vector<std::string> said = mark_own_rotation(data);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("as in a curve, at 2"), std::string::npos) << said[0];
+  EXPECT_TRUE(data.channels[1].rotates);
+}
+
+// A telescope that follows a star: its motor turns the gyro, a fan and the wind do not.
+TEST(OwnRotation, IsToldByWhatTurnsTheSensor) {
+  Ship mount(12, 0.0);
+  std::vector<double> motor, fan;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    motor.push_back(0.25 + 0.05 * std::sin(2.0 * M_PI * mount.time[i] / 300.0));
+    fan.push_back(1200.0 + 100.0 * std::sin(2.0 * M_PI * mount.time[i] / 170.0));
+    mount.rate[i] += 3e-4 * motor.back() + 5e-8 * (fan.back() - 1200.0);
+  }
+  Record record = mount.record();
+  record.channels = {{"motor_rpm", motor}, {"fan_rpm", fan}};
+  const Diagnosis found = diagnose({record}, {});
+  bool of_fan = false;
+  for (const FoundEffect& each : found.effects) {
+    EXPECT_NE(each.effect.channel, "motor_rpm");
+    of_fan = of_fan || each.effect.channel == "fan_rpm";
+  }
+  EXPECT_TRUE(of_fan);
+  const auto told = [](const std::string& remark) {
+    return remark.starts_with("motor_rpm tells how the sensor is moved");
+  };
+  EXPECT_TRUE(std::any_of(found.remarks.begin(), found.remarks.end(), told));
+}
+
+// A gyro that is set to one heading after the other meets the Earth's rate once a turn: shown, never
+// subtracted unasked; what is larger than the Earth's rate is an error.
+TEST(OwnRotation, OfTheEarthIsShownOverATurnOfHeadings) {
+  constexpr double kEarth = 7.292115e-5;
+  for (const double size : {0.67 * kEarth, 3.0 * kEarth}) {
+    Ship finder(13, 0.0);
+    std::vector<double> heading;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const double at = 30.0 * std::floor(finder.time[i] / 50.0);
+      heading.push_back(std::fmod(at, 360.0));
+      finder.rate[i] += size * std::cos((at + 37.0) * M_PI / 180.0);
+    }
+    Record record = finder.record();
+    record.channels = {{"table_angle_deg", heading}};
+    const bool is_earth = size < kEarth;
+    for (const bool asked : {false, true}) {
+      DiagnoseOptions options;
+      options.subtract_earth_rate = asked;
+      const Diagnosis found = diagnose({record}, options);
+      ASSERT_GE(found.effects.size(), 2U);
+      for (const FoundEffect& each : found.effects)
+        EXPECT_EQ(each.effect.shown_only, is_earth && !asked) << each.effect.form;
+      const double left = found.after.at("rms_10s_radps") / found.before.at("rms_10s_radps");
+      if (is_earth && !asked)
+        EXPECT_GT(left, 0.99);
+      else
+        EXPECT_LT(left, 0.1);
+    }
+  }
 }
 
 }  // namespace

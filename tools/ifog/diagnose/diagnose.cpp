@@ -136,7 +136,7 @@ void add_diagnose(const Command& program) {
       .within(0.1, 1.0);
   command.add_flag(
       "--earth", arguments->wanted.earth,
-      "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
+      "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; otherwise it is shown");
   command
       .add_option("--latitude", arguments->latitude_deg,
                   "of the captures, degrees: bounds what can be the Earth's rate")

@@ -317,7 +317,7 @@ void add_fleet(const Command& program) {
       .shows_default();
   command.add_flag(
       "--earth", arguments->settings.wanted.earth,
-      "subtract what is the Earth's rate by its size in a gyro that tilts; otherwise it is shown");
+      "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; otherwise it is shown");
   command
       .add_option("--latitude", arguments->latitude_deg,
                   "of the captures, degrees: bounds what can be the Earth's rate")
