@@ -13,4 +13,7 @@ namespace ifog {
 // nothing to interpolate between.
 Samples shifted(std::span<const double> values, double steps);
 
+// Likewise at k + steps + drift k: of a series with a clock of its own.
+Samples warped(std::span<const double> values, double steps, double drift);
+
 }  // namespace ifog

@@ -15,6 +15,8 @@
 #include <unsupported/Eigen/FFT>
 
 #include "filters/allan/stretches.h"
+#include "filters/diagnosis/record/abrupt_reference.h"
+#include "filters/diagnosis/record/autoregression.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/fractional_shift.h"
 #include "filters/diagnosis/record/record_clock.h"
@@ -28,13 +30,17 @@ constexpr double kLongest_s = 60.0;
 constexpr double kSlowest_s = 1.0;        // between samples; a table of dwells is slower
 constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
 constexpr std::size_t kLeast = 200;       // and the fewest that tell
-constexpr std::size_t kOrder = 16;        // of the autoregression
 constexpr int kRounds = 20;
 constexpr double kSettled = 1e-5;       // of a step
 constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kPowers = 4;  // of the reference: constant to cubic
+constexpr std::size_t kPowers = 4;      // of the reference: constant to cubic
 using Series = std::vector<double>;
+
+// Parts of a record that each tell a delay of its own, of a logger whose clock runs otherwise: as few as
+// three.
+constexpr std::size_t kPartsOfDrift = 8;
+constexpr std::size_t kFewestOfDrift = 3;
+constexpr double kCertainDrift = 25.0;  // twice the log-likelihood that a drift has to gain
 
 struct Pair {
   Series rate, reference;
@@ -42,55 +48,8 @@ struct Pair {
   double step_s = 0.0;
 };
 
-// What is left of a series is white noise once its next value is predicted from the ones before.
-class Autoregression {
- public:
-  Autoregression() = default;  // of white noise
-  explicit Autoregression(const Series& series) {
-    double mean = 0.0, count = 0.0;
-    for (const double value : series)
-      if (std::isfinite(value)) mean += value, count += 1.0;
-    mean /= std::max(count, 1.0);
-    std::array<double, kOrder + 1> covariance{};
-    for (std::size_t lag = 0; lag <= kOrder; ++lag)
-      for (std::size_t i = lag; i < series.size(); ++i) {
-        const double product = (series[i] - mean) * (series[i - lag] - mean);
-        if (std::isfinite(product)) covariance[lag] += product;
-      }
-    covariance[0] *= 1.0 + 1e-9;
-    levinson(covariance);
-  }
-
-  // NaN where a value before is missing.
-  [[nodiscard]] Series whitened(const Series& series) const {
-    Series out(series.size(), kNone);
-    for (std::size_t i = kOrder; i < series.size(); ++i) {
-      out[i] = series[i];
-      for (std::size_t k = 0; k < kOrder; ++k) out[i] -= weight_[k] * series[i - 1 - k];
-    }
-    return out;
-  }
-
- private:
-  // Of the equations of Yule and Walker.
-  void levinson(const std::array<double, kOrder + 1>& covariance) {
-    double left = covariance[0];
-    for (std::size_t m = 0; m < kOrder && left > 0.0; ++m) {
-      double reflection = covariance[m + 1];
-      for (std::size_t k = 0; k < m; ++k) reflection -= weight_[k] * covariance[m - k];
-      reflection /= left;
-      const std::array<double, kOrder> before = weight_;
-      for (std::size_t k = 0; k < m; ++k) weight_[k] = before[k] - reflection * before[m - 1 - k];
-      weight_[m] = reflection;
-      left *= 1.0 - reflection * reflection;
-    }
-  }
-
-  std::array<double, kOrder> weight_{};
-};
-
 Series differences(const Series& series) {
-  Series out(series.size(), kNone);
+  Series out(series.size(), std::nan(""));
   for (std::size_t i = 1; i < series.size(); ++i) out[i] = series[i] - series[i - 1];
   return out;
 }
@@ -116,7 +75,9 @@ std::optional<Pair> pair_of(const Record& record) {
     const Samples rate = on_even_grid(record, period_s, record.rate_radps);
     const std::size_t count = (rate.size() + kMost - 1) / kMost;
     pair.rate = means(rate, count);
-    pair.reference = means(on_even_grid(record, period_s, record.reference_radps), count);
+    Samples reference = on_even_grid(record, period_s, record.reference_radps);
+    leave_out_jumps(reference, rate);  // a jump tells a delay to whole samples only, and loudly
+    pair.reference = means(reference, count);
     for (const Samples& turn : turns_of(record, period_s)) pair.beside.push_back(means(turn, count));
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
@@ -172,7 +133,8 @@ Regressors regressors_at(const Series& reference, double scale, double steps, bo
   for (std::size_t p = 0; p < kPowers; ++p) {
     out.powers[p].resize(moved.size());
     for (std::size_t i = 0; i < moved.size(); ++i)
-      out.powers[p][i] = std::isfinite(moved[i]) ? std::pow(moved[i] / scale, static_cast<double>(p)) : kNone;
+      out.powers[p][i] =
+          std::isfinite(moved[i]) ? std::pow(moved[i] / scale, static_cast<double>(p)) : std::nan("");
   }
   if (!with_slope) return out;
   constexpr double kAside = 0.25;
@@ -250,6 +212,7 @@ Autoregression noise_beside(const std::vector<Series>& columns) {
 struct Delay {
   double steps = 0.0, error = 0.0;
   double gain = 0.0;     // twice the log-likelihood, over none
+  double drift = 0.0;    // steps a step, from the record's beginning on
   Autoregression noise;  // beside it
 };
 
@@ -332,10 +295,47 @@ std::optional<Delay> delay_of(const Pair& pair) {
   }
 }
 
+Pair part_of(const Pair& pair, std::size_t from, std::size_t to) {
+  const auto cut = [&](const Series& series) {
+    return Series(series.begin() + static_cast<std::ptrdiff_t>(from),
+                  series.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  Pair part{cut(pair.rate), cut(pair.reference), {}, pair.step_s};
+  for (const Series& each : pair.beside) part.beside.push_back(cut(each));
+  return part;
+}
+
+// Steps a step by which the delay grows, of a logger with a clock of its own; 0 where it may be constant.
+// From the delays of parts of the record: a straight line through them, by weighted least squares, against
+// their mean.
+void find_drift(const Pair& pair, Delay& delay) {
+  const std::size_t n = pair.rate.size();
+  double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0;
+  std::size_t parts = 0;
+  for (std::size_t k = 0; k < kPartsOfDrift; ++k) {
+    const std::size_t from = k * n / kPartsOfDrift, to = (k + 1) * n / kPartsOfDrift;
+    const Pair part = part_of(pair, from, to);
+    if (!(variance_of(part.reference) > 0.0)) continue;
+    const std::optional<Delay> own = refined(part, delay.steps);
+    if (!own || !(own->error > 0.0)) continue;
+    const double weight = 1.0 / (own->error * own->error);
+    const double x = 0.5 * static_cast<double>(from + to), y = own->steps;
+    ++parts, w += weight, wx += weight * x, wy += weight * y, wxx += weight * x * x, wxy += weight * x * y;
+  }
+  const double spread = wxx - wx * wx / std::max(w, 1e-300);
+  if (parts < kFewestOfDrift || !(spread > 0.0)) return;
+  const double along = wxy - wx * wy / w;
+  if (along * along / spread < kCertainDrift) return;
+  delay.drift = along / spread;
+  delay.steps = (wy - delay.drift * wx) / w;  // at the record's beginning
+}
+
 // By row of the record, the reference as it would have been without delay.
-Samples moved_reference(const Record& record, double delay_s) {
+Samples moved_reference(const Record& record, double delay_s, double drift) {
   const double period_s = clock_of(record).period_s;
-  const Samples even = shifted(on_even_grid(record, period_s, record.reference_radps), delay_s / period_s);
+  const Samples logged = on_even_grid(record, period_s, record.reference_radps);
+  const Samples even =
+      drift == 0.0 ? shifted(logged, delay_s / period_s) : warped(logged, delay_s / period_s, drift);
   Samples out(record.time_s.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto k =
@@ -351,7 +351,11 @@ std::string in_words(const ReferenceDelay& delay, const std::string& name, bool 
   std::snprintf(text.data(), text.size(), "%s%s%s%s logged %.4g s %s (+-%.2g): shifted", name.c_str(),
                 several ? " (" : "", several ? delay.record.c_str() : "", several ? ")" : "", std::abs(late),
                 late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
-  return text.data();
+  if (delay.drift == 0.0) return text.data();
+  std::array<char, 160> drift{};
+  std::snprintf(drift.data(), drift.size(), ", by a clock of its own that runs %.3g ppm %s",
+                1e6 * std::abs(delay.drift), delay.drift > 0.0 ? "slow" : "fast");
+  return std::string(text.data()) + drift.data();
 }
 
 }  // namespace
@@ -362,11 +366,16 @@ AlignedRecords align_references(const std::vector<Record>& records) {
   for (Record& record : aligned.records) {
     const std::optional<Pair> pair = pair_of(record);
     if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
-    const std::optional<Delay> delay = delay_of(*pair);
+    std::optional<Delay> delay = delay_of(*pair);
     if (!delay || delay->gain < price_of(*pair)) continue;
-    ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};
-    record.reference_radps = aligned.references.emplace_back(moved_reference(record, found.delay_s));
+    find_drift(*pair, *delay);
+    ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s, delay->drift};
+    Samples& moved = aligned.references.emplace_back(moved_reference(record, found.delay_s, found.drift));
+    const std::size_t jumps = leave_out_jumps(moved, record.rate_radps);
+    record.reference_radps = moved;
     aligned.remarks.push_back(in_words(found, record.reference_name, records.size() > 1));
+    if (jumps > 0)
+      aligned.remarks.back() += "; " + std::to_string(jumps) + " sample(s) where it jumps left out";
     aligned.delays.push_back(std::move(found));
   }
   return aligned;

@@ -127,8 +127,10 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
     add_transitions(data, channel, found);
     // Gravity's share of a horizontal acceleration changes with the tilt, so its derivative is the rotation
     // itself (times g). Without a reference nothing tells the two apart, and a correction must be transparent
-    // to rotation.
-    const bool is_rotation = data.reference < 0 && kind_of(source.name) == ChannelKind::kAcceleration;
+    // to rotation. Beside one that moves it is the rotation's own change, by which a reference that is late
+    // or interpolated errs, and no law of a gyro.
+    const bool moved = data.reference < 0 || data.channels[static_cast<std::size_t>(data.reference)].varies;
+    const bool is_rotation = moved && kind_of(source.name) == ChannelKind::kAcceleration;
     for (const Form form : {Form::kRate, Form::kSecondRate, Form::kLagged}) {
       if (is_rotation && form != Form::kLagged) continue;
       for (const double tau : time_constants(data.grid, form)) add(form, tau);

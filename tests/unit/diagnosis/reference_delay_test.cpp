@@ -195,6 +195,51 @@ TEST(ReferenceDelay, ATurnOfWhichReadingsAreMissingIsNoDelay) {
   }
 }
 
+// A logger with a clock of its own: the reference is later and later, and no one delay puts it right.
+TEST(ReferenceDelay, OfAClockOfItsOwnGrows) {
+  for (const double drift : {40e-6, -200e-6}) {
+    const Logged logged(21, 0.02, turning, 0.0);
+    std::vector<double> own_clock;
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal;
+    for (const double t : logged.time)
+      own_clock.push_back(turning(t - 0.02 - drift * t) + 1e-4 * normal(random));
+    Record record = logged.record;
+    record.reference_radps = own_clock;
+    const AlignedRecords aligned = align_references({record});
+    ASSERT_EQ(aligned.delays.size(), 1U);
+    EXPECT_NEAR(aligned.delays[0].drift, drift, 1e-6);
+    EXPECT_NEAR(aligned.delays[0].delay_s, 0.02, 3e-4);
+    EXPECT_NE(aligned.remarks[0].find("ppm"), std::string::npos) << aligned.remarks[0];
+    double square = 0.0;
+    for (std::size_t i = 400; i + 400 < kSamples; ++i)
+      square += std::pow(aligned.records[0].reference_radps[i] - turning(logged.time[i]), 2);
+    EXPECT_LT(std::sqrt(square / static_cast<double>(kSamples - 800)), 2e-4) << "1e-4 are its noise";
+  }
+  const Logged steady(22, 0.02);
+  EXPECT_EQ(align_references({steady.record}).delays.at(0).drift, 0.0);
+}
+
+// What an interpolation makes of a jump is no error of the gyro.
+TEST(ReferenceDelay, WhereTheReferenceJumpsNothingIsSaidOfTheRate) {
+  const auto jumping = [](double t) { return turning(t) + (std::fmod(t, 100.0) < 50.0 ? 0.0 : 0.2); };
+  const Logged logged(23, 0.025, jumping);
+  const AlignedRecords aligned = align_references({logged.record});
+  ASSERT_EQ(aligned.delays.size(), 1U);
+  double worst = 0.0;
+  std::size_t missing = 0;
+  for (std::size_t i = 100; i + 100 < kSamples; ++i) {
+    const double reference = aligned.records[0].reference_radps[i];
+    if (std::isnan(reference))
+      ++missing;
+    else
+      worst = std::max(worst, std::abs(reference - jumping(logged.time[i])));
+  }
+  EXPECT_LT(worst, 2e-3) << "a hundredth of the jump; the noise of the rate is 1e-3";
+  EXPECT_GT(missing, 10U);
+  EXPECT_LT(missing, 400U);
+}
+
 TEST(FractionalShift, MovesASineAsTheClosedFormDoes) {
   std::vector<double> sine;
   for (int k = 0; k < 400; ++k) sine.push_back(std::sin(0.9 * k));

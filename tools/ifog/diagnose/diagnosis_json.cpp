@@ -105,10 +105,12 @@ Json heading_json(const HeadingPrediction& heading) {
 
 Json delays_json(const std::vector<ReferenceDelay>& delays) {
   Json json = Json::array();
-  for (const ReferenceDelay& each : delays)
+  for (const ReferenceDelay& each : delays) {
     json.push_back({{"capture", each.record},
                     {"delay_s", number(each.delay_s)},
                     {"std_error_s", number(each.std_error_s)}});
+    if (each.drift != 0.0) json.back()["drift_ppm"] = number(1e6 * each.drift);
+  }
   return json;
 }
 

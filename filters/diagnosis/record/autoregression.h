@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Noise as an autoregression, by which a series is whitened.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace ifog {
+
+// What is left of a series is white noise once its next value is predicted from the ones before.
+class Autoregression {
+ public:
+  static constexpr std::size_t kOrder = 16;
+
+  Autoregression() = default;  // of white noise
+  explicit Autoregression(const std::vector<double>& series) {
+    double mean = 0.0, count = 0.0;
+    for (const double value : series)
+      if (std::isfinite(value)) mean += value, count += 1.0;
+    mean /= std::max(count, 1.0);
+    std::array<double, kOrder + 1> covariance{};
+    for (std::size_t lag = 0; lag <= kOrder; ++lag)
+      for (std::size_t i = lag; i < series.size(); ++i) {
+        const double product = (series[i] - mean) * (series[i - lag] - mean);
+        if (std::isfinite(product)) covariance[lag] += product;
+      }
+    covariance[0] *= 1.0 + 1e-9;
+    levinson(covariance);
+  }
+
+  // NaN where a value before is missing.
+  [[nodiscard]] std::vector<double> whitened(const std::vector<double>& series) const {
+    std::vector<double> out(series.size(), std::nan(""));
+    for (std::size_t i = kOrder; i < series.size(); ++i) {
+      out[i] = series[i];
+      for (std::size_t k = 0; k < kOrder; ++k) out[i] -= weight_[k] * series[i - 1 - k];
+    }
+    return out;
+  }
+
+ private:
+  // Of the equations of Yule and Walker.
+  void levinson(const std::array<double, kOrder + 1>& covariance) {
+    double left = covariance[0];
+    for (std::size_t m = 0; m < kOrder && left > 0.0; ++m) {
+      double reflection = covariance[m + 1];
+      for (std::size_t k = 0; k < m; ++k) reflection -= weight_[k] * covariance[m - k];
+      reflection /= left;
+      const std::array<double, kOrder> before = weight_;
+      for (std::size_t k = 0; k < m; ++k) weight_[k] = before[k] - reflection * before[m - 1 - k];
+      weight_[m] = reflection;
+      left *= 1.0 - reflection * reflection;
+    }
+  }
+
+  std::array<double, kOrder> weight_{};
+};
+
+}  // namespace ifog
