@@ -61,6 +61,15 @@ bool same_place(const TrueEffect& truth, const Effect& found, double record_s) {
   return true;
 }
 
+// The hidden parabola lies about its channel's reference: its straight line is none.
+bool places_turning_point(const TrueEffect& truth, const Effect& found) {
+  if (truth.form != "quadratic" || !truth.with_channel.empty() || found.form != "linear" ||
+      found.channel != truth.channel)
+    return false;
+  const ModelParameter* p = parameter_named(found, "coefficient");
+  return p != nullptr && std::abs(p->value) <= kInvisible * p->std_error;
+}
+
 void add_parameter(Score& s, const std::string& effect, const Effect& found, const char* name, double truth,
                    double oracle = 0.0) {
   const ModelParameter* p = parameter_named(found, name);
@@ -95,6 +104,13 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
       --again;
     }
   }
+
+  for (std::size_t t = 0; t < sensor.effects.size(); ++t)
+    for (std::size_t f = 0; f < used.size(); ++f)
+      if (!used[f] && matched[t] && places_turning_point(sensor.effects[t], finding.effects[f].effect)) {
+        used[f] = true;
+        ++s.completed;
+      }
 
   const auto left = static_cast<int>(std::count(used.begin(), used.end(), false));
   const int unmatched = s.hidden - s.exact;

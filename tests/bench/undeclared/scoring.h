@@ -5,7 +5,9 @@
 // It is found *equivalently* when other names were given, but their waveforms reproduce the hidden ones so
 // well that what is left would be visible below 3 sigma in the captures diagnosed: with the true noise known,
 // nobody could have told them apart. Both count as right; they are reported apart. Every found effect that is
-// neither is extra; an equivalent explanation must also be free of parts that it could do without.
+// neither is extra; an equivalent explanation must also be free of parts that it could do without. A parabola
+// is claimed with the straight line that places its turning point: within 3 sigma of where the hidden one is
+// that is the hidden law's own term, counted as completed.
 #pragma once
 
 #include <functional>
@@ -47,7 +49,7 @@ struct Score {
   Kind kind = Kind::kNothing;
   std::uint64_t seed = 0;
   double sigma = 0.0;
-  int hidden = 0, exact = 0, equivalent = 0, missed = 0, extra = 0;
+  int hidden = 0, exact = 0, equivalent = 0, missed = 0, extra = 0, completed = 0;
   bool unexplained = false;
   // On another capture: RMS of 10 s means of (estimated - true effect) and of the true effect, over the RMS
   // of 10 s means of the sensor's own noise about its mean. `shape_error` leaves the mean out, which a

@@ -91,6 +91,7 @@ Totals total(const std::vector<Score>& scores) {
       continue;
     }
     t.extra += s.extra > 0 ? 1 : 0;
+    t.completed += s.completed > 0 ? 1 : 0;
     if (s.kind == Kind::kUncovered) {
       ++t.uncovered;
       t.uncovered_said += s.right() ? 1 : 0;
@@ -152,6 +153,7 @@ void print(std::ostream& out, const std::vector<Score>& scores) {
          t.sensors, percent(t.right, t.sensors), t.exact);
     line(out, "extra effects    %5d of %5d  %5.1f %%   (target <= 3)", t.extra, t.sensors + t.uncovered,
          percent(t.extra, t.sensors + t.uncovered));
+    line(out, "   besides, the hidden law's own second term, within 3 sigma of what it is: %d", t.completed);
     line(out, "effect's error   median %.3f (target <= 0.06), 90 %% %.3f (target <= 0.2)", t.error_median,
          t.error_p90);
     line(out, "   without mean  median %.3f, 90 %% %.3f", t.shape_error_median, t.shape_error_p90);

@@ -10,8 +10,8 @@
 namespace ifog::undeclared {
 
 struct Totals {
-  int sensors = 0, right = 0, exact = 0, missed = 0,
-      extra = 0;  // sensors, not effects; uncovered ones not among them
+  int sensors = 0, right = 0, exact = 0, missed = 0, extra = 0,
+      completed = 0;  // sensors, not effects; uncovered ones not among them
   int effect_free = 0, false_alarms = 0;
   int uncovered = 0, uncovered_said = 0, made_worse = 0;
   double error_median = 0.0, error_p90 = 0.0;              // of transferable effects rightly found or missed

@@ -135,4 +135,22 @@ TEST(UndeclaredScore, AnotherNameIsRightOnlyWhenNobodyCouldTell) {
   EXPECT_EQ(wrong.extra, 1);
 }
 
+TEST(UndeclaredScore, TheTurningPointsLineIsTheLawsOwnUnlessItIsPlacedWrong) {
+  const Sensor sensor = draw_sensor(5, Kind::kTemperatureQuadratic, 40.0);
+  const auto with_line = [&](double value, double std_error) {
+    const auto square = [](const ifog::Capture& c) {
+      std::vector<double> waveform(c.channels[0].values.size(), 0.0);
+      return waveform;
+    };
+    Finding f = claim("quadratic", sensor.effects[0].channel, square);
+    f.effects.push_back(claim("linear", sensor.effects[0].channel, square).effects[0]);
+    f.effects[1].effect.parameters = {{"coefficient", value, std_error, "rad/s/degC"}};
+    return score(sensor, [&](const std::vector<ifog::Capture>&) { return f; });
+  };
+  EXPECT_EQ(with_line(2e-9, 1e-9).extra, 0);
+  EXPECT_EQ(with_line(2e-9, 1e-9).completed, 1);
+  EXPECT_EQ(with_line(4e-9, 1e-9).extra, 1);
+  EXPECT_EQ(with_line(4e-9, 1e-9).completed, 0);
+}
+
 }  // namespace
