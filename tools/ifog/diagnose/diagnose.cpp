@@ -134,9 +134,9 @@ void add_diagnose(const Command& program) {
       .add_option("--fit-to", arguments->wanted.fit_to,
                   "fit up to this share of each capture's time; the rest judges")
       .within(0.1, 1.0);
-  command.add_flag(
-      "--earth", arguments->wanted.earth,
-      "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; otherwise it is shown");
+  command.add_flag("--earth", arguments->wanted.earth,
+                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
+                   "otherwise it is shown");
   command
       .add_option("--latitude", arguments->latitude_deg,
                   "of the captures, degrees: bounds what can be the Earth's rate")

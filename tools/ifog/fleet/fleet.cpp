@@ -315,9 +315,9 @@ void add_fleet(const Command& program) {
                   "chance of a false effect in a gyro, after correction for all tried")
       .within(1e-9, 0.5)
       .shows_default();
-  command.add_flag(
-      "--earth", arguments->settings.wanted.earth,
-      "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; otherwise it is shown");
+  command.add_flag("--earth", arguments->settings.wanted.earth,
+                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
+                   "otherwise it is shown");
   command
       .add_option("--latitude", arguments->latitude_deg,
                   "of the captures, degrees: bounds what can be the Earth's rate")
