@@ -27,7 +27,7 @@ namespace ifog {
 
 // As many turns away as brings the angle nearest to the middle of the arc. One without ends is all angles.
 [[nodiscard]] inline double beside_arc(double angle, const ChannelRange& arc, double turn) noexcept {
-  if (!std::isfinite(arc.high - arc.low)) return angle;
+  if (!(turn > 0.0) || !std::isfinite(arc.high - arc.low)) return angle;
   const double middle = 0.5 * (arc.low + arc.high);
   return angle - turn * std::round((angle - middle) / turn);
 }

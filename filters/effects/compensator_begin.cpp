@@ -179,7 +179,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
   if (!rate && !is_of_time(factor.shape.settings().form)) {
     factor.channel = channel_index(names.of);
     if (!names.less.empty()) factor.less = channel_index(names.less);
-    if (is_of_angle(factor.shape.settings().form))
+    if (is_of_angle(factor.shape.settings().form) && !factor.shape.settings().fringe)
       factor.turn = turn_of(channel, factor.shape.settings().period);
   }
   term.of_rate |= rate;

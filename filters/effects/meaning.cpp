@@ -212,17 +212,25 @@ std::string of_rebuilt_ramp(const Effect& effect) {
 
 }  // namespace
 
+bool is_angle_by_unit(std::string_view channel) {
+  const std::string unit = unit_of(channel);
+  return unit == "rad" || unit == "deg" || unit == "turns";
+}
+
 bool tells_motion(std::string_view channel) {
+  const auto any = [&](std::initializer_list<std::string_view> parts) {
+    return std::any_of(parts.begin(), parts.end(), [&](std::string_view part) { return has(channel, part); });
+  };
   const auto in = [&](std::initializer_list<std::string_view> units) {
     return std::any_of(units.begin(), units.end(),
                        [&](std::string_view unit) { return channel.ends_with(unit); });
   };
-  // Air, and what moves it, go past.
-  if (has(channel, "wind") || has(channel, "air") || has(channel, "fan") || has(channel, "pump"))
-    return false;
-  return in({"_rpm", "_mps", "_kmh", "_kmph", "_knots", "_kn", "_radps", "_degps", "_dps", "_degph", "_perm",
-             "_permm", "_perkm"}) ||
-         has(channel, "steer") || has(channel, "curvature") || has(channel, "odometer");
+  if (any({"steer", "curvature", "odometer"}) || in({"_radps", "_degps", "_dps"})) return true;
+  // Machines beside a gyro at rest turn as well, and air and water go past.
+  if (in({"_rpm"}))
+    return any({"motor", "wheel", "drive", "axle", "shaft", "servo", "gimbal", "mount", "winch"});
+  return in({"_mps", "_kmh", "_kmph", "_mph", "_knots", "_kn"}) && any({"speed", "veloc"}) &&
+         !any({"wind", "airspeed", "flow", "fan"});
 }
 
 ChannelKind kind_of(std::string_view channel) {

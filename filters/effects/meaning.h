@@ -25,6 +25,9 @@ enum class ChannelKind {
 
 [[nodiscard]] ChannelKind kind_of(std::string_view channel);
 
+// Degrees, radians or turns: what comes round.
+[[nodiscard]] bool is_angle_by_unit(std::string_view channel);
+
 // How the sensor is carried about: a speed, a shaft's revolutions, what is steered, how a track bends.
 [[nodiscard]] bool tells_motion(std::string_view channel);
 

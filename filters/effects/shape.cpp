@@ -8,6 +8,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/effects/curve_reach.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -69,6 +70,7 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.table_y = effect.table_y;
   settings.period = effect.period;
   settings.angle = effect.angle;
+  settings.fringe = is_periodic(settings.form) && !is_angle_by_unit(effect.channel);
   settings.half_width = parameter(effect, name_of_width(settings.form));
   return settings;
 }
@@ -220,7 +222,7 @@ double Shape::slope(double value) const noexcept {
 }
 
 double Shape::at(const Reach& channel) const noexcept {
-  if (is_periodic(settings_.form)) return at(channel.edge);
+  if (is_periodic(settings_.form)) return at(settings_.fringe ? channel.value : channel.edge);
   if (bounded_) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
   const double curved = followed(settings_, channel);

@@ -28,6 +28,8 @@ struct ShapeSettings {
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
   double half_width = 0.0;               // dead_zone, transition; of a power above one its curve_reach
   bool angle = false;
+  // cosine, sine: of no angle, as a fringe of a temperature. A law that goes on, as a polynomial does.
+  bool fringe = false;
   double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };
 

@@ -243,7 +243,9 @@ bool is_switch(const std::vector<Record>& records, const std::string& name) {
   };
   Level off, on;
   double between = 0.0;
+  bool switched = false;  // within one record: two set points of two captures are no switch
   for (const Record& record : records) {
+    const double were_off = off.count, were_on = on.count;
     for (const double value : values_of(record, name)) {
       if (!std::isfinite(value)) continue;
       if (value - low < kBesideLevel * apart)
@@ -253,10 +255,12 @@ bool is_switch(const std::vector<Record>& records, const std::string& name) {
       else
         ++between;
     }
+    const double now_off = off.count - were_off, now_on = on.count - were_on;
+    switched = switched || std::min(now_off, now_on) > kOfEither * (now_off + now_on);
   }
   if (between == 0.0 && off.spread() == 0.0 && on.spread() == 0.0) return true;
   const double all = off.count + on.count + between;
-  return std::min(off.count, on.count) > kOfEither * all && between <= kOnTheWay * all &&
+  return switched && std::min(off.count, on.count) > kOfEither * all && between <= kOnTheWay * all &&
          std::max(off.spread(), on.spread()) < kOfLevels * apart;
 }
 

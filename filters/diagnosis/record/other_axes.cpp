@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filters/diagnosis/record/reference_delay.h"
 #include "filters/linear/normal_equations.h"
 
 namespace ifog {
@@ -39,10 +40,25 @@ Samples less_its_own(std::span<const double> measured, std::span<const double> r
   if (shares.size() == 0) return corrected;
   for (std::size_t a = 0; a < along.size(); ++a) {
     const double share = shares[static_cast<Eigen::Index>(a)];
-    for (std::size_t i = 0; i < corrected.size(); ++i)
-      if (std::isfinite(along[a][i])) corrected[i] -= share * along[a][i];
+    for (std::size_t i = 0; i < corrected.size(); ++i) corrected[i] -= share * along[a][i];
   }
   return corrected;
+}
+
+// The other axes as records, each with its reference as if that had not been logged late.
+AlignedRecords aligned_others(const Record& record) {
+  std::vector<Record> axes;
+  for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
+    Record axis;
+    axis.name = record.other_axes[a].name;
+    axis.time_s = record.time_s;
+    axis.rate_radps = record.other_axes[a].values;
+    if (a < record.other_references.size()) axis.reference_radps = record.other_references[a];
+    axis.origin = record.origin;
+    axis.clock = record.clock;
+    axes.push_back(std::move(axis));
+  }
+  return align_references(axes);
 }
 
 }  // namespace
@@ -52,13 +68,14 @@ AlongAxes with_other_axes(std::vector<Record> records) {
   const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
   if (!records.empty() && std::all_of(records.begin(), records.end(), referenced)) {
     for (Record& record : records) {
+      const AlignedRecords others = aligned_others(record);
       std::vector<std::span<const double>> along{record.reference_radps};
-      for (const std::span<const double> each : record.other_references)
-        if (moves(each)) along.push_back(each);
-      for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
-        RecordChannel axis = record.other_axes[a];
-        if (a < record.other_references.size() && moves(record.other_references[a]))
-          axis.values = out.values.emplace_back(less_its_own(axis.values, record.other_references[a], along));
+      for (const Record& other : others.records)
+        if (moves(other.reference_radps)) along.push_back(other.reference_radps);
+      for (const Record& other : others.records) {
+        RecordChannel axis{other.name, other.rate_radps};
+        if (moves(other.reference_radps))
+          axis.values = out.values.emplace_back(less_its_own(axis.values, other.reference_radps, along));
         record.channels.push_back(axis);
       }
     }

@@ -6,12 +6,14 @@
 #include <cstdio>
 
 #include "filters/effects/meaning.h"
+#include "filters/linear/columns.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;  // m/s^2
-constexpr std::size_t kFewestChanges = 50;    // changes of the angle that tell
+constexpr Eigen::Index kFewestChanges = 50;   // changes of the angle that tell
 constexpr std::size_t kLongestMean = 64;
 // Twice the log-likelihood that the slope has to gain, the lengths tried and a swing's few independent
 // periods included.
@@ -42,10 +44,10 @@ Eigen::VectorXd angles_of(const BlockGrid& grid) {
   return angle;
 }
 
-// Changes from one mean over so many blocks to the next, of what lies within valid stretches of a record.
-std::vector<std::pair<double, double>> changes_of(const BlockGrid& grid, const Eigen::VectorXd& force,
-                                                  const Eigen::VectorXd& angle, std::size_t blocks) {
-  std::vector<std::pair<double, double>> found;
+// Changes from one mean over so many blocks to the next, of what lies within valid stretches of a record. A
+// column each, as given.
+Columns changes_of(const BlockGrid& grid, const Columns& columns, std::size_t blocks) {
+  std::vector<Eigen::RowVectorXd> found;
   const auto step = static_cast<Eigen::Index>(blocks);
   for (const BlockRange& record : grid.records) {
     std::size_t b = record.first;
@@ -57,23 +59,25 @@ std::vector<std::pair<double, double>> changes_of(const BlockGrid& grid, const E
         continue;
       }
       const auto at = static_cast<Eigen::Index>(b);
-      found.emplace_back(force.segment(at + step, step).mean() - force.segment(at, step).mean(),
-                         angle.segment(at + step, step).mean() - angle.segment(at, step).mean());
+      found.emplace_back(columns.middleRows(at + step, step).colwise().mean() -
+                         columns.middleRows(at, step).colwise().mean());
       b += blocks;
     }
   }
-  return found;
+  Columns changes(static_cast<Eigen::Index>(found.size()), columns.cols());
+  for (std::size_t i = 0; i < found.size(); ++i) changes.row(static_cast<Eigen::Index>(i)) = found[i];
+  return changes;
 }
 
-RotationSlope rotation_slope(const std::vector<std::pair<double, double>>& pairs) {
-  const auto n = static_cast<double>(pairs.size());
-  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const auto& [force, angle] : pairs) x += force / n, y += angle / n;
-  for (const auto& [force, angle] : pairs) {
-    xx += (force - x) * (force - x);
-    xy += (force - x) * (angle - y);
-    yy += (angle - y) * (angle - y);
-  }
+// Of the second column on the first, beside the others: what an accelerometer and a bias have in common
+// through the temperature is no rotation.
+RotationSlope rotation_slope(Columns changes) {
+  const auto n = static_cast<double>(changes.rows());
+  changes.rowwise() -= changes.colwise().mean().eval();
+  Columns both = changes.leftCols(2);
+  if (changes.cols() > 2) Projection(changes.rightCols(changes.cols() - 2)).take_out_of(both);
+  const double xx = both.col(0).squaredNorm(), yy = both.col(1).squaredNorm();
+  const double xy = both.col(0).dot(both.col(1));
   if (!(xx > 0.0) || !(yy > 0.0)) return {};
   RotationSlope slope{xy / xx, xy / std::sqrt(xx * yy), 0.0};
   slope.gain = -n * std::log(std::max(1e-12, 1.0 - slope.correlation * slope.correlation));
@@ -82,15 +86,34 @@ RotationSlope rotation_slope(const std::vector<std::pair<double, double>>& pairs
 
 // Over the length at which it is clearest.
 RotationSlope clearest_slope(const BlockGrid& grid, const Eigen::VectorXd& force,
-                             const Eigen::VectorXd& angle) {
+                             const Eigen::VectorXd& follows, const Columns& temperatures) {
+  Columns columns(force.size(), 2 + temperatures.cols());
+  columns << force, follows, temperatures;
   RotationSlope best;
   for (std::size_t blocks = 1; blocks <= kLongestMean; blocks *= 2) {
-    const auto pairs = changes_of(grid, force, angle, blocks);
-    if (pairs.size() < kFewestChanges) break;
-    const RotationSlope slope = rotation_slope(pairs);
+    const Columns changes = changes_of(grid, columns, blocks);
+    if (changes.rows() < kFewestChanges) break;
+    const RotationSlope slope = rotation_slope(changes);
     if (slope.gain > best.gain) best = slope;
   }
   return best;
+}
+
+Columns temperatures_of(const BlockData& data) {
+  std::vector<std::size_t> found;
+  for (std::size_t c = 0; c < data.channels.size(); ++c)
+    if (kind_of(data.channels[c].name) == ChannelKind::kTemperature && data.channels[c].varies)
+      found.push_back(c);
+  Columns columns(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(found.size()));
+  for (std::size_t i = 0; i < found.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = column(data, ShapeSettings{}, found[i]);
+  return columns;
+}
+
+// In the channel's unit.
+double gravity_of(const std::string& channel) {
+  const std::string unit = unit_of(channel);
+  return unit == "g" ? 1.0 : unit == "mg" ? 1e3 : unit == "ug" ? 1e6 : kStandardGravity;
 }
 
 std::string tilt_in_words(const std::string& channel, const RotationSlope& slope, double gravity) {
@@ -115,15 +138,16 @@ std::string curve_in_words(const std::string& channel, const RotationSlope& slop
 }
 
 // One sentence where the acceleration is the sensor's own rotation; else empty.
-std::string look_at_acceleration(const BlockData& data, std::size_t c, const Eigen::VectorXd& angle) {
+std::string look_at_acceleration(const BlockData& data, std::size_t c, const Eigen::VectorXd& angle,
+                                 const Columns& temperatures) {
   const std::string& name = data.channels[c].name;
   const Eigen::VectorXd force = column(data, ShapeSettings{}, c);
-  const double gravity = unit_of(name) == "g" ? 1.0 : kStandardGravity;
-  const RotationSlope tilt = clearest_slope(data.grid, force, angle);
+  const double gravity = gravity_of(name);
+  const RotationSlope tilt = clearest_slope(data.grid, force, angle, temperatures);
   const double of_gravity = std::abs(tilt.value) * gravity;
   if (tilt.gain > kCertainSlope && of_gravity >= kLeastOfGravity && of_gravity <= kMostOfGravity)
     return tilt_in_words(name, tilt, gravity);
-  RotationSlope curve = clearest_slope(data.grid, force, data.grid.error);
+  RotationSlope curve = clearest_slope(data.grid, force, data.grid.error, temperatures);
   curve.value *= gravity / kStandardGravity;
   return curve.gain > kCertainSlope && std::abs(curve.value) >= kLeastOfCurve ? curve_in_words(name, curve)
                                                                               : "";
@@ -145,11 +169,12 @@ std::vector<std::string> mark_own_rotation(BlockData& data) {
   std::vector<std::string> said, motion;
   if (data.reference >= 0 || data.grid.dwells) return said;
   const Eigen::VectorXd angle = angles_of(data.grid);
+  const Columns temperatures = temperatures_of(data);
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     FineChannel& channel = data.channels[c];
     if (!channel.varies) continue;
     if (kind_of(channel.name) == ChannelKind::kAcceleration) {
-      std::string words = look_at_acceleration(data, c, angle);
+      std::string words = look_at_acceleration(data, c, angle, temperatures);
       channel.rotates = !words.empty();
       if (channel.rotates) said.push_back(std::move(words));
     } else if (kind_of(channel.name) == ChannelKind::kOther && tells_motion(channel.name)) {

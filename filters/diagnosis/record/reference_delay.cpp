@@ -20,8 +20,8 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/fractional_shift.h"
 #include "filters/diagnosis/record/record_clock.h"
+#include "filters/diagnosis/record/series_fit.h"
 #include "filters/diagnosis/record/table_turns.h"
-#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -40,11 +40,14 @@ using Series = std::vector<double>;
 // three.
 constexpr std::size_t kPartsOfDrift = 8;
 constexpr std::size_t kFewestOfDrift = 3;
+constexpr double kOfLine = 0.1;         // of the delays' scatter, at most, that a line through them leaves
+constexpr double kTold = 0.1;           // of a step: a delay that is known so well
 constexpr double kCertainDrift = 25.0;  // twice the log-likelihood that a drift has to gain
 
 struct Pair {
   Series rate, reference;
   std::vector<Series> beside;  // what repeats with a table's angle
+  Series without_jumps;        // the reference; empty: it has none
   double step_s = 0.0;
 };
 
@@ -76,8 +79,8 @@ std::optional<Pair> pair_of(const Record& record) {
     const std::size_t count = (rate.size() + kMost - 1) / kMost;
     pair.rate = means(rate, count);
     Samples reference = on_even_grid(record, period_s, record.reference_radps);
-    leave_out_jumps(reference, rate);  // a jump tells a delay to whole samples only, and loudly
     pair.reference = means(reference, count);
+    if (leave_out_jumps(reference, rate) > 0) pair.without_jumps = means(reference, count);
     for (const Samples& turn : turns_of(record, period_s)) pair.beside.push_back(means(turn, count));
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
@@ -145,43 +148,6 @@ Regressors regressors_at(const Series& reference, double scale, double steps, bo
   return out;
 }
 
-struct Fit {
-  Eigen::VectorXd coefficients;
-  double square = 0.0;  // that is left
-  double last_variance = 0.0;
-  std::size_t rows = 0;
-};
-
-// Least squares of the first column on the others, over the rows where none is missing in any of `all`.
-Fit least_squares(const std::vector<Series>& columns, const std::vector<std::uint8_t>& rows) {
-  const auto width = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(width, width);
-  Eigen::VectorXd row(width);
-  Fit fit;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!rows[i]) continue;
-    for (Eigen::Index c = 0; c < width; ++c) row[c] = columns[static_cast<std::size_t>(c)][i];
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(row);
-    ++fit.rows;
-  }
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-  const Eigen::Index p = width - 1;
-  const NormalEquations equations = NormalEquations::of_measured_first(gram);
-  fit.coefficients = equations.coefficients();
-  fit.square = std::max(gram(0, 0) - equations.explained(), 1e-12 * gram(0, 0));
-  const double freedom = std::max(1.0, static_cast<double>(fit.rows) - static_cast<double>(p));
-  fit.last_variance = fit.square / freedom * equations.inverse()(p - 1, p - 1);
-  return fit;
-}
-
-std::vector<std::uint8_t> complete_rows(const std::vector<Series>& columns) {
-  std::vector<std::uint8_t> rows(columns.front().size(), 1);
-  for (const Series& column : columns)
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (!std::isfinite(column[i])) rows[i] = 0;
-  return rows;
-}
-
 // Rate, powers of the reference, what is beside them, and last the slope.
 std::vector<Series> columns_of(const Pair& pair, const Regressors& regressors) {
   std::vector<Series> columns{pair.rate};
@@ -201,7 +167,7 @@ std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregre
 // Of the noise that is left where the reference is moved so. columns: the last is its slope.
 Autoregression noise_beside(const std::vector<Series>& columns) {
   const std::vector<Series> without(columns.begin(), columns.end() - 1);
-  const Fit plain = least_squares(without, complete_rows(without));
+  const SeriesFit plain = least_squares(without, complete_rows(without));
   Series left = columns.front();
   for (std::size_t p = 1; p < without.size(); ++p)
     for (std::size_t i = 0; i < left.size(); ++i)
@@ -228,7 +194,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
     const Autoregression noise = noise_beside(columns);
     const std::vector<Series> white = whitened(columns, noise);
     std::vector<std::uint8_t> rows = complete_rows(white);
-    const Fit fit = least_squares(white, rows);
+    const SeriesFit fit = least_squares(white, rows);
     const double of_reference = fit.coefficients[1] / scale;
     const double step = fit.coefficients[fit.coefficients.size() - 1] / of_reference;
     if (fit.rows < kLeast || !std::isfinite(step) || of_reference <= 0.0) return std::nullopt;
@@ -239,8 +205,8 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
       const std::vector<std::uint8_t> known = complete_rows(as_logged);
       for (std::size_t i = 0; i < rows.size(); ++i)
         if (!known[i]) rows[i] = 0;
-      const Fit with = least_squares(white, rows);
-      const Fit without = least_squares(as_logged, rows);
+      const SeriesFit with = least_squares(white, rows);
+      const SeriesFit without = least_squares(as_logged, rows);
       delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
       delay.noise = noise;
       delay.steps += step;  // what is settled to a part of a sample may be known to less
@@ -263,7 +229,7 @@ double price_of(const Pair& pair) {
 // turn, or nothing.
 std::optional<Delay> delay_of(const Pair& pair) {
   const double coarse = coarse_delay(pair);
-  const Pair bare{pair.rate, pair.reference, {}, pair.step_s};
+  const Pair bare{pair.rate, pair.reference, {}, {}, pair.step_s};
   const std::optional<Delay> alone = refined(bare, coarse);
   if (pair.beside.empty()) return alone;
   const std::optional<Delay> beside = refined(pair, coarse);
@@ -282,7 +248,7 @@ std::optional<Delay> delay_of(const Pair& pair) {
   const std::array<double, hypotheses.size()> prices{0.0, price, price, 2.0 * price};
   std::array<double, hypotheses.size()> score{};
   for (std::size_t h = 0; h < score.size(); ++h) {
-    const Fit fit = least_squares(white[h], rows);
+    const SeriesFit fit = least_squares(white[h], rows);
     score[h] = -static_cast<double>(fit.rows) * std::log(fit.square) - prices[h];
   }
   switch (std::max_element(score.begin(), score.end()) - score.begin()) {
@@ -295,12 +261,25 @@ std::optional<Delay> delay_of(const Pair& pair) {
   }
 }
 
+// A jump tells a delay to whole samples only, and loudly: where what lies between the jumps tells it to a
+// part of one, that is it. Where all motion is jumps, they are all there is.
+void settle_without_jumps(Pair& pair, Delay& delay) {
+  if (pair.without_jumps.empty()) return;
+  Pair smooth = pair;
+  smooth.reference = pair.without_jumps;
+  const std::optional<Delay> between = refined(smooth, delay.steps);
+  if (!between || !(between->error < kTold) || std::abs(between->steps - delay.steps) > 2.0) return;
+  delay.steps = between->steps;
+  delay.error = between->error;
+  pair.reference = pair.without_jumps;
+}
+
 Pair part_of(const Pair& pair, std::size_t from, std::size_t to) {
   const auto cut = [&](const Series& series) {
     return Series(series.begin() + static_cast<std::ptrdiff_t>(from),
                   series.begin() + static_cast<std::ptrdiff_t>(to));
   };
-  Pair part{cut(pair.rate), cut(pair.reference), {}, pair.step_s};
+  Pair part{cut(pair.rate), cut(pair.reference), {}, {}, pair.step_s};
   for (const Series& each : pair.beside) part.beside.push_back(cut(each));
   return part;
 }
@@ -310,7 +289,7 @@ Pair part_of(const Pair& pair, std::size_t from, std::size_t to) {
 // their mean.
 void find_drift(const Pair& pair, Delay& delay) {
   const std::size_t n = pair.rate.size();
-  double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0;
+  double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0, wyy = 0.0;
   std::size_t parts = 0;
   for (std::size_t k = 0; k < kPartsOfDrift; ++k) {
     const std::size_t from = k * n / kPartsOfDrift, to = (k + 1) * n / kPartsOfDrift;
@@ -320,14 +299,19 @@ void find_drift(const Pair& pair, Delay& delay) {
     if (!own || !(own->error > 0.0)) continue;
     const double weight = 1.0 / (own->error * own->error);
     const double x = 0.5 * static_cast<double>(from + to), y = own->steps;
-    ++parts, w += weight, wx += weight * x, wy += weight * y, wxx += weight * x * x, wxy += weight * x * y;
+    ++parts, w += weight, wx += weight * x, wy += weight * y;
+    wxx += weight * x * x, wxy += weight * x * y, wyy += weight * y * y;
   }
   const double spread = wxx - wx * wx / std::max(w, 1e-300);
   if (parts < kFewestOfDrift || !(spread > 0.0)) return;
   const double along = wxy - wx * wy / w;
   if (along * along / spread < kCertainDrift) return;
+  // The line has to be what it is: delays that go up and down are of something else.
+  const double about_mean = wyy - wy * wy / w, about_line = about_mean - along * along / spread;
+  if (about_line > kOfLine * about_mean) return;
   delay.drift = along / spread;
   delay.steps = (wy - delay.drift * wx) / w;  // at the record's beginning
+  delay.error = std::sqrt(wxx / (w * spread));
 }
 
 // By row of the record, the reference as it would have been without delay.
@@ -364,10 +348,11 @@ AlignedRecords align_references(const std::vector<Record>& records) {
   AlignedRecords aligned;
   aligned.records = records;
   for (Record& record : aligned.records) {
-    const std::optional<Pair> pair = pair_of(record);
+    std::optional<Pair> pair = pair_of(record);
     if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
     std::optional<Delay> delay = delay_of(*pair);
     if (!delay || delay->gain < price_of(*pair)) continue;
+    settle_without_jumps(*pair, *delay);
     find_drift(*pair, *delay);
     ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s, delay->drift};
     Samples& moved = aligned.references.emplace_back(moved_reference(record, found.delay_s, found.drift));

@@ -110,9 +110,17 @@ int highest_power(const Effect& effect) {
   return power_of(form == Form::kProduct ? form_named(effect.with_form).value_or(Form::kLinear) : form);
 }
 
+// Whose power is of the rate.
+bool is_of_rate(const Effect& effect) {
+  const std::string& of = effect.form == name_of(Form::kProduct) ? effect.with_channel : effect.channel;
+  return kind_of(of) == ChannelKind::kReferenceRate;
+}
+
 // By its tangent a square leaves as much again one span beyond its range as it did within. Where the
 // curvature is far above its error the form itself is the better guess; not beside higher powers of the same
-// channel, for then all of them are a series that ends somewhere.
+// channel, for then all of them are a series that ends somewhere. A cube is a law of the rate; of the
+// surroundings none is known, and there it is a series by itself (of a supply below which a regulator lets
+// go, three times the effect was left where the cube went on).
 void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effects) {
   const auto channels = [](const Effect& effect) {
     return std::array<std::string, 2>{effect.channel, effect.with_channel};
@@ -122,7 +130,9 @@ void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effect
     const int power = highest_power(effect);
     if (power < 2 || power > kHighestFollowed) continue;
     const bool series = std::any_of(effects.begin(), effects.end(), [&](const FoundEffect& other) {
-      return highest_power(other.effect) > kHighestFollowed && channels(other.effect) == channels(effect);
+      const int its = highest_power(other.effect);
+      return (its > kHighestFollowed || (its > 2 && !is_of_rate(other.effect))) &&
+             channels(other.effect) == channels(effect);
     });
     const ModelParameter& size = effect.parameters.front();
     if (series || !(std::abs(size.value) > kWellKnown * size.std_error)) continue;

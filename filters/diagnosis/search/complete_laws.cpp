@@ -196,7 +196,7 @@ bool complete_laws(const BlockData& data, const BlockData& reconstructed, Search
   }
   for (std::size_t i = 0; i < proven; ++i) {
     const Candidate& each = found.fitted[i];
-    if (!is_swing(each) || each.expected > 0.0 || each.first_reading != FirstReading::kError ||
+    if (!is_swing(each) || each.expected > 0.0 || each.first_reading == FirstReading::kEarthRateShown ||
         !(reconstructed.channels[each.channel].period > 0.0))
       continue;
     complete_swing(reconstructed, i, found);

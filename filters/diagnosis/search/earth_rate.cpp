@@ -17,6 +17,7 @@ constexpr double kGravity = 9.80665;    // m/s^2
 constexpr double kWithin = 2.0;         // standard errors
 constexpr double kOfGravity = 0.05;     // by which a resting triad may miss g: scale and mounting errors
 constexpr double kSteady = 0.2;         // change of the whole force over that of one of its parts
+constexpr double kLeftByTurn = 0.1;     // of once a turn, that may be twice a turn
 constexpr double kUndone = 0.5;         // share of an acceleration's square that the others may leave
 
 double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kGravity; }
@@ -110,17 +111,19 @@ OfHeading swing_of_turn(const BlockData& data, std::size_t channel, const Search
   return {std::sqrt(square), std::sqrt(doubt)};
 }
 
-double most_of_turn(const EarthRateOptions& options) {
-  return kEarth * (options.latitude_rad ? std::cos(*options.latitude_rad) : 1.0);
-}
-
-void read_turns(const BlockData& data, const EarthRateOptions& options, FirstReading reading,
-                SearchResult& found) {
+// However the turn's axis lies it meets no more than the whole of the Earth's rate. Of twice a turn it makes
+// nothing: that is what is left by the angle's own errors while it is small, and else an effect.
+void read_turns(const BlockData& data, FirstReading reading, SearchResult& found) {
+  Eigen::Index at = data.grid.constants();
   for (std::size_t i = 0; i < found.fitted.size(); ++i) {
-    if (!is_of_turn(data, found.fitted[i])) continue;
-    const OfHeading swing = swing_of_turn(data, found.fitted[i].channel, found);
-    if (!(swing.size > 0.0) || swing.size - kWithin * swing.error > most_of_turn(options)) continue;
-    found.fitted[i].first_reading = reading;
+    Candidate& mine = found.fitted[i];
+    const double coefficient = found.fitted_coefficients[at];
+    at += mine.width();
+    if (!is_of_turn(data, mine)) continue;
+    const OfHeading once = swing_of_turn(data, mine.channel, found);
+    if (!(once.size > 0.0) || once.size - kWithin * once.error > kEarth) continue;
+    if (!is_once_a_turn(data, mine) && std::abs(coefficient) > kLeftByTurn * once.size) continue;
+    mine.first_reading = reading;
     found.chosen[i].candidate.first_reading = reading;
   }
 }
@@ -165,7 +168,7 @@ double largest_earth_rate(const std::string& channel, const EarthRateOptions& op
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found) {
   const FirstReading reading =
       options.subtract ? FirstReading::kEarthRateSubtracted : FirstReading::kEarthRateShown;
-  read_turns(data, options, reading, found);
+  read_turns(data, reading, found);
   bool line = false;
   for (const bool first : {true, false}) {
     Eigen::Index at = data.grid.constants();
@@ -207,7 +210,7 @@ std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& o
     std::array<char, 160> line{};
     std::snprintf(line.data(), line.size(), "%.3g °/h once a turn of %s (at most %.3g)",
                   swing_of_turn(data, c, found).size / kDegreePerHour, data.channels[c].name.c_str(),
-                  most_of_turn(options) / kDegreePerHour);
+                  kEarth / kDegreePerHour);
     words += (words.empty() ? "" : " and ") + std::string(line.data());
   }
   if (words.empty()) return "";

@@ -182,7 +182,7 @@ std::optional<FittedModel> with_fringe(const BlockData& data, std::size_t first,
       std::erase_if(base, [&](const Candidate& each) {
         return at++ >= first && instead > 0 && spells(each, channel, instead == 2);
       });
-      if (instead > 0 && base.size() == model.effects.size()) break;
+      if (instead > 0 && base.size() == model.effects.size()) continue;
       const NoiseFit without =
           instead == 0 ? model.noise : fit_noise(data.grid, design(data, base), model.noise.shape);
       FittedModel trial = fitted(data, base, without.shape, channel);

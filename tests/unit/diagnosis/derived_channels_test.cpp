@@ -203,5 +203,40 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   EXPECT_EQ(found.effects.size(), 3U);
 }
 
+// Two axes that cone, all references late by a tenth of a second: neither axis is given a part of the other.
+TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
+  constexpr std::size_t n = 20000;
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal;
+  const auto x = [](double t) { return 0.4 * std::sin(1.3 * t); };
+  const auto y = [](double t) { return 0.4 * std::cos(1.3 * t) + 0.2 * std::sin(0.31 * t); };
+  std::vector<double> time, x_rate, y_rate, x_late, y_late;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = 0.02 * static_cast<double>(i);
+    time.push_back(t);
+    x_rate.push_back(x(t) * (1.0 + 1e-4) + 2e-3 * y(t) + 1e-6 * normal(random));
+    y_rate.push_back(y(t) + 1e-6 * normal(random));
+    x_late.push_back(x(t - 0.1));
+    y_late.push_back(y(t - 0.1));
+  }
+  Record record;
+  record.name = "cone";
+  record.time_s = time;
+  record.rate_radps = x_rate;
+  record.reference_radps = x_late;
+  record.other_axes = {{"rate_y_radps", y_rate}};
+  record.other_references = {y_late};
+  const Diagnosis found = diagnose({record}, {});
+  for (const FoundEffect& each : found.effects) {
+    const ModelParameter& coefficient = each.effect.parameters.at(0);
+    if (each.effect.channel == "rate_y_radps") {
+      EXPECT_NEAR(coefficient.value, 2e-3, 5e-6);
+    } else if (each.effect.channel == "reference_rate_radps" && each.effect.form == "linear") {
+      EXPECT_NEAR(coefficient.value, 1e-4, 5e-6);
+    }
+  }
+  EXPECT_GE(found.effects.size(), 2U);
+}
+
 }  // namespace
 }  // namespace ifog

@@ -125,6 +125,17 @@ TEST(Laws, AWellKnownTurningPointIsFollowedBeyondItsRange) {
   EXPECT_LT(left_of(found, make(9, 0.0, 9.0, false, law)), 0.15) << "the second capture is warmer";
 }
 
+// No law of the surroundings is a cube: what one stands for within the range, as a supply below which a
+// regulator lets go, goes on by its tangent at most.
+TEST(Laws, ACubeOfTheSurroundingsIsNotFollowedBeyondItsRange) {
+  const auto law = [](double, double, double, double supply) { return 4e-5 * std::pow(supply - 12.0, 3); };
+  const Diagnosis found = diagnose({make(10, kWhite, 0.0, false, law).record()}, {});
+  const auto cube = std::find_if(found.effects.begin(), found.effects.end(),
+                                 [](const FoundEffect& each) { return each.effect.form == "cubic"; });
+  ASSERT_NE(cube, found.effects.end()) << all_in_words(found);
+  EXPECT_EQ(parameter(cube->effect, "curve_reach"), 0.0);
+}
+
 // At 12.3 V, the middle of what it saw, the scale factor is right: alone neither of the two shows.
 TEST(Laws, AScaleFactorIsRightAtASupplyNobodyKnows) {
   const auto law = [](double, double turn, double, double supply) { return 3e-6 * turn * (supply - 12.3); };

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "filters/diagnosis/diagnose.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -172,6 +173,47 @@ TEST(OwnRotation, OfTheEarthIsShownOverATurnOfHeadings) {
         EXPECT_LT(left, 0.1);
     }
   }
+}
+
+// The Earth makes nothing twice a turn: what is larger there than once a turn is an error.
+TEST(OwnRotation, OfTheEarthIsNotTwiceATurn) {
+  Ship finder(14, 0.0);
+  std::vector<double> heading;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double at = 30.0 * std::floor(finder.time[i] / 50.0);
+    heading.push_back(std::fmod(at, 360.0));
+    finder.rate[i] += 2e-6 * std::cos(at * M_PI / 180.0) + 5e-5 * std::cos((2.0 * at + 40.0) * M_PI / 180.0);
+  }
+  Record record = finder.record();
+  record.channels = {{"table_angle_deg", heading}};
+  const Diagnosis found = diagnose({record}, {});
+  EXPECT_LT(found.after.at("rms_10s_radps"), 0.1 * found.before.at("rms_10s_radps"));
+}
+
+// Where a bias follows the change of a temperature, the angle turned follows the temperature, and so does an
+// accelerometer that drifts with it: neither tilts.
+TEST(OwnRotation, IsNotWhatATemperatureDoesToBoth) {
+  Ship still(15, 0.0);
+  std::vector<double> temperature;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double t = still.time[i];
+    temperature.push_back(25.0 + 5.0 * std::sin(2.0 * M_PI * t / 400.0));
+    still.rate[i] += 3e-5 * 5.0 * 2.0 * M_PI / 400.0 * std::cos(2.0 * M_PI * t / 400.0);
+    still.across[i] += 2e-3 * (temperature.back() - 25.0);
+  }
+  Record record = still.record();
+  record.channels.push_back({"temperature_degC", temperature});
+  BlockData data = cut_to_blocks({record});
+  EXPECT_TRUE(mark_own_rotation(data).empty());
+}
+
+TEST(OwnRotation, IsToldByNamesOfWhatCarriesTheSensor) {
+  for (const char* name : {"speed_mps", "vehicle_speed_kmh", "motor_rpm", "wheel_rpm", "steering_deg",
+                           "curvature_permm", "gimbal_rate_degps"})
+    EXPECT_TRUE(tells_motion(name)) << name;
+  for (const char* name : {"compressor_rpm", "cooler_rpm", "fan_rpm", "coolant_flow_mps", "wind_speed_mps",
+                           "motor_A", "temp_air_degC", "valve_open", "fan_speed_mps", "supply_V"})
+    EXPECT_FALSE(tells_motion(name)) << name;
 }
 
 }  // namespace

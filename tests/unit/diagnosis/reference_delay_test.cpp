@@ -240,6 +240,37 @@ TEST(ReferenceDelay, WhereTheReferenceJumpsNothingIsSaidOfTheRate) {
   EXPECT_LT(missing, 400U);
 }
 
+// A table that goes from level to level at once, or as fast as its motor can: its jumps and corners are all
+// that tells a delay.
+TEST(ReferenceDelay, IsToldWhereAllMotionIsJumps) {
+  for (const double ramp_s : {0.0, 0.5}) {
+    const auto level = [](double at) {
+      return 0.2 * (static_cast<double>(static_cast<int>(at) * 7 % 5) - 2.0);
+    };
+    const auto stepping = [&](double t) {
+      const double at = std::max(t, 0.0) / 20.0,
+                   share = ramp_s > 0.0 ? (at - std::floor(at)) * 20.0 / ramp_s : 1.0;
+      return at < 1.0 ? level(at) : level(at - 1.0) + std::min(1.0, share) * (level(at) - level(at - 1.0));
+    };
+    const Logged logged(24, 0.5, stepping);
+    const AlignedRecords aligned = align_references({logged.record});
+    ASSERT_EQ(aligned.delays.size(), 1U) << ramp_s;
+    EXPECT_NEAR(aligned.delays[0].delay_s, 0.5, kStep_s) << ramp_s << ", of a step no more can be told";
+  }
+}
+
+// A sine is smooth however fast: none of it is a jump.
+TEST(ReferenceDelay, WhatIsFastButSmoothIsNotLeftOut) {
+  const auto fast = [](double t) {
+    return std::fmod(t, 60.0) < 15.0 ? 0.5 * std::pow(std::sin(M_PI * t / 15.0), 2) * std::sin(7.0 * t)
+                                     : turning(t) * 0.0;
+  };
+  const Logged logged(25, 0.037, fast);
+  const AlignedRecords aligned = align_references({logged.record});
+  ASSERT_EQ(aligned.delays.size(), 1U);
+  EXPECT_EQ(aligned.remarks[0].find("jumps"), std::string::npos) << aligned.remarks[0];
+}
+
 TEST(FractionalShift, MovesASineAsTheClosedFormDoes) {
   std::vector<double> sine;
   for (int k = 0; k < 400; ++k) sine.push_back(std::sin(0.9 * k));

@@ -41,5 +41,26 @@ TEST(Switches, AreToldThoughTheirLevelsAreReadWithNoise) {
   EXPECT_FALSE(is_switch("housing_degC", [&](double t) { return 25.0 + on(t); }));
 }
 
+// A humidity that stood at one set point in one capture and at another in the next is no switch.
+TEST(Switches, AreWithinOneCapture) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  std::vector<double> time, rate, dry, damp;
+  for (std::size_t i = 0; i < 4000; ++i) {
+    time.push_back(0.125 * static_cast<double>(i));
+    rate.push_back(1e-6 * normal(random));
+    dry.push_back(30.0 + 1.5 * std::sin(0.01 * time.back()));
+    damp.push_back(dry.back() + 40.0);
+  }
+  Record one, other;
+  one.name = "dry";
+  other.name = "damp";
+  one.time_s = other.time_s = time;
+  one.rate_radps = other.rate_radps = rate;
+  one.channels = {{"humidity_percent", dry}};
+  other.channels = {{"humidity_percent", damp}};
+  EXPECT_FALSE(cut_to_blocks({one, other}).channels.at(0).two_valued);
+}
+
 }  // namespace
 }  // namespace ifog

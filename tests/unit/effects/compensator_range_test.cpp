@@ -57,6 +57,20 @@ TEST(Compensator, WhatRepeatsWithAnAngleIsHeldAtTheNearerEndOfItsArc) {
   }
 }
 
+// A fringe of a temperature is a law, and no angle: beyond its range it goes on for as much again, is held
+// from there, and says so.
+TEST(Compensator, AFringeGoesOnForOneMoreSpan) {
+  Model model = fitted_from_10_to_40("cosine", 1e-6, 0.0);
+  model.effects[0].period = 7.0;
+  Compensator compensator(model, {""});
+  for (const double t : {12.0, 39.0, 45.0, 69.0, 85.0, -15.0, -30.0}) {
+    const auto out = step(compensator, 0.0, {t});
+    const double followed = std::clamp(t, -20.0, 70.0) - 25.0;
+    EXPECT_NEAR(out.correction_radps[0], 1e-6 * std::cos(2.0 * M_PI * followed / 7.0), 1e-15) << t;
+    EXPECT_EQ(out.flags, t < 10.0 || t > 40.0 ? static_cast<std::uint32_t>(kOutOfRange) : 0U) << t;
+  }
+}
+
 TEST(Compensator, AHigherPowerGoesOnByItsTangent) {
   Compensator compensator(fitted_from_10_to_40("cubic", 1e-8, 0.0), {""});
   const auto out = step(compensator, 0.0, {50.0});
