@@ -126,6 +126,19 @@ TEST(ReferenceDelay, TheDiagnosisIsThatOfTheShiftedReference) {
   EXPECT_LT(diagnosis.after.at("residual_rms_radps"), 1.1e-3);
 }
 
+// The columns outlive it.
+Record on_a_table(const std::vector<double>& time, const std::vector<double>& measured,
+                  const std::vector<double>& reference, const std::vector<double>& table) {
+  Record record;
+  record.name = "table";
+  record.time_s = time;
+  record.rate_radps = measured;
+  record.reference_radps = reference;
+  record.channels.push_back({"table_rad", table});
+  record.channels.back().period = 2.0 * M_PI;
+  return record;
+}
+
 // A table that swings over an arc, so that the change of its rate runs against its angle. What comes once a
 // turn looks like a late reference there, and a late reference like that: each, both and neither.
 TEST(ReferenceDelay, IsToldFromWhatRepeatsWithTheTablesAngle) {
@@ -146,13 +159,7 @@ TEST(ReferenceDelay, IsToldFromWhatRepeatsWithTheTablesAngle) {
           measured.push_back(rate(t) + turn * std::cos(angle(t) - 1.0) + 1e-6 * normal(random));
           reference.push_back(rate(t - delay_s));
         }
-        Record record;
-        record.name = "table";
-        record.time_s = time;
-        record.rate_radps = measured;
-        record.reference_radps = reference;
-        record.channels.push_back({"table_rad", table});
-        record.channels.back().period = 2.0 * M_PI;
+        const Record record = on_a_table(time, measured, reference, table);
         const AlignedRecords aligned = align_references({record});
         ASSERT_EQ(aligned.delays.size(), delay_s > 0.0 ? 1U : 0U) << second << ' ' << delay_s << ' ' << turn;
         if (aligned.delays.empty()) continue;
@@ -184,13 +191,7 @@ TEST(ReferenceDelay, ATurnOfWhichReadingsAreMissingIsNoDelay) {
       measured.push_back(rate + 3e-6 * std::sin(angle) + 1e-6 * normal(random));
       reference.push_back(rate);
     }
-    Record record;
-    record.name = "table";
-    record.time_s = time;
-    record.rate_radps = measured;
-    record.reference_radps = reference;
-    record.channels.push_back({"table_rad", table});
-    record.channels.back().period = 2.0 * M_PI;
+    const Record record = on_a_table(time, measured, reference, table);
     EXPECT_TRUE(align_references({record}).delays.empty()) << seed;
   }
 }
