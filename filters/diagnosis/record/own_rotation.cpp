@@ -18,13 +18,11 @@ constexpr std::size_t kLongestMean = 64;
 // Twice the log-likelihood that the slope has to gain, the lengths tried and a swing's few independent
 // periods included.
 constexpr double kCertainSlope = 60.0;
-// Of 1/g, the slope of a tilt about the sensor's own axis. Below the first it might be an error (0.003 of 1/g
-// is 60 deg/h for a change of 1 m/s^2 each second), above the second it is no tilt.
-constexpr double kLeastOfGravity = 0.003, kMostOfGravity = 2.0;
-
-// Of the rate, rad/s for 1 m/s^2, from where it is a curve's and no error: 2000 deg/h for 1 g. Of gyros that
-// are sensitive to acceleration the worst have a tenth of it.
-constexpr double kLeastOfCurve = 1e-3;
+// Of 1/g, the slope of a tilt about the sensor's own axis, which an accelerometer's noise makes smaller;
+// above the second it is no tilt. And the angle's changes have to be a tilt's for the most part: what an
+// acceleration does to a bias through a lag is in phase with its swing as well, a little.
+constexpr double kLeastOfGravity = 0.03, kMostOfGravity = 2.0;
+constexpr double kLeastCorrelation = 0.6;
 
 struct RotationSlope {
   double value = 0.0, correlation = 0.0;
@@ -127,16 +125,6 @@ std::string tilt_in_words(const std::string& channel, const RotationSlope& slope
   return text.data();
 }
 
-std::string curve_in_words(const std::string& channel, const RotationSlope& slope) {
-  std::array<char, 400> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "%s goes with the rate as in a curve, at %.2g m/s (correlation %.2f). That is rotation and stays in "
-      "the rate; without a reference rate no error is traced to %s",
-      channel.c_str(), 1.0 / std::abs(slope.value), std::abs(slope.correlation), channel.c_str());
-  return text.data();
-}
-
 // One sentence where the acceleration is the sensor's own rotation; else empty.
 std::string look_at_acceleration(const BlockData& data, std::size_t c, const Eigen::VectorXd& angle,
                                  const Columns& temperatures) {
@@ -145,12 +133,9 @@ std::string look_at_acceleration(const BlockData& data, std::size_t c, const Eig
   const double gravity = gravity_of(name);
   const RotationSlope tilt = clearest_slope(data.grid, force, angle, temperatures);
   const double of_gravity = std::abs(tilt.value) * gravity;
-  if (tilt.gain > kCertainSlope && of_gravity >= kLeastOfGravity && of_gravity <= kMostOfGravity)
-    return tilt_in_words(name, tilt, gravity);
-  RotationSlope curve = clearest_slope(data.grid, force, data.grid.error, temperatures);
-  curve.value *= gravity / kStandardGravity;
-  return curve.gain > kCertainSlope && std::abs(curve.value) >= kLeastOfCurve ? curve_in_words(name, curve)
-                                                                              : "";
+  const bool tilts = tilt.gain > kCertainSlope && std::abs(tilt.correlation) >= kLeastCorrelation &&
+                     of_gravity >= kLeastOfGravity && of_gravity <= kMostOfGravity;
+  return tilts ? tilt_in_words(name, tilt, gravity) : "";
 }
 
 std::string motion_in_words(const std::vector<std::string>& channels) {

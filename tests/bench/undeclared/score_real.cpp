@@ -115,11 +115,11 @@ Recordings recordings(const std::string& folder) {
     out.sources.push_back({"rlg_vehicle " + vehicle.axes[a], undisturbed});
   }
   for (std::size_t a = 0; a < 3; ++a)
-    out.columns.emplace_back("turning_" + turned.axes[a] + "_radps", resampled(turned, turned.rate_radps[a]));
+    out.columns.emplace_back("flow_" + turned.axes[a] + "_lpm", resampled(turned, turned.rate_radps[a]));
   for (const ifog::CaptureColumn& c : vehicle.channels)
     out.columns.emplace_back(c.name, resampled(vehicle, c.values));
   out.columns.emplace_back("temperature_degC", table.channels[0].values);
-  out.columns.emplace_back("table_rate_radps", table.reference_rate_radps[0]);
+  out.columns.emplace_back("flow_lpm", table.reference_rate_radps[0]);
   out.columns.emplace_back("other_gyro", low_passed(wander, 60.0, kStep_s));
   return out;
 }
