@@ -89,8 +89,8 @@ struct ReferenceDelay {
   std::string record;
   double delay_s = 0.0;  // below zero: early, or the rate late
   double std_error_s = 0.0;
-  double drift =
-      0.0;  // s by which it grows each second, of a clock of its own; delay_s is the first one then
+  // s by which it grows each second, of a clock of its own; delay_s is that at the record's beginning then.
+  double drift = 0.0;
 };
 
 // Of a channel that was logged late: what it says at a time was so delay_s before.

@@ -79,11 +79,10 @@ std::string of_angle(const Effect& effect) {
 }
 
 std::string of_fringe(const Effect& effect) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "fringe: light of a second path interferes, and the bias swings once for every %.3g %s",
-                effect.period, unit_of(effect.channel).c_str());
-  return text.data();
+  std::array<char, 32> period{};
+  std::snprintf(period.data(), period.size(), "%.3g ", effect.period);
+  return std::string("fringe: light of a second path interferes, and the bias swings once for every ") +
+         period.data() + unit_of(effect.channel);
 }
 
 std::string of_temperature(Form form) {

@@ -37,7 +37,8 @@ struct Effect {
   double with_reference = 0.0;  // "product": likewise of with_channel
   std::vector<ModelParameter> parameters;
   std::vector<double> table_x, table_y;  // "lookup": knots in the channel's unit, values in rad/s
-  double period = 0.0;  // "lookup": > 0 when periodic; "cosine", "sine": of the channel, an angle
+  double period =
+      0.0;  // "lookup": > 0 when periodic; "cosine", "sine": of the channel, an angle or a temperature
   // "lookup": the table is an angle in rad and the effect its difference from sample to sample over dt. A
   // bounded angle cannot swallow rotation, so this is the only kind allowed on channels that themselves
   // follow the rate.

@@ -30,10 +30,6 @@ Kernel kernel_at(double fraction) {
   return kernel;
 }
 
-}  // namespace
-
-namespace {
-
 double value_at(std::span<const double> values, std::ptrdiff_t i) {
   return i >= 0 && i < static_cast<std::ptrdiff_t>(values.size()) ? values[static_cast<std::size_t>(i)]
                                                                   : std::numeric_limits<double>::quiet_NaN();

@@ -114,15 +114,15 @@ double gravity_of(const std::string& channel) {
   return unit == "g" ? 1.0 : unit == "mg" ? 1e3 : unit == "ug" ? 1e6 : kStandardGravity;
 }
 
+// A column's name may be of any length.
 std::string tilt_in_words(const std::string& channel, const RotationSlope& slope, double gravity) {
-  std::array<char, 400> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "%s tells how the sensor itself tilts: the angle turned changes with it by %.2g of what gravity "
-      "gives (correlation %.2f). That is rotation and stays in the rate; without a reference rate no "
-      "error is traced to %s",
-      channel.c_str(), std::abs(slope.value) * gravity, std::abs(slope.correlation), channel.c_str());
-  return text.data();
+  std::array<char, 64> figures{};
+  std::snprintf(figures.data(), figures.size(), "%.2g of what gravity gives (correlation %.2f)",
+                std::abs(slope.value) * gravity, std::abs(slope.correlation));
+  return channel + " tells how the sensor itself tilts: the angle turned changes with it by " +
+         figures.data() +
+         ". That is rotation and stays in the rate; without a reference rate no error is traced to " +
+         channel;
 }
 
 // One sentence where the acceleration is the sensor's own rotation; else empty.
@@ -144,8 +144,7 @@ std::string motion_in_words(const std::vector<std::string>& channels) {
     list += (i == 0 ? "" : i + 1 == channels.size() ? " and " : ", ") + channels[i];
   return list + (channels.size() == 1 ? " tells" : " tell") +
          " how the sensor is moved: what goes with that may be rotation and stays in the rate; without a "
-         "reference "
-         "rate no error is traced there";
+         "reference rate no error is traced there";
 }
 
 }  // namespace

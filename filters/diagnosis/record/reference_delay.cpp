@@ -330,16 +330,15 @@ Samples moved_reference(const Record& record, double delay_s, double drift) {
 }
 
 std::string in_words(const ReferenceDelay& delay, const std::string& name, bool several) {
-  std::array<char, 320> text{};
   const double late = delay.delay_s;
-  std::snprintf(text.data(), text.size(), "%s%s%s%s logged %.4g s %s (+-%.2g): shifted", name.c_str(),
-                several ? " (" : "", several ? delay.record.c_str() : "", several ? ")" : "", std::abs(late),
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), " logged %.4g s %s (+-%.2g): shifted", std::abs(late),
                 late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
-  if (delay.drift == 0.0) return text.data();
-  std::array<char, 160> drift{};
-  std::snprintf(drift.data(), drift.size(), ", by a clock of its own that runs %.3g ppm %s",
+  std::string words = name + (several ? " (" + delay.record + ")" : "") + text.data();
+  if (delay.drift == 0.0) return words;
+  std::snprintf(text.data(), text.size(), ", by a clock of its own that runs %.3g ppm %s",
                 1e6 * std::abs(delay.drift), delay.drift > 0.0 ? "slow" : "fast");
-  return std::string(text.data()) + drift.data();
+  return words + text.data();
 }
 
 }  // namespace

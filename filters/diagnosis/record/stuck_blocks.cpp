@@ -43,11 +43,11 @@ std::vector<std::string> leave_out_stuck(const std::vector<StuckStretch>& stuck,
     });
     const auto blocks = static_cast<double>(grid.records[stretch.record].size());
     if (!used || length_s > kMostStuck * blocks * grid.block_s || !leave_out(stretch, grid)) continue;
-    std::array<char, 240> text{};
-    std::snprintf(text.data(), text.size(),
-                  "what %s was while it was stuck is not known: effects were fitted without these %.4g s",
-                  stretch.channel.c_str(), length_s);
-    said.emplace_back(text.data());
+    std::array<char, 32> length{};
+    std::snprintf(length.data(), length.size(), "%.4g s", length_s);
+    said.push_back("what " + stretch.channel +
+                   " was while it was stuck is not known: effects were fitted without these " +
+                   length.data());
   }
   return said;
 }

@@ -2,6 +2,7 @@
 #include "filters/diagnosis/report/left_out.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace ifog {
@@ -34,20 +35,16 @@ std::string judged_beside(std::size_t harmonics) {
 }
 
 std::string delay_in_words(const ChannelDelay& delay) {
-  std::array<char, 240> text{};
-  if (delay.delay_s < 0.0) {
-    std::snprintf(text.data(), text.size(),
-                  "what %s says acts %.3g s later (+-%.2g), as of a channel that is logged early: the model "
-                  "says so, and the daemon waits as long with it",
-                  delay.channel.c_str(), -delay.delay_s, delay.std_error_s);
-    return text.data();
-  }
-  std::snprintf(
-      text.data(), text.size(),
-      "%s logged %.3g s late (+-%.2g): its effects were sought as if it were not. The daemon has it no "
-      "sooner, so the correction that is written and judged is late by as much",
-      delay.channel.c_str(), delay.delay_s, delay.std_error_s);
-  return text.data();
+  std::array<char, 64> by{};
+  std::snprintf(by.data(), by.size(), delay.delay_s < 0.0 ? "%.3g s later (+-%.2g)" : "%.3g s late (+-%.2g)",
+                std::abs(delay.delay_s), delay.std_error_s);
+  if (delay.delay_s < 0.0)
+    return "what " + delay.channel + " says acts " + by.data() +
+           ", as of a channel that is logged early: the model says so, and the daemon waits as long with it";
+  return delay.channel + " logged " + by.data() +
+         ": its effects were sought as if it were not. The daemon has it no sooner, so the correction that "
+         "is "
+         "written and judged is late by as much";
 }
 
 }  // namespace ifog

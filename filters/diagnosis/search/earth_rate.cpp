@@ -187,6 +187,16 @@ void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, 
   }
 }
 
+namespace {
+
+std::string in_figures(const char* format, double value) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+}  // namespace
+
 std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& options,
                                 const SearchResult& found) {
   std::string words;
@@ -197,21 +207,18 @@ std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& o
     if (each.first_reading == FirstReading::kError || order_of(data, each) != 1) continue;
     const std::string& name = data.channels[each.channel].name;
     const double scale = gravity_in(name) / kDegreePerHour;
-    std::array<char, 160> line{};
-    std::snprintf(line.data(), line.size(), "%.3g °/h per g of %s (at most %.3g)", coefficient * scale,
-                  name.c_str(), largest_earth_rate(name, options) * scale);
-    words += (words.empty() ? "" : " and ") + std::string(line.data());
+    words += (words.empty() ? "" : " and ") + in_figures("%.3g °/h per g of ", coefficient * scale) + name +
+             in_figures(" (at most %.3g)", largest_earth_rate(name, options) * scale);
   }
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const bool read = std::any_of(found.fitted.begin(), found.fitted.end(), [&](const Candidate& each) {
       return each.channel == c && is_once_a_turn(data, each) && each.first_reading != FirstReading::kError;
     });
     if (!read) continue;
-    std::array<char, 160> line{};
-    std::snprintf(line.data(), line.size(), "%.3g °/h once a turn of %s (at most %.3g)",
-                  swing_of_turn(data, c, found).size / kDegreePerHour, data.channels[c].name.c_str(),
-                  kEarth / kDegreePerHour);
-    words += (words.empty() ? "" : " and ") + std::string(line.data());
+    words += (words.empty() ? "" : " and ") +
+             in_figures("%.3g °/h once a turn of ", swing_of_turn(data, c, found).size / kDegreePerHour) +
+             data.channels[c].name +
+             in_figures(" (at most %.3g; a magnetic field would make it as well)", kEarth / kDegreePerHour);
   }
   if (words.empty()) return "";
   return words + " is what the Earth's rate makes in a gyro that is turned or tilts: that is rotation, " +

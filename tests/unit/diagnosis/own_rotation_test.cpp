@@ -63,6 +63,18 @@ TEST(OwnRotation, IsToldByTheAccelerationAcrossIt) {
   }
 }
 
+TEST(OwnRotation, IsSaidWholeHoweverLongTheColumnsName) {
+  const Ship ship(7, 0.02);
+  Record record = ship.record();
+  std::string name;
+  for (int i = 0; i < 300; ++i) name += "\u00fc";
+  record.channels[1].name = name + "_accel_mps2";
+  BlockData data = cut_to_blocks({record});
+  const std::vector<std::string> said = mark_own_rotation(data);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_TRUE(said[0].ends_with("no error is traced to " + record.channels[1].name));
+}
+
 TEST(OwnRotation, IsKnownWhereAReferenceStandsBeside) {
   const Ship ship(7, 0.02);
   BlockData data = cut_to_blocks({ship.record(true)});

@@ -312,6 +312,8 @@ std::string diagnosis_report(const std::vector<CaptureView>& captures,
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
     const std::vector<Record> records = records_of(captures, names, index);
     derived.push_back(with_differences(records));
+    // Drawn as they were measured: what the fit takes out of them is no line's width.
+    for (Record& record : derived.back().records) record.other_references.clear();
     along.push_back(with_other_axes(derived.back().records));
     axis.records = along.back().records;
     page.axes.push_back(std::move(axis));
