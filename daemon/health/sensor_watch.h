@@ -6,8 +6,7 @@
 // what the sensor itself has shown in its first hours at rest:
 //
 //   noise    the mean square of the innovations: is it usual that a block's is over 1.5 times what it was?
-//   colour   neighbouring innovations: is it usual that their correlation is off by 0.1 (or five standard
-//   errors)?
+//   colour   neighbouring innovations: is it usual that their correlation is off by 0.1 (or five standard errors)?
 //            And the block means, in the innovations of their own level: does each follow the one before?
 //   bias     block means: have they stepped?
 //   range    more than half of the samples of ten minutes were outside the range of the model's channels

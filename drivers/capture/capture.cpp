@@ -49,9 +49,7 @@ CaptureShape capture_shape(const std::vector<std::string>& names, const std::str
   for (const std::string& name : names)
     if (axis_of(name, "rate", axis)) shape.axes.push_back(axis);
   if (shape.axes.empty()) {
-    std::vector<std::string> all{"time_s"};
-    all.insert(all.end(), names.begin(), names.end());
-    refuse_header(path, notes.header_line, "no rate column, expected 'rate_radps' or 'rate_x_radps', …", all);
+    fail_at(path, notes.header_line, "no rate column, expected 'rate_radps' or 'rate_x_radps', …");
   }
   const auto index_of = [&](const std::string& name) {
     for (std::size_t i = 0; i < shape.axes.size(); ++i)

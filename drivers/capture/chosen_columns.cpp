@@ -10,6 +10,7 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 #include "drivers/ifog/turn.h"
 
 namespace ifog {
@@ -51,6 +52,21 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   }
 }
 
+// The correlation of neighbours is that of the differences of white values, -1/2, within a tenth: what an
+// angle turned is lost in what each value has for itself.
+bool undo_each_other(const std::vector<double>& rate) {
+  constexpr std::size_t kFew = 100;
+  double squares = 0.0, products = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < rate.size(); ++i) {
+    if (std::isnan(rate[i]) || std::isnan(rate[i - 1])) continue;
+    squares += rate[i] * rate[i];
+    products += rate[i] * rate[i - 1];
+    ++count;
+  }
+  return count >= kFew && products < -0.45 * squares;
+}
+
 // In which the sensor collects an increment, whenever its rows came: the median of the steps between them.
 double period_of(const std::vector<double>& time_s, const ExactSteps& steps) {
   std::vector<double> between;
@@ -70,28 +86,20 @@ UnitConversion conversion_of(const CsvColumn& column) {
   return convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
 }
 
-void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
-             const std::string& path, std::size_t first_row, double time_before) {
+void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps) {
   const double unit_s = layout.time.value_or(CsvTime{}).unit_s;
   const double units_a_second = std::round(1.0 / unit_s);
-  if (layout.time)
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      double& now = rows.time_s[row];
+  if (unit_s != 1.0)
+    for (double& now : rows.time_s)
       // What is 0.01 s in every unit comes out so.
       now = units_a_second > 1.0 ? steps.nearest(now / units_a_second) : now * unit_s;
-      // Two numbers that differ by their last digit may be one in seconds.
-      if (first_row + row > 0 && now <= time_before)
-        fail_at(path, notes.line_of_row(first_row + row),
-                printable(layout.time->header) + " is the same as in the row before, once it is in seconds");
-      time_before = now;
-    }
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const UnitConversion conversion = conversion_of(layout.columns[i]);
     for (double& value : rows.columns[i]) value = value * conversion.scale + conversion.offset;
   }
 }
 
-void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
+void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
               const std::string& path) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const CsvColumn& column = layout.columns[i];
@@ -102,6 +110,11 @@ void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, c
       for (double& value : values) value /= period_s;
     } else {
       differentiate(values, all.time_s, steps);
+      if (undo_each_other(values))
+        notes.notices.push_back(
+            path + ": differences of " + printable(column.header) +
+            " undo each other, as those of increments do; if each value is the turn within a sample: " +
+            option_for(column, column.unit + "/sample"));
     }
     // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
     for (std::size_t row = 0; row < values.size(); ++row)
@@ -119,12 +132,19 @@ void WholeTimes::take(const std::vector<double>& time_s) {
   whole = whole && std::all_of(time_s.begin(), time_s.end(), [](double t) { return t == std::floor(t); });
 }
 
-std::optional<std::string> WholeTimes::notice(const std::string& path) const {
+std::optional<std::string> WholeTimes::notice(const std::string& path, const CsvTime& time,
+                                              bool unit_known) const {
   constexpr std::size_t kFew = 10;
-  if (rows < kFew || !whole) return std::nullopt;
+  if (rows < kFew || !whole || (time.unit_s != 1.0)) return std::nullopt;
   const double step = (last_s - first_s) / static_cast<double>(rows - 1);
-  return path + ": time_s is whole numbers, " + shortest(step) +
-         " s apart in the mean; if these are milliseconds: --time time_s:ms";
+  const std::string name = printable(time.header);
+  if (step == 1.0 && (time.header != "time_s" || !unit_known))
+    return path + ": " + name +
+           " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
+           "count: --sample-rate HZ";
+  if (unit_known || time.told) return std::nullopt;
+  return path + ": " + name + " is whole numbers, " + shortest(step) +
+         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
 }
 
 }  // namespace ifog

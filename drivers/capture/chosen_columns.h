@@ -18,25 +18,26 @@ namespace ifog {
 UnitConversion conversion_of(const CsvColumn& column);
 
 // From the file's units to those of a capture, but for angles, which stay in rad and become rates by
-// as_rates(). first_row: of the block in the file; time_before: of the row before it, converted, where there
-// is one. Throws std::runtime_error with one line.
-// steps: between the times of the block.
-void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
-             const std::string& path, std::size_t first_row, double time_before);
+// as_rates(). steps: between the times of the block.
+void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps);
 
 // Of all rows, because whether an angle stays within one turn only the whole says.
-void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, const RowNotes& notes,
+// Says in the notes where differences of an angle undo each other, as those of increments do.
+void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
               const std::string& path);
 
-// A file whose times are whole numbers, a second or more apart and written without decimals, is more often
-// one in milliseconds than one of a sample a second. It is said, not changed.
+// Times that are whole numbers one apart are a count of rows, unless somebody said their unit; further apart
+// and written without decimals they are more often milliseconds than samples of a second each. It is said,
+// not changed.
 struct WholeTimes {
   std::size_t rows = 0;
   double first_s = 0.0, last_s = 0.0;
   bool whole = true;
 
   void take(const std::vector<double>& time_s);
-  [[nodiscard]] std::optional<std::string> notice(const std::string& path) const;
+  // unit_known: the file says it by more than the column's name.
+  [[nodiscard]] std::optional<std::string> notice(const std::string& path, const CsvTime& time,
+                                                  bool unit_known) const;
 };
 
 }  // namespace ifog

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "drivers/capture/csv_layout.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -27,6 +26,11 @@ bool is_rate_column(const std::string& name) {
   return axis_of(name, "rate", axis) || axis_of(name, "reference_rate", axis);
 }
 
+bool is_signal_column(const std::string& name) {
+  std::string axis;
+  return axis_of(name, "raw", axis) || axis_of(name, "compensated", axis) || axis_of(name, "denoised", axis);
+}
+
 std::string shortest(double value) {
   std::array<char, 40> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
@@ -39,12 +43,6 @@ void fail_at(const std::string& path, std::size_t line, const std::string& what)
 std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option) {
   return in_quotes(header) + " is in " + in_quotes(unit) +
          " by its name, and no unit was told; to read it so: " + option;
-}
-
-void refuse_header(const std::string& path, std::size_t line_number, const std::string& what,
-                   const std::vector<std::string>& names, bool dated) {
-  const std::string options = suggested_options(names, dated);
-  fail_at(path, line_number, what + (options.empty() ? "" : "; to read it as it is: " + options));
 }
 
 }  // namespace ifog

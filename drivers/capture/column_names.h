@@ -15,6 +15,9 @@ bool axis_of(const std::string& name, std::string_view prefix, std::string& axis
 // A rate or its reference, of any axis.
 bool is_rate_column(const std::string& name);
 
+// What `ifog denoise` writes: raw_radps, compensated_x_radps, denoised_x_radps.
+bool is_signal_column(const std::string& name);
+
 // Shortest text that reads back the same.
 std::string shortest(double value);
 
@@ -22,9 +25,5 @@ std::string shortest(double value);
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
 // Of a column that was chosen without a unit, whose own name says another than was wanted.
 std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option);
-// As fail_at() of a header, with the options that read it as it is where its names tell them;
-// dated as there.
-[[noreturn]] void refuse_header(const std::string& path, std::size_t line, const std::string& what,
-                                const std::vector<std::string>& names, bool dated = false);
 
 }  // namespace ifog

@@ -3,215 +3,224 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
+#include <numeric>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/capture/column_names.h"
-#include "drivers/capture/date_time.h"
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/column_roles.h"
+#include "drivers/capture/column_times.h"
+#include "drivers/capture/column_words.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/ifog/shell_word.h"
 
 namespace ifog {
 namespace {
 
-std::vector<std::string> split(std::string_view line, char separator) {
-  std::vector<std::string> names;
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    names.emplace_back(unquoted(line.substr(0, end)));
-    if (end == std::string_view::npos) break;
-    line.remove_prefix(end + 1);
-  }
-  // As rows are that end with a separator.
-  if (names.size() > 1 && names.back().empty()) names.pop_back();
-  return names;
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  return printable(list, kLongestMessage);
 }
 
-bool is_number(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  return read.ec == std::errc() && read.ptr == end;
-}
-
-// A line of numbers, whatever stands between them, is no header.
-void refuse_numbers(std::string_view line, const std::string& path, std::size_t number) {
-  constexpr std::string_view kBetween = ",;|\t ";
-  std::string first;
-  for (std::size_t from = 0; from < line.size();) {
-    const std::size_t to = std::min(line.find_first_of(kBetween, from), line.size());
-    const std::string cell(unquoted(line.substr(from, to - from)));
-    from = to + 1;
-    if (cell.empty()) continue;
-    if (!is_number(cell)) return;
-    if (first.empty()) first = cell;
-  }
-  if (first.empty()) return;
-  fail_at(path, number,
-          "begins with numbers, " + in_quotes(first) +
-              ", …, expected a header before them: 'time_s,rate_radps,…'");
-}
-
-// A row below the names that says their units joins them, where it is one: each cell a text, at least one of
-// them a unit.
-void join_units(Lines& lines, const std::string& path, char separator, std::vector<std::string>& names) {
-  Lines ahead = lines;
-  std::string_view line;
-  if (!ahead.next(line) || line.size() > kLongestLine || line.starts_with('#')) return;
-  std::vector<std::string> units = split(line, separator);
-  if (units.size() != names.size()) return;
-  const auto value = [](const std::string& cell) {
-    return (cell != "1" && is_number(cell)) || is_date(cell);
-  };
-  if (std::any_of(units.begin(), units.end(), value) || std::none_of(units.begin(), units.end(), is_unit))
-    return;
-  lines = ahead;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto joined = name_with_unit(names[i], units[i]);
-    if (!joined)
-      fail_at(path, lines.number(),
-              "the row of units says " + in_quotes(units[i]) + " of " + in_quotes(names[i]) +
-                  ", expected the unit of its name");
-    names[i] = *joined;
-  }
-}
-
-// Whether a cell of the first row is a date.
-bool dated(Lines rows, char separator) {
-  std::string_view row;
-  while (rows.next(row) && (trimmed(row).empty() || row.front() == '#')) {
-  }
-  for (std::size_t from = 0; from <= row.size();) {
-    const std::size_t to = std::min(row.find(separator, from), row.size());
-    if (is_date(unquoted(row.substr(from, to - from)))) return true;
-    from = to + 1;
-  }
-  return false;
-}
-
-void check_names(const std::vector<std::string>& names, const std::string& path, std::size_t line,
-                 const Lines& rows, char separator) {
-  if (names.front() != "time_s")
-    refuse_header(path, line, "first column is " + in_quotes(names.front()) + ", expected 'time_s'", names,
-                  dated(rows, separator));
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (name.empty()) fail_at(path, line, "a column has no name");
-    if (!seen.insert(name).second) fail_at(path, line, "column " + in_quotes(name) + " stands twice");
-  }
-}
-
-// The place of a column that was asked for by its header.
+// The place of a column that was asked for by its header or, "#3", by its number.
 std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
                      const std::string& path, std::size_t line) {
   const auto count = std::count(names.begin(), names.end(), wanted);
   if (count == 1)
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted) - names.begin());
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  std::size_t number = 0;
+  if (count == 0 && wanted.starts_with('#') &&
+      std::from_chars(wanted.data() + 1, wanted.data() + wanted.size(), number).ptr ==
+          wanted.data() + wanted.size() &&
+      number >= 1 && number <= names.size())
+    return number - 1;
   fail_at(path, line,
           (count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
-              printable(list, kLongestMessage));
+              listed(names));
 }
 
-// What of each column of the file is to be kept.
-void choose(const std::vector<std::string>& names, const CsvLayout& layout, const std::string& path,
-            CsvHeader& header) {
-  header.cells.resize(names.size());
-  for (std::size_t i = 0; i < names.size(); ++i) header.cells[i].name = names[i];
-  const CsvTime time = layout.time.value_or(CsvTime{});
-  if (const std::string unit = time.other_unit(); !unit.empty())
-    fail_at(path, header.line, unit_by_name(time.header, unit, option_for(time, unit)));
-  header.time_place = place_of(time.header, names, path, header.line);
-  CsvCell& time_cell = header.cells[header.time_place];
-  time_cell.range = measurable_in_file(time);
-  time_cell.column = CsvCell::kTime;
-  if (!layout.chooses()) {
-    for (std::size_t i = 1; i < names.size(); ++i) {
-      header.cells[i] = {names[i], measurable(names[i]), is_rate_column(names[i]), i - 1};
-      header.names.push_back(names[i]);
+class Chooser {
+ public:
+  Chooser(TableForm form, const std::string& path, const CsvLayout& layout)
+      : form_(std::move(form)), names_(form_.sample.names), path_(path) {
+    header_.layout = layout;
+    header_.separator = form_.separator;
+    header_.last_line = form_.last_line;
+    for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
+  }
+
+  CsvHeader choose() {
+    header_.cells.resize(names_.size());
+    for (std::size_t i = 0; i < names_.size(); ++i) header_.cells[i].name = names_[i];
+    if (reads_as_named())
+      choose_as_named();
+    else
+      choose_as_asked();
+    if (!header_.layout.only_header.empty())
+      header_.only_place = place(header_.layout.only_header);
+    else
+      say_what_alternates();
+    return std::move(header_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t place(const std::string& wanted) const {
+    return place_of(wanted, names_, path_, form_.header_line);
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    fail_at(path_, form_.header_line > 0 ? form_.header_line : form_.last_line + 1, what);
+  }
+
+  // Rows of several sensors in turn, which a column numbers.
+  void say_what_alternates() {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const Words words(names_[i]);
+      if (!words.has("id") && !words.has("sensor") && !words.has("device") && !words.has("instance") &&
+          !words.has("topic"))
+        continue;
+      const std::vector<std::string>& cells = form_.sample.cells[i];
+      const std::set<std::string> values(cells.begin(), cells.end());
+      const auto changes = std::inner_product(cells.begin(), cells.empty() ? cells.end() : cells.end() - 1,
+                                              cells.empty() ? cells.begin() : cells.begin() + 1,
+                                              std::size_t{0}, std::plus<>(), std::not_equal_to<>());
+      if (values.size() < 2 || values.size() > 8 || 2 * changes < cells.size()) continue;
+      header_.notices.push_back(path_ + ": " + in_quotes(names_[i]) + " is " +
+                                listed({values.begin(), values.end()}) +
+                                " in turn: rows of several sensors; one of them: --only " +
+                                shell_word(names_[i] + "=" + *values.begin()));
     }
-    return;
   }
-  std::vector<CsvColumn> columns = layout.columns;
-  if (columns.empty())  // --time alone: the others stand under their own names
-    for (const std::string& name : names)
-      if (name != time.header) columns.push_back({name, name, ""});
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const CsvColumn& column = columns[i];
-    CsvCell& chosen = header.cells[place_of(column.header, names, path, header.line)];
-    if (const std::string unit = column.other_unit(); !unit.empty())
-      fail_at(path, header.line, unit_by_name(column.header, unit, option_for(column, unit)));
-    if (chosen.column != CsvCell::kPassedOver)
-      fail_at(path, header.line, "column " + in_quotes(column.header) + " is chosen twice");
-    chosen.range = measurable_in_file(column);
-    chosen.rate = is_rate_column(column.name);
-    chosen.column = i;
-    header.names.push_back(column.name);
+
+  // Time first, and a rate, or a table in which nothing looks like one.
+  [[nodiscard]] bool reads_as_named() const {
+    if (header_.layout.chooses() || names_.front() != "time_s") return false;
+    if (std::any_of(names_.begin(), names_.end(),
+                    [](const std::string& name) { return is_rate_column(name) || is_signal_column(name); }))
+      return true;
+    CsvLayout timed = header_.layout;
+    timed.time = CsvTime{};
+    return readings_of(form_.sample, timed).ways.empty();
   }
-}
+
+  void choose_as_named() {
+    std::set<std::string> seen;
+    for (const std::string& name : names_) {
+      if (name.empty()) fail("a column has no name");
+      if (!seen.insert(name).second) fail("column " + in_quotes(name) + " stands twice");
+    }
+    take_time(CsvTime{});
+    for (std::size_t i = 1; i < names_.size(); ++i) take(i, {names_[i], names_[i], ""});
+  }
+
+  void choose_as_asked() {
+    CsvLayout& layout = header_.layout;
+    const bool timed = layout.time.has_value(),
+               own_names =
+                   layout.columns.empty() && std::any_of(names_.begin(), names_.end(), is_rate_column);
+    if (!timed && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
+      layout.time = CsvTime{};
+    if (timed && own_names) {
+      for (const std::string& name : names_)  // --time alone: the others stand under their own names
+        if (name != layout.time->header) layout.columns.push_back({name, name, ""});
+    } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
+      take_reading();
+    }
+    if (layout.sample_rate_hz)
+      layout.time.reset();
+    else
+      take_time(*layout.time);
+    for (const CsvColumn& column : layout.columns) {
+      const std::size_t at = place(column.header);
+      if (const std::string unit = other_unit(column); !unit.empty())
+        fail(unit_by_name(column.header, unit, option_for(column, unit)));
+      if (header_.cells[at].column != CsvCell::kPassedOver)
+        fail("column " + in_quotes(column.header) + " is chosen twice");
+      take(at, column);
+    }
+  }
+
+  // What was not asked for, as the names have it.
+  void take_reading() {
+    const Readings found = readings_of(form_.sample, header_.layout);
+    if (const Reading* const clear = found.clear()) {
+      header_.layout = clear->layout;
+      header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
+      return;
+    }
+    if (found.ways.empty() && form_.sample.named)
+      fail("no rate column among " + listed(names_) +
+           ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
+           "these names");
+    fail((form_.sample.named
+              ? ""
+              : "no header line; its columns are #1 to #" + std::to_string(names_.size()) + "; ") +
+         found.why + options_in_words(found));
+  }
+
+  void take_time(const CsvTime& time) {
+    if (const std::string unit = other_unit(time); !unit.empty())
+      fail(unit_by_name(time.header, unit, option_for(time, unit)));
+    // "sec+nsec": a name may hold a plus itself.
+    const auto is_name = [&](const std::string& name) {
+      return name.starts_with('#') || std::count(names_.begin(), names_.end(), name) == 1;
+    };
+    const std::string& header = time.header;
+    std::size_t plus =
+        std::count(names_.begin(), names_.end(), header) > 0 ? std::string::npos : header.find('+');
+    while (plus != std::string::npos &&
+           !(is_name(header.substr(0, plus)) && is_name(header.substr(plus + 1))))
+      plus = header.find('+', plus + 1);
+    header_.time_place = place(header.substr(0, plus));
+    if (plus != std::string::npos) {
+      header_.time_part = place(header.substr(plus + 1));
+      header_.part_digits =
+          digits_of_second(names_[header_.time_part], form_.sample.cells[header_.time_part]);
+      take_time_cell(header_.time_part, {});
+    }
+    take_time_cell(header_.time_place, measurable_in_file(time));
+  }
+
+  void take_time_cell(std::size_t at, const Measurable& range) {
+    header_.cells[at].range = range;
+    header_.cells[at].column = CsvCell::kTime;
+  }
+
+  void take(std::size_t at, const CsvColumn& column) {
+    CsvCell& cell = header_.cells[at];
+    cell.range = measurable_in_file(column);
+    cell.rate = is_rate_column(column.name);
+    cell.column = header_.names.size();
+    header_.names.push_back(column.name);
+  }
+
+  TableForm form_;
+  const std::vector<std::string>& names_;
+  const std::string& path_;
+  CsvHeader header_;
+};
 
 }  // namespace
 
-std::string_view trimmed(std::string_view cell) {
-  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
-    cell.remove_suffix(1);
-  return cell;
+std::string options_in_words(const Readings& readings) {
+  std::string text;
+  for (const Reading& way : readings.ways) text += (text.empty() ? "; to read it: " : "; or: ") + way.options;
+  return text;
 }
 
-std::string_view unquoted(std::string_view cell) {
-  cell = trimmed(cell);
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-  return cell;
-}
-
-bool Lines::next(std::string_view& line) {
-  if (rest_.empty()) return false;
-  const std::size_t end = rest_.find('\n');
-  line = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  ++number_;
-  return true;
-}
-
-bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& layout, CsvHeader& header) {
-  std::vector<std::string> names;
-  std::string_view line;
-  while (names.empty() && lines.next(line)) {
-    if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
-    if (trimmed(line).empty()) continue;
-    if (line.front() == '#')
-      header.comments.append(trimmed(line.substr(1))) += '\n';
-    else
-      names = split(line, layout.separator);
-  }
-  if (names.empty()) return false;
-  header.line = lines.number();
-  const std::vector<std::string> as_written = names;
-  join_units(lines, path, layout.separator, names);
-  header.last_line = lines.number();
+CsvHeader read_csv_header(std::string_view text, const std::string& path, const CsvLayout& layout) {
+  TableForm form = table_form(text, path, layout);
+  // A row of units has joined the names that were asked for without it.
   CsvLayout joined = layout;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    for (CsvColumn& column : joined.columns)
-      if (column.header == as_written[i]) column.header = names[i];
-    if (joined.time && joined.time->header == as_written[i]) joined.time->header = names[i];
-  }
-  // Numbers may be the names of columns that were asked for by them.
-  const auto asked_for = [&](const std::string& column) {
-    return std::find(names.begin(), names.end(), column) != names.end();
+  const auto join = [&](std::string& header) {
+    for (std::size_t i = 0; i < form.as_written.size(); ++i)
+      if (form.as_written[i] == header) header = form.sample.names[i];
   };
-  if (!layout.chooses() || !asked_for(joined.time.value_or(CsvTime{}).header))
-    refuse_numbers(line, path, header.line);
-  if (const std::string separator = suggested_separator(std::string(line));
-      layout.separator == ',' && !separator.empty())
-    fail_at(path, header.line,
-            "no comma in the header " + in_quotes(line) + "; expected commas, or " + separator);
-  if (!layout.chooses()) check_names(names, path, header.line, lines, layout.separator);
-  choose(names, joined, path, header);
-  return true;
+  for (CsvColumn& column : joined.columns) join(column.header);
+  if (joined.time) join(joined.time->header);
+  return Chooser(std::move(form), path, joined).choose();
 }
 
 }  // namespace ifog

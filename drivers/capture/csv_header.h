@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header of a CSV file: what each of its columns is to a capture.
+// What each column of a table of text is to a capture: as the user chose, or as its names say.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,9 @@
 
 #include "drivers/capture/csv_layout.h"
 #include "drivers/capture/measurable.h"
+#include "drivers/capture/table_form.h"
 
 namespace ifog {
-
-// Hands out one line at a time, without its end.
-class Lines {
- public:
-  // `before`: lines that stood in front of this text.
-  explicit Lines(std::string_view text, std::size_t before = 0) : rest_(text), number_(before) {}
-  bool next(std::string_view& line);
-  [[nodiscard]] std::size_t number() const { return number_; }
-  [[nodiscard]] std::string_view rest() const { return rest_; }
-
- private:
-  std::string_view rest_;
-  std::size_t number_;
-};
-
-[[nodiscard]] std::string_view trimmed(std::string_view cell);
-[[nodiscard]] std::string_view unquoted(std::string_view cell);
 
 // What the cells below one name of the header mean.
 struct CsvCell {
@@ -43,15 +27,26 @@ struct CsvCell {
 };
 
 struct CsvHeader {
-  std::vector<CsvCell> cells;            // in the file's order
-  std::vector<std::string> names;        // of the capture's columns beside the time
-  std::string comments;                  // that stood before it, as in RowNotes
-  std::size_t line = 0, time_place = 0;  // its number; which cell is the time
-  std::size_t last_line = 0;             // of a row of units below it, else its own
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  std::vector<CsvCell> cells;      // in the file's order
+  std::vector<std::string> names;  // of the capture's columns beside the time
+  CsvLayout layout;                // that reads it
+  char separator = ',';
+  std::string comments;              // that stood before it, as in RowNotes
+  std::size_t last_line = 0;         // number of the line above the first row
+  std::size_t time_place = kNone;    // which cell is the time; kNone where rows are even
+  std::size_t time_part = kNone;     // a second cell of the time: digits behind the point, or a time of day
+  int part_digits = 0;               // of it; 0: a time of day
+  std::size_t only_place = kNone;    // which cell says whether a row is read
+  std::vector<std::string> notices;  // how a foreign header was read, and what rows are in turn
 };
 
-// The first line that is neither empty nor a comment; `lines` goes on behind it. False where there is none in
-// this text. Throws std::runtime_error with one line: no time, a name twice, a column that is not there.
-bool read_csv_header(Lines& lines, const std::string& path, const CsvLayout& layout, CsvHeader& header);
+// text: whole lines, the file's beginning with at least its first rows. Throws std::runtime_error with one
+// line: no time, a name twice, a column that is not there, what is ambiguous, with the options that read it.
+CsvHeader read_csv_header(std::string_view text, const std::string& path, const CsvLayout& layout);
+
+// What readings of a foreign table say to the user where none of them is taken: the options of each.
+[[nodiscard]] std::string options_in_words(const Readings& readings);
 
 }  // namespace ifog

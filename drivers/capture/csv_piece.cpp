@@ -46,9 +46,37 @@ double number(const std::string& path, std::size_t line, const std::string& colu
 
 bool is_no_row(std::string_view line) { return trimmed(line).empty() || line.front() == '#'; }
 
+// A time that stands in two cells, as digits: a whole second and its digits behind the point, or a date and a
+// time of day.
+class JoinedTime {
+ public:
+  void put(bool part, std::string_view cell) { (part ? part_ : whole_) = cell; }
+  // part_digits: of the second cell; 0: a time of day. Empty where that is no such number.
+  std::string_view text(int part_digits) {
+    std::string_view part = part_;
+    const bool digits = !part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos;
+    const auto wanted = static_cast<std::size_t>(part_digits);
+    if (wanted > 0 && (!digits || part.size() > wanted)) return {};
+    if (whole_.size() + part.size() + wanted + 1 > room_.size()) return {};
+    char* end = std::copy(whole_.begin(), whole_.end(), room_.begin());
+    *end++ = wanted > 0 ? '.' : ' ';
+    if (wanted > 0) end = std::fill_n(end, wanted - part.size(), '0');
+    end = std::copy(part.begin(), part.end(), end);
+    return {room_.data(), static_cast<std::size_t>(end - room_.data())};
+  }
+
+ private:
+  std::string_view whole_, part_;
+  std::array<char, 128> room_{};
+};
+
 std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
-  for (; place > 0; --place) line.remove_prefix(line.find(separator) + 1);
-  return trimmed(line.substr(0, line.find(separator)));
+  for (; place > 0 && !line.empty(); --place) {
+    const std::size_t end = line.find(separator);
+    line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
+    while (separator == ' ' && line.starts_with(' ')) line.remove_prefix(1);
+  }
+  return unquoted(line.substr(0, line.find(separator)));
 }
 
 // What a cell says, a decimal comma as a point.
@@ -74,16 +102,22 @@ class CsvDigits {
 // One row after the other, into the columns of a piece.
 class Rows {
  public:
-  Rows(CsvPiece& piece, const CsvHeader& header, char separator, const TimeStamps& stamps, double unit_s,
-       const std::string& path)
-      : piece_(piece), header_(header), separator_(separator), stamps_(stamps), unit_s_(unit_s), path_(path) {
+  Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps, const std::string& path)
+      : piece_(piece),
+        header_(header),
+        separator_(header.separator),
+        stamps_(stamps),
+        unit_s_(header.layout.time.value_or(CsvTime{}).unit_s),
+        path_(path) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.cells.size());
-    for (const CsvCell& cell : header.cells) {
+    for (std::size_t i = 0; i < header.cells.size(); ++i) {
+      const CsvCell& cell = header.cells[i];
       const bool time = cell.column == CsvCell::kTime, none = cell.column == CsvCell::kPassedOver;
-      to_.push_back({none   ? Meaning::kNothing
-                     : time ? Meaning::kTime
-                            : Meaning::kNumber,
+      to_.push_back({none                                   ? Meaning::kNothing
+                     : !time                                ? Meaning::kNumber
+                     : header.time_part == CsvHeader::kNone ? Meaning::kTime
+                                                            : Meaning::kPartOfTime,
                      cell.range,
                      none || !cell.kept ? nullptr
                      : time             ? &piece_.rows.time_s
@@ -103,6 +137,7 @@ class Rows {
     const char *at = line.data(), *const end = at + line.size();
     std::size_t place = 0;
     for (;; ++at) {
+      while (separator_ == ' ' && at != end && *at == ' ') ++at;
       // Some writers end each row with a separator.
       const std::string_view rest(at, end);
       if (place == to_.size() && rest.find(separator_) == std::string_view::npos && trimmed(rest).empty())
@@ -118,11 +153,13 @@ class Rows {
       fail_at(
           path_, number,
           std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
+    if (header_.time_part != CsvHeader::kNone) take_joined_time(number);
+    if (header_.time_place == CsvHeader::kNone) piece_.rows.time_s.push_back(static_cast<double>(rows_));
     ++rows_;
   }
 
  private:
-  enum class Meaning : unsigned char { kNothing, kNumber, kTime };
+  enum class Meaning : unsigned char { kNothing, kNumber, kTime, kPartOfTime };
   struct Place {
     Meaning means;
     Measurable range;
@@ -140,7 +177,7 @@ class Rows {
         if (to.range.holds(value)) [[likely]] {
           if (to.values != nullptr) to.values->push_back(value);
         } else {
-          keep(place, value, 0.0, {at, behind});
+          keep(place, value, 0.0, {at, behind}, line);
         }
         return behind;
       }
@@ -152,10 +189,21 @@ class Rows {
     const std::string_view text = unquoted({at, behind});
     if (to.means == Meaning::kTime)
       take_time(place, text, line);
+    else if (to.means == Meaning::kPartOfTime)
+      joined_.put(place == header_.time_part, text);
     else
       keep(place, number(path_, line, header_.cells[place].name, text, CsvDigits(text, separator_ != ',')),
-           0.0, text);
+           0.0, text, line);
     return behind;
+  }
+
+  void take_joined_time(std::size_t line) {
+    const std::string_view text = joined_.text(header_.part_digits);
+    if (text.empty())
+      fail_at(path_, line,
+              printable(header_.cells[header_.time_part].name) + " is no whole number of at most " +
+                  std::to_string(header_.part_digits) + " digits, expected the part of a second");
+    take_time(header_.time_place, text, line);
   }
 
   void take_time(std::size_t place, std::string_view text, std::size_t line) {
@@ -169,17 +217,23 @@ class Rows {
       since = stamps_.since(number(path_, line, header_.cells[place].name, text, digits));
       piece_.most_decimals = kAnyDecimals;
     }
-    keep(place, since, stamps_.absolute(0.0), text);
+    if (std::isnan(since))
+      fail_at(path_, line, printable(header_.cells[place].name) + " is missing, expected a time");
+    if (!to_[place].range.holds(since + stamps_.absolute(0.0)))
+      fail_at(path_, line,
+              what_no_sensor_measures(header_.cells[place].name, in_quotes(text), to_[place].range));
+    if (rows_ == 0) piece_.decimals = text.find('.') != std::string_view::npos || digits.is_date();
+    piece_.rows.time_s.push_back(since);
   }
 
-  void keep(std::size_t place, double value, double origin, std::string_view text) {
+  void keep(std::size_t place, double value, double origin, std::string_view text, std::size_t line) {
     const Place& to = to_[place];
     const bool possible = std::isnan(value) || to.range.holds(value + origin);
     if (to.values != nullptr) to.values->push_back(possible ? value : kMissing);
     if (possible) return;
     ImpossibleValues& impossible = piece_.impossible[place];
     if (impossible.count++ > 0) return;
-    impossible.first_row = rows_;
+    impossible.line = line;
     impossible.first = text;
   }
 
@@ -190,67 +244,57 @@ class Rows {
   double unit_s_;
   const std::string& path_;
   std::vector<Place> to_;  // by cell of a row
-  std::size_t rows_ = 0;   // that were added
+  JoinedTime joined_;
+  std::size_t rows_ = 0;  // that were added
 };
 
 }  // namespace
 
-std::optional<std::string_view> first_time(std::string_view text, const CsvHeader& header, char separator) {
+std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header) {
   Lines lines(text);
   std::string_view line;
   while (lines.next(line)) {
     if (is_no_row(line)) continue;
-    for (std::size_t place = header.time_place; place > 0; --place) {
-      const std::size_t end = line.find(separator);
-      if (end == std::string_view::npos) return "";  // to be refused for its cells
-      line.remove_prefix(end + 1);
-    }
-    return unquoted(line.substr(0, line.find(separator)));
+    if (header.time_place == CsvHeader::kNone) return TimeStamps();
+    JoinedTime joined;
+    joined.put(false, cell_at(line, header.time_place, header.separator));
+    if (header.time_part != CsvHeader::kNone)
+      joined.put(true, cell_at(line, header.time_part, header.separator));
+    const std::string_view first = header.time_part == CsvHeader::kNone
+                                       ? cell_at(line, header.time_place, header.separator)
+                                       : joined.text(header.part_digits);
+    return TimeStamps(TimeDigits(first, header.separator != ','),
+                      header.layout.time.value_or(CsvTime{}).unit_s);
   }
   return std::nullopt;
 }
 
-CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
-                         const TimeStamps& stamps, double unit_s, const std::string& path,
-                         std::size_t lines_before, double time_before, RowBlock used) {
+CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
+                         const std::string& path, std::size_t lines_before, RowBlock used) {
   CsvPiece piece;
   piece.rows = std::move(used);
   piece.rows.origin = stamps.origin();
-  Rows rows(piece, header, separator, stamps, unit_s, path);
+  Rows rows(piece, header, stamps, path);
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   rows.begin(text.size() / length + text.size() / length / 16 + 1);
   Lines lines(text, lines_before);
   std::string_view line;
   std::size_t skipped = 0;
-  const CsvCell& time = header.cells[header.time_place];
-  const std::vector<double>& times = piece.rows.time_s;
   while (lines.next(line)) {
     if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
-    if (is_no_row(line)) {
-      if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
-      ++skipped;
-      if (piece.skipped.empty() || piece.skipped.back().row != times.size())
-        piece.skipped.push_back({times.size(), skipped});
-      piece.skipped.back().lines = skipped;
+    const bool other = header.only_place != CsvHeader::kNone && !is_no_row(line) &&
+                       cell_at(line, header.only_place, header.separator) != header.layout.only_value;
+    if (!other && !is_no_row(line)) {
+      rows.add(line, lines.number());
+      piece.row_bytes += line.size() + 1;
       continue;
     }
-    rows.add(line, lines.number());
-    piece.row_bytes += line.size() + 1;
-    const auto said = [&] { return cell_at(line, header.time_place, separator); };
-    if (piece.impossible[header.time_place].count > 0)
-      fail_at(path, lines.number(),
-              what_no_sensor_measures(time.name, in_quotes(piece.impossible[header.time_place].first),
-                                      time.range));
-    if (times.size() == 1)
-      piece.decimals = said().find('.') != std::string_view::npos || is_date(unquoted(said()));
-    if (std::isnan(times.back()))
-      fail_at(path, lines.number(), printable(time.name) + " is missing, expected a time");
-    const double before = times.size() > 1 ? times[times.size() - 2] : time_before;
-    if (times.back() <= before)
-      fail_at(path, lines.number(),
-              printable(time.name) + " is " + printable(said()) + ", " +
-                  expected_to_go_on((before - times.back()) * unit_s));
+    if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
+    ++skipped;
+    const std::size_t row = piece.rows.time_s.size();
+    if (piece.skipped.empty() || piece.skipped.back().row != row) piece.skipped.push_back({row, skipped});
+    piece.skipped.back().lines = skipped;
   }
   piece.lines = lines.number() - lines_before;
   return piece;

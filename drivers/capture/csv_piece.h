@@ -23,23 +23,20 @@ struct CsvPiece {
   RowBlock rows;                             // times since the stamps' origin and values in the file's units
   std::string comments;                      // as in RowNotes
   std::vector<RowNotes::Skipped> skipped;    // likewise, from the piece's first row on
-  std::vector<ImpossibleValues> impossible;  // by cell of a row; rows of the piece
+  std::vector<ImpossibleValues> impossible;  // by cell of a row; lines of the piece
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows
   bool decimals = false;      // in the first time
   int most_decimals = 0;      // of a time, or kAnyDecimals
 };
 
-// The first time of the text, as its cell says it; nothing where it has no row.
-std::optional<std::string_view> first_time(std::string_view text, const CsvHeader& header, char separator);
+// The stamps that count from the text's first time; nothing where it has no row.
+std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header);
 
-// text: whole lines. stamps: of the whole file's times, which are in unit_s. lines_before: of the file;
-// time_before: of the row before, since the same origin, NaN where it is not known. used: rows that are done
-// with, whose memory is used again. Throws std::runtime_error with one line: file, line, column, value, what
-// was expected.
-CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, char separator,
-                         const TimeStamps& stamps, double unit_s, const std::string& path,
-                         std::size_t lines_before,
-                         double time_before = std::numeric_limits<double>::quiet_NaN(), RowBlock used = {});
+// text: whole lines. stamps: of the whole file's times. lines_before: of the file. Where rows are even, times
+// are the numbers of the rows. used: rows that are done with, whose memory is used again. Throws
+// std::runtime_error with one line: file, line, column, value, what was expected.
+CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
+                         const std::string& path, std::size_t lines_before, RowBlock used = {});
 
 }  // namespace ifog

@@ -6,7 +6,6 @@
 #include <deque>
 #include <functional>
 #include <future>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -17,7 +16,6 @@
 
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/csv_piece.h"
-#include "drivers/capture/date_time.h"
 #include "drivers/capture/row_checks.h"
 
 namespace ifog {
@@ -116,7 +114,7 @@ class CsvRows {
   void deliver(Piece& piece);
   void merge(const CsvPiece& piece);
   void finish();
-  [[nodiscard]] double unit_s() const { return layout_.time.value_or(CsvTime{}).unit_s; }
+  [[nodiscard]] double unit_s() const { return header_.layout.time.value_or(CsvTime{}).unit_s; }
 
   const std::string& path_;
   const CsvLayout& layout_;
@@ -127,53 +125,53 @@ class CsvRows {
   std::vector<ImpossibleValues> impossible_;  // by column
   std::optional<RowChecks> checks_;
   std::size_t lines_ = 0;
-  double last_ = std::numeric_limits<double>::quiet_NaN();  // time as in the pieces
-  bool decimals_ = false;                                   // in the first time
-  int most_decimals_ = 0;                                   // of a time
-  std::optional<TimeStamps> stamps_;                        // once there is a row
+  bool decimals_ = false;             // in the first time
+  int most_decimals_ = 0;             // of a time
+  std::optional<TimeStamps> stamps_;  // once there is a row
   // Memory of pieces that are done with: where pages are made for each piece anew that costs as much as the
   // reading.
   std::vector<TextRoom> used_texts_;
   std::vector<RowBlock> used_rows_;
 };
 
-// What follows the header in its piece.
+// What follows the header.
 TextRoom CsvRows::begin(TextPieces& pieces) {
-  TextRoom first;
-  bool found = false;
-  for (bool start = true; !found && pieces.next(first); start = false) {
-    std::string_view left = first.text();
-    if (start && (left.starts_with("\xFF\xFE") || left.starts_with("\xFE\xFF")))
+  constexpr std::size_t kHead = std::size_t{256}
+                                << 10U;  // bytes of lines that are no comments, to find the table in
+  std::string head;
+  std::size_t plain = 0;
+  TextRoom piece;
+  while (plain < kHead && pieces.next(piece)) {
+    std::string_view text = piece.text();
+    if (head.empty() && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")))
       throw std::runtime_error(path_ + ": begins as UTF-16 does, expected UTF-8 or ASCII");
-    if (start && left.starts_with("\xEF\xBB\xBF")) left.remove_prefix(3);  // the byte-order mark
-    Lines lines(left, lines_);
-    found = read_csv_header(lines, path_, layout_, header_);
-    lines_ = lines.number();
-    if (!found) continue;
-    TextRoom rest;
-    rest.assign(lines.rest());
-    std::swap(first, rest);
+    if (head.empty() && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte-order mark
+    head += text;
+    if (!text.starts_with('#')) plain += text.size();
   }
-  if (!found) throw std::runtime_error(path_ + ": no header line, expected 'time_s,rate_radps,…'");
+  header_ = read_csv_header(head, path_, layout_);
+  Lines lines(head);
+  for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
+  lines_ = lines.number();
+  piece.assign(lines.rest());
   notes_.comments = std::move(header_.comments);
   notes_.header_line = header_.last_line;
+  notes_.notices = std::move(header_.notices);
   impossible_.resize(header_.names.size());
   std::vector<FileColumn> columns(header_.names.size());
   for (const CsvCell& cell : header_.cells)
     if (cell.column < columns.size()) columns[cell.column] = {cell.name, cell.range, cell.rate};
-  checks_.emplace(path_, layout_, std::move(columns), sink_, notes_);
+  checks_.emplace(path_, header_.layout, std::move(columns), sink_, notes_);
   sink_.begin(header_.names);
   // Of rates the leaps are looked for, whoever wants them.
   for (CsvCell& cell : header_.cells)
     if (cell.column < header_.names.size()) cell.kept = cell.rate || sink_.wants(cell.column);
-  return first;
+  return piece;
 }
 
 // Before the pieces are parsed, each by itself: all count from one origin.
 void CsvRows::count_from_first(std::string_view text) {
-  if (stamps_) return;
-  if (const auto first = first_time(text, header_, layout_.separator))
-    stamps_.emplace(TimeDigits(*first, layout_.separator != ','), unit_s());
+  if (!stamps_) stamps_ = stamps_from(text, header_);
 }
 
 void CsvRows::in_order(TextPieces& pieces, TextRoom text) {
@@ -210,8 +208,7 @@ std::future<std::optional<CsvPiece>> CsvRows::parse(Piece& piece) {
   }
   const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
     try {
-      return parse_csv_piece(piece.text.text(), header_, layout_.separator, stamps, unit_s(), path_, 0,
-                             std::numeric_limits<double>::quiet_NaN(), std::move(piece.used));
+      return parse_csv_piece(piece.text.text(), header_, stamps, path_, 0, std::move(piece.used));
     } catch (const std::runtime_error&) {
       return std::nullopt;
     }
@@ -226,11 +223,9 @@ std::future<std::optional<CsvPiece>> CsvRows::parse(Piece& piece) {
 
 void CsvRows::deliver(Piece& piece) {
   std::optional<CsvPiece> parsed = piece.parsed.get();
-  if (!parsed || (parsed->rows.size() > 0 && parsed->rows.time_s.front() <= last_)) {
-    // Here it is known where the piece stands, and so what to say.
-    parsed = parse_csv_piece(piece.text.text(), header_, layout_.separator, stamps_.value_or(TimeStamps()),
-                             unit_s(), path_, lines_, last_);
-  }
+  // Here it is known where the piece stands, and so what to say.
+  if (!parsed)
+    parsed = parse_csv_piece(piece.text.text(), header_, stamps_.value_or(TimeStamps()), path_, lines_);
   used_texts_.push_back(std::move(piece.text));
   merge(*parsed);
   lines_ += parsed->lines;
@@ -238,7 +233,9 @@ void CsvRows::deliver(Piece& piece) {
   RowBlock& rows = parsed->rows;
   if (rows.size() > 0) {
     if (checks_->rows() == 0) decimals_ = parsed->decimals;
-    last_ = rows.time_s.back();
+    if (header_.layout.sample_rate_hz)
+      for (double& time : rows.time_s)
+        time = (static_cast<double>(checks_->rows()) + time) / *header_.layout.sample_rate_hz;
     most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
     checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
   }
@@ -258,7 +255,7 @@ void CsvRows::merge(const CsvPiece& piece) {
     const ImpossibleValues& found = piece.impossible[i];
     if (found.count == 0 || header_.cells[i].column >= impossible_.size()) continue;
     ImpossibleValues& all = impossible_[header_.cells[i].column];
-    if (all.count == 0) all = {0, rows + found.first_row, found.first};
+    if (all.count == 0) all = {0, 0, lines_ + found.line, found.first};
     all.count += found.count;
   }
 }

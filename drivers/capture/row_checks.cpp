@@ -36,24 +36,6 @@ std::string what_no_sensor_measures(const std::string& name, const std::string& 
 
 std::string in_row(std::size_t row) { return " in row " + std::to_string(row + 1); }
 
-std::string expected_to_go_on(double back_s) {
-  struct Round {
-    double length_s;
-    const char* what;
-  };
-  constexpr double kTwo32 = 4294967296.0, kAbout_s = 2.0;
-  constexpr std::array<Round, 4> kRounds{{{604'800.0, "a GPS week"},
-                                          {86'400.0, "a day"},
-                                          {kTwo32 * 1e-6, "a count of µs in 32 bits"},
-                                          {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
-  std::string text = "expected more than in the row before";
-  for (const Round& round : kRounds)
-    if (std::abs(back_s - round.length_s) < kAbout_s)
-      text += std::string("; it looks as if ") + round.what +
-              " began anew there: " + shortest(round.length_s) + " s to be added from there on";
-  return text;
-}
-
 RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns,
                      RowSink& sink, RowNotes& notes)
     : path_(path),
@@ -61,18 +43,25 @@ RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vect
       columns_(std::move(columns)),
       notes_(notes),
       rates_(rates_of(columns_)),
-      leaps_(rates_, [&sink](RowBlock& rows) { sink.take(rows); }) {
+      leaps_(rates_, [&sink](RowBlock& rows) { sink.take(rows); }),
+      clock_(path, layout.time.value_or(CsvTime{}).header, layout.keep_repeats, notes,
+             [this](RowBlock& rows) { behind_clock(rows); }) {
   if (std::any_of(layout.columns.begin(), layout.columns.end(),
                   [](const auto& c) { return c.angle_rad().has_value(); }))
     all_.emplace();
 }
 
 void RowChecks::take(RowBlock& rows, const ExactSteps& steps) {
-  if (layout_.chooses()) convert(rows, layout_, steps, notes_, path_, rows_, last_s_);
+  if (layout_.chooses()) convert(rows, layout_, steps);
+  rows_ += rows.size();
+  clock_.take(rows);
+}
+
+void RowChecks::behind_clock(RowBlock& rows) {
   look_for_set_clock(rows.time_s);
   last_s_ = rows.time_s.back();
   times_.take(rows.time_s);
-  rows_ += rows.size();
+  given_ += rows.size();
   if (!all_) return leaps_.take(rows);
   all_->origin = rows.origin;
   all_->columns.resize(rows.columns.size());
@@ -83,6 +72,7 @@ void RowChecks::take(RowBlock& rows, const ExactSteps& steps) {
 
 void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps) {
   for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
+  clock_.finish();
   if (all_) {
     as_rates(*all_, layout_, steps, notes_, path_);
     leaps_.take(*all_);
@@ -90,17 +80,18 @@ void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known,
   leaps_.finish();
   tell_leaps();
   tell_set_clock();
-  if (const auto notice = times_.notice(path_); notice && !layout_.time && !unit_known)
-    notes_.notices.push_back(*notice);
+  if (layout_.sample_rate_hz) return;
+  const CsvTime time = layout_.time.value_or(CsvTime{});
+  if (const auto notice = times_.notice(path_, time, unit_known); notice) notes_.notices.push_back(*notice);
 }
 
 void RowChecks::look_for_set_clock(const std::vector<double>& time_s) {
   constexpr double kYear_s = 365.0 * 86'400.0;
-  double before_s = rows_ > 0 ? last_s_ : time_s.front();
+  double before_s = given_ > 0 ? last_s_ : time_s.front();
   for (std::size_t row = 0; row < time_s.size() && !clock_set_; ++row) {
     const double step_s = time_s[row] - std::exchange(before_s, time_s[row]);
     if (step_s < kYear_s) continue;
-    clock_set_ = rows_ + row;
+    clock_set_ = given_ + row;
     clock_set_by_s_ = step_s;
   }
 }
@@ -123,7 +114,7 @@ void RowChecks::told(std::size_t row, const std::string& what) {
 void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues& found) {
   if (found.count == 0) return;
   // Of a text the line is told, and what stands in it.
-  const std::size_t line = notes_.line_of_row(found.first_row);
+  const std::size_t line = found.line;
   const std::string thing = line == 0 ? "value" : "cell";
   const std::string what = what_no_sensor_measures(
       column.name, line == 0 ? found.first + in_row(found.first_row) : in_quotes(found.first), column.range);
@@ -134,7 +125,8 @@ void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues
         path_, line,
         what + (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its " + thing + "s"
                                 : ""));
-  told(found.first_row, what + taken_for_missing(found.count, thing));
+  notes_.faults.push_back(path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what +
+                          taken_for_missing(found.count, thing));
 }
 
 void RowChecks::tell_leaps() {

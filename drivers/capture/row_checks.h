@@ -13,6 +13,7 @@
 #include "drivers/capture/csv_layout.h"
 #include "drivers/capture/leaps.h"
 #include "drivers/capture/measurable.h"
+#include "drivers/capture/row_clock.h"
 #include "drivers/capture/row_sink.h"
 
 namespace ifog {
@@ -27,7 +28,8 @@ struct FileColumn {
 // Values of a column that said what no sensor measures, and are taken for missing.
 struct ImpossibleValues {
   std::size_t count = 0;
-  std::size_t first_row = 0;  // counted from 0
+  std::size_t first_row = 0;  // counted from 0, of what has no lines
+  std::size_t line = 0;       // of a text
   std::string first;          // as it stands there
 };
 
@@ -36,10 +38,6 @@ std::string what_no_sensor_measures(const std::string& name, const std::string& 
                                     const Measurable& range);
 // " in row 3", of a file that has no lines.
 std::string in_row(std::size_t row);
-// What was expected of a time that is back_s before the one in the row before, with what begins anew at such
-// a step.
-std::string expected_to_go_on(double back_s);
-
 class RowChecks {
  public:
   // columns: in the order of the names that the sink was told. The path, the layout, the sink and the notes
@@ -56,11 +54,13 @@ class RowChecks {
   // steps: between all times.
   void finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps = {});
 
+  // That came, repeated ones counted.
   [[nodiscard]] std::size_t rows() const { return rows_; }
 
  private:
   void tell_impossible(const FileColumn& column, const ImpossibleValues& found);
   void tell_leaps();
+  void behind_clock(RowBlock& rows);
   void look_for_set_clock(const std::vector<double>& time_s);
   void tell_set_clock();
   void told(std::size_t row, const std::string& what);
@@ -71,10 +71,12 @@ class RowChecks {
   RowNotes& notes_;
   const std::vector<std::size_t> rates_;  // columns
   Leaps leaps_;
+  RowClock clock_;
   std::optional<RowBlock> all_;  // where angles become rates
   WholeTimes times_;
   std::size_t rows_ = 0;
-  double last_s_ = 0.0;                   // time of the row before, once there is one
+  std::size_t given_ = 0;                 // rows behind the clock
+  double last_s_ = 0.0;                   // time of the last of them, once there is one
   std::optional<std::size_t> clock_set_;  // the first row behind a step that no recording has
   double clock_set_by_s_ = 0.0;
 };

@@ -44,19 +44,26 @@ class RowSink {
 // What the reading says besides the rows; whole once the last of them was taken.
 struct RowNotes {
   // Comment and blank lines behind the header: so many all together before this row and those that follow.
+  // Rows as they came, from `row` on, that repeat the one before and are left out.
+  struct Repeated {
+    std::size_t row, rows;
+  };
   struct Skipped {
-    std::size_t row, lines;
+    std::size_t row, lines;  // row: as it came
   };
 
   std::string comments;         // without the '#', each with a line's end behind it
   std::size_t header_line = 0;  // 0: not read from a text
   std::vector<Skipped> skipped;
+  std::vector<Repeated> repeated;
   std::vector<std::string> notices;        // of the reading: what may be meant otherwise
   std::vector<std::string> faults;         // cells taken for missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
 
   // The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
+  // The same of a row as it came, repeated ones counted.
+  [[nodiscard]] std::size_t line_of_raw_row(std::size_t row) const;
 };
 
 }  // namespace ifog

@@ -70,6 +70,15 @@ Table read_table(InputFile& file, const CsvLayout& layout) {
 }
 
 std::size_t RowNotes::line_of_row(std::size_t row) const {
+  std::size_t raw = row;
+  for (const Repeated& each : repeated) {
+    if (each.row > raw) break;
+    raw += each.rows;
+  }
+  return line_of_raw_row(raw);
+}
+
+std::size_t RowNotes::line_of_raw_row(std::size_t row) const {
   if (header_line == 0) return 0;
   const auto behind = std::upper_bound(skipped.begin(), skipped.end(), row,
                                        [](std::size_t wanted, const Skipped& s) { return wanted < s.row; });

@@ -4,8 +4,9 @@
 // The class has
 //   explicit Driver(const ifog::plugin::Options&);        throws std::exception with the line the user reads
 //   void describe(ifog_description&) const;
-//   void decode(std::span<const std::uint8_t>, std::int64_t arrival_ns, ifog_emit_sample, void* sink);   no
-//   throw void reset(); void counters(ifog_driver_counters&) const;
+//   void decode(std::span<const std::uint8_t>, std::int64_t arrival_ns, ifog_emit_sample, void* sink);   no throw
+//   void reset();
+//   void counters(ifog_driver_counters&) const;
 // and, if it can make the device's bytes as well,
 //   void encode(const ifog_sample&, ifog_emit_bytes, void* sink);   throws std::exception with the reason
 #pragma once

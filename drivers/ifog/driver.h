@@ -11,7 +11,7 @@
  *   - After `create` has returned, `decode` must not allocate, lock, log or throw: it runs in the hot path.
  *   - SI units: rad, rad/s, m/s², s. Environment channels are in the unit their name ends in.
  *   - Missing values are NaN. A value that is impossible need not be caught: the host takes what is not
- * finite or reaches `full_scale` as invalid.
+ *     finite or reaches `full_scale` as invalid.
  *
  * Version rule: IFOG_DRIVER_ABI grows whenever the meaning or layout of anything here changes. A host loads
  * exactly its own number, and says both numbers when it refuses.

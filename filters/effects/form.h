@@ -2,16 +2,23 @@
 // The forms an effect can take: how a channel, or time alone, turns into an error of the rate.
 //
 // With c the channel less its reference, tau time constants, LP the first-order low-pass:
-//   linear c            quadratic c^2         cubic c^3        quintic c^5       septic c^7
-//   rate d/dt LP(c)     second_rate d2/dt2 LP(LP(c))           lagged LP(c) or LP(LP(c)) with two time
-//   constants   lookup f(c), piecewise linear; with `angle` the table is an angle and the effect its
-//   difference over dt product c * with_form(with_channel) band_power mean square of c - LP(c)   absolute |c|
-//   cosine, sine of 2 pi c/period, the channel an angle: once a turn, or a whole part of it
-//   transition tanh(c / half width), c counted from its middle: from one level to another
-//   dead_zone c where |c| is below the half width, else 0
+//   linear        c
+//   quadratic     c^2;  cubic c^3;  quintic c^5;  septic c^7
+//   rate          d/dt LP(c);  second_rate d2/dt2 LP(LP(c))
+//   lagged        LP(c), or LP(LP(c)) with two time constants
+//   lookup        f(c), piecewise linear; with `angle` the table is an angle and the effect its difference over dt
+//   product       c * with_form(with_channel)
+//   band_power    mean square of c - LP(c)
+//   absolute      |c|
+//   cosine, sine  of 2 pi c/period, the channel an angle: once a turn, or a whole part of it
+//   transition    tanh(c / half width), c counted from its middle: from one level to another
+//   dead_zone     c where |c| is below the half width, else 0
 // and of the time t since the record's start (or the daemon's):
-//   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
-//   rebuilt_ramp: a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
+//   line          a cos 2 pi f t + b sin 2 pi f t
+//   step          0 before t0, 1 from there on
+//   rate_ramp     t
+//   warm_up       exp(-t/tau)
+//   rebuilt_ramp  a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
 // earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
 // acceleration. gauss_markov, outliers, noise_change, quantisation say what the noise is; there is nothing to
 // subtract.

@@ -122,7 +122,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kDayligh
 
 }  // namespace
 
-std::string page_style() { return std::string(kPageRules) + kChartRules; }
+std::string page_style() {
+  std::string rules = kPageRules;
+  rules += kChartRules;
+  return rules;
+}
 
 std::string picture_style() {
   std::string rules = kChartRules;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string_view>
+#include <utility>
 
 #include "drivers/capture/hdf5/hdf5_attributes.h"
 
@@ -15,6 +17,7 @@ constexpr std::size_t kLeastBlock = 65'536, kMostBlock = 1'048'576;  // rows
 // takes three times a chunk while it unpacks it, and all of it stands below what its process may have.
 constexpr std::size_t kLeastKept = 512U << 10U, kMostKept = 8U << 20U, kKeptOfAll = 512U << 20U;
 constexpr std::size_t kMostChunk = 640U << 20U;
+constexpr hsize_t kMostOfMatrix = 64;  // columns
 // What a chunk of one value packs into, a thousandth, and more than deflate can: rows come block by block,
 // and what is kept of them is bounded elsewhere.
 constexpr std::uint64_t kMostGrowth = 1100, kGrowthFree = 256U << 20U;
@@ -240,14 +243,22 @@ void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
     *std::find(names.begin(), names.end(), kHdf5Time) = kHdf5ExactTime;
   }
   if (!names.empty()) keep_unpacked(std::clamp(kKeptOfAll / names.size(), kLeastKept, kMostKept));
-  for (const std::string& name : names) add_dataset(name);
+  if (wanted.names.empty() && time == names.end())
+    add_what_is_a_column(names);
+  else
+    for (const std::string& name : names) add_dataset(name, !wanted.names.empty());
   header_.by_column = chunk_bytes_ > kept_;
   if (!groups_.empty() && !columns_.empty())
     header_.notices.push_back("passed over: the groups " + list_of(groups_) + "; --group reads one");
 }
 
-void Hdf5Columns::add_dataset(const std::string& name) {
-  Hdf5Id found(H5Oopen(place_, name.c_str(), access_));
+// one: of a matrix a column is asked for, "name[1]".
+void Hdf5Columns::add_dataset(const std::string& name, bool one) {
+  const std::size_t open = name.rfind('[');
+  const bool of_matrix =
+      open != std::string::npos && name.back() == ']' && H5Lexists(place_, name.c_str(), access_) <= 0;
+  const std::string dataset = of_matrix ? name.substr(0, open) : name;
+  Hdf5Id found(H5Oopen(place_, dataset.c_str(), access_));
   if (!found.good()) {
     H5L_info_t link{};
     const bool there = H5Lget_info(place_, name.c_str(), &link, access_) >= 0;
@@ -259,51 +270,105 @@ void Hdf5Columns::add_dataset(const std::string& name) {
   if (H5Iget_type(found) != H5I_DATASET) refuse(in_quotes(name) + " is no dataset, expected one of numbers");
   const Hdf5Id type(H5Dget_type(found));
   demand_numbers(type, name);
-  check(found, name);
-  stored_ += header_.rows * H5Tget_size(type);
-  header_.names.push_back(name);
-  header_.units.push_back(hdf5_unit(found));
-  columns_.push_back({std::move(found), Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE))});
+  const std::vector<Part> parts = check(found, dataset);
+  if (one && !of_matrix && parts.size() > 1)
+    refuse(in_quotes(name) + " is a matrix, expected one of its columns: " + name + "[0] to " + name + "[" +
+           std::to_string(parts.size() - 1) + "]");
+  const std::size_t before = columns_.size();
+  for (const Part& part : parts) {
+    const std::string column = parts.size() == 1 ? dataset : dataset + "[" + std::to_string(part.index) + "]";
+    if (dataset != name && column != name) continue;
+    if (header_.names.size() == kMostHdf5Columns)
+      refuse("more than " + std::to_string(kMostHdf5Columns) + " columns, expected at most that");
+    stored_ += header_.rows * H5Tget_size(type);
+    header_.names.push_back(column);
+    header_.units.push_back(hdf5_unit(found));
+    datasets_.push_back(dataset);
+    columns_.push_back(
+        {Hdf5Id(H5Dopen2(place_, dataset.c_str(), access_)), Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE)), part});
+  }
+  if (columns_.size() == before)
+    refuse("no column " + in_quotes(name) + ", " + in_quotes(dataset) + " has " +
+           std::to_string(parts.size()));
 }
 
-// One dimension, as many rows as the columns before, and packed as can be read here.
-void Hdf5Columns::check(hid_t dataset, const std::string& name) {
-  take_rows(dataset, name);
+// As many rows as the columns before, and packed as can be read here.
+std::vector<Hdf5Columns::Part> Hdf5Columns::check(hid_t dataset, const std::string& name) {
+  std::vector<Part> parts = take_rows(dataset, name);
   const Hdf5Id properties(H5Dget_create_plist(dataset));
   hdf5_demand(properties.good(), in_quotes(name) + " cannot be read");
   demand_readable(properties, name);
-  take_chunk(dataset, properties, name);
+  take_chunk(dataset, properties, parts.front(), name);
+  return parts;
 }
 
 // Whole chunks are read, so that each is unpacked once; of one that is larger than a block it is kept.
-void Hdf5Columns::take_chunk(hid_t dataset, hid_t properties, const std::string& name) {
-  hsize_t chunk = 1;
-  if (H5Pget_layout(properties) == H5D_CHUNKED && H5Pget_chunk(properties, 1, &chunk) != 1) chunk = 1;
-  const auto rows = static_cast<std::size_t>(std::clamp<hsize_t>(chunk, 1, kMostBlock));
+void Hdf5Columns::take_chunk(hid_t dataset, hid_t properties, const Part& part, const std::string& name) {
+  std::array<hsize_t, 2> chunk{1, 1};
+  if (H5Pget_layout(properties) == H5D_CHUNKED &&
+      H5Pget_chunk(properties, part.rank, chunk.data()) != part.rank)
+    chunk = {1, 1};
+  const auto rows = static_cast<std::size_t>(
+      std::clamp<hsize_t>(chunk[static_cast<std::size_t>(part.along)], 1, kMostBlock));
   block_rows_ = std::max(block_rows_, (kLeastBlock + rows - 1) / rows * rows);
   if (H5Pget_nfilters(properties) == 0) return;  // parts of it are read as they lie
   const Hdf5Id type(H5Dget_type(dataset));
-  const std::uint64_t bytes = chunk * H5Tget_size(type);
-  if (bytes > kMostChunk)
+  std::uint64_t bytes = 0;
+  if (__builtin_mul_overflow(chunk[0], chunk[1], &bytes) ||
+      __builtin_mul_overflow(bytes, H5Tget_size(type), &bytes) || bytes > kMostChunk)
     refuse(in_quotes(name) + " is packed in chunks of " + std::to_string(bytes >> 20U) +
            " MiB, expected at most " + std::to_string(kMostChunk >> 20U) +
            " MiB; 'h5repack -l CHUNK=65536' makes smaller ones");
   chunk_bytes_ = std::max(chunk_bytes_, static_cast<std::size_t>(bytes));
 }
 
-void Hdf5Columns::take_rows(hid_t dataset, const std::string& name) {
+std::vector<Hdf5Columns::Part> Hdf5Columns::take_rows(hid_t dataset, const std::string& name) {
   const Hdf5Id space(H5Dget_space(dataset));
   const int rank = H5Sget_simple_extent_ndims(space);
   hdf5_demand(rank >= 0, in_quotes(name) + " cannot be read");
-  if (rank != 1)
-    refuse(in_quotes(name) + " has " + std::to_string(rank) + (rank == 1 ? " dimension" : " dimensions") +
-           ", expected one");
-  hsize_t rows = 0;
-  hdf5_demand(H5Sget_simple_extent_dims(space, &rows, nullptr) == 1, in_quotes(name) + " cannot be read");
+  if (rank != 1 && rank != 2)
+    refuse(in_quotes(name) + " has " + std::to_string(rank) +
+           " dimensions, expected one, or two of a matrix");
+  std::array<hsize_t, 2> size{1, 1};
+  hdf5_demand(H5Sget_simple_extent_dims(space, size.data(), nullptr) == rank,
+              in_quotes(name) + " cannot be read");
+  const int along = rank == 1 || size[0] >= size[1] ? 0 : 1;  // more rows than columns
+  const hsize_t rows = size[static_cast<std::size_t>(along)],
+                columns = size[static_cast<std::size_t>(1 - along)];
+  if (columns > kMostOfMatrix)
+    refuse(in_quotes(name) + " is a matrix of " + std::to_string(size[0]) + " × " + std::to_string(size[1]) +
+           ", expected at most " + std::to_string(kMostOfMatrix) + " columns");
   if (header_.names.empty()) header_.rows = rows;
   if (rows != header_.rows)
     refuse(in_quotes(name) + " has " + std::to_string(rows) + " rows, expected the " +
            std::to_string(header_.rows) + " of " + in_quotes(header_.names.front()));
+  std::vector<Part> parts;
+  for (hsize_t i = 0; i < columns; ++i) parts.push_back({rank, along, i});
+  return parts;
+}
+
+// Of a foreign group: its datasets of numbers that are as long as most of them.
+void Hdf5Columns::add_what_is_a_column(const std::vector<std::string>& names) {
+  std::map<hsize_t, std::vector<std::string>> by_rows;
+  for (const std::string& name : names) {
+    const Hdf5Id dataset(H5Dopen2(place_, name.c_str(), access_));
+    const Hdf5Id type(dataset.good() ? H5Dget_type(dataset) : -1),
+        space(dataset.good() ? H5Dget_space(dataset) : -1);
+    std::array<hsize_t, 2> size{1, 1};
+    const bool numbers =
+        type.good() && (H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT);
+    if (!numbers || !space.good() || H5Sget_simple_extent_ndims(space) > 2 ||
+        H5Sget_simple_extent_dims(space, size.data(), nullptr) < 1)
+      continue;
+    if (std::min(size[0], size[1]) > kMostOfMatrix) continue;
+    by_rows[std::max(size[0], size[1])].push_back(name);
+  }
+  std::pair<hsize_t, std::vector<std::string>> most;
+  for (const auto& each : by_rows)
+    if (each.first > 1 && each.second.size() >= most.second.size()) most = each;
+  for (const std::string& name : names)
+    if (std::find(most.second.begin(), most.second.end(), name) != most.second.end())
+      add_dataset(name, false);
 }
 
 // All columns are of one dataset: a chunk of it is kept until each has been taken from it.
@@ -312,7 +377,8 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
   if (H5Tget_class(type) != H5T_COMPOUND)
     refuse(in_quotes(wanted.group) +
            " is a dataset, expected the group that holds it, or a table of records");
-  check(place_, wanted.group);
+  if (check(place_, wanted.group).size() != 1)
+    refuse(in_quotes(wanted.group) + " is a matrix of records, expected one column of them");
   if (chunk_bytes_ > kept_) {
     keep_unpacked(chunk_bytes_);
     place_ = {};  // what is open stays as it was opened
@@ -333,6 +399,7 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
     hdf5_demand(dataset.good(), in_quotes(wanted.group) + " cannot be read");
     header_.names.push_back(name);
     header_.units.emplace_back();
+    datasets_.emplace_back(".");
     columns_.push_back({std::move(dataset), one_member(name, H5T_NATIVE_DOUBLE)});
   }
 }
@@ -353,7 +420,7 @@ void Hdf5Columns::turn_to(std::size_t column) {
   if (open_ == column) return;
   for (Column& other : columns_) other.dataset = {};
   keep_unpacked(chunk_bytes_);
-  columns_[column].dataset = Hdf5Id(H5Dopen2(place_, header_.names[column].c_str(), access_));
+  columns_[column].dataset = Hdf5Id(H5Dopen2(place_, datasets_[column].c_str(), access_));
   hdf5_demand(columns_[column].dataset.good(), in_quotes(header_.names[column]) + " cannot be read");
   open_ = column;
 }
@@ -373,11 +440,15 @@ void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double
 void Hdf5Columns::read_as_they_are(std::size_t column, std::uint64_t first, std::size_t many, void* to) {
   if (header_.by_column) turn_to(column);
   const Column& from = columns_[column];
-  const hsize_t start = first, count = many;
-  const Hdf5Id space(H5Dget_space(from.dataset)), memory(H5Screate_simple(1, &count, nullptr));
+  const auto along = static_cast<std::size_t>(from.part.along);
+  std::array<hsize_t, 2> start{from.part.index, from.part.index}, count{1, 1};
+  start[along] = first;
+  count[along] = many;
+  const hsize_t all = many;
+  const Hdf5Id space(H5Dget_space(from.dataset)), memory(H5Screate_simple(1, &all, nullptr));
   hdf5_demand(
       space.good() && memory.good() &&
-          H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr) >= 0 &&
+          H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
           H5Dread(from.dataset, from.in_memory, memory, space, H5P_DEFAULT, to) >= 0,
       in_quotes(header_.names[column]) + " cannot be read from row " + std::to_string(first + 1) + " on");
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The columns of an HDF5 file, read in this process: one-dimensional datasets of a group, or the members of a
-// one-dimensional dataset of records (a table of PyTables or pandas). The library trusts what it reads, so
-// this runs behind the barrier of hdf5_input.h and nowhere else.
+// The columns of an HDF5 file, read in this process: datasets of a group, each one column, or "name[0]",
+// "name[1]", … where it is a matrix of a few columns (N × 3, or 3 × N as MATLAB stores it; 1 × N is one
+// column); or the members of a one-dimensional dataset of records (a table of PyTables or pandas). The
+// library trusts what it reads, so this runs behind the barrier of hdf5_input.h and nowhere else.
 #pragma once
 
 #include <cstddef>
@@ -67,8 +68,14 @@ class Hdf5Columns {
   void read(std::size_t column, std::uint64_t first, std::span<double> to);
 
  private:
+  // Which part of a dataset a column is.
+  struct Part {
+    int rank = 1, along = 0;  // along: the dimension of the rows
+    hsize_t index = 0;        // in the other one
+  };
   struct Column {
     Hdf5Id dataset, in_memory;  // what one value becomes
+    Part part{};
   };
   void read_as_they_are(std::size_t column, std::uint64_t first, std::size_t count, void* to);
   void open(const Hdf5Source& source);
@@ -76,10 +83,12 @@ class Hdf5Columns {
   void read_members(const Hdf5Wanted& wanted);
   std::vector<std::string> datasets_of_group();
   bool has_exact_time();
-  void add_dataset(const std::string& name);
-  void check(hid_t dataset, const std::string& name);
-  void take_rows(hid_t dataset, const std::string& name);
-  void take_chunk(hid_t dataset, hid_t properties, const std::string& name);
+  void add_dataset(const std::string& name, bool one);
+  void add_what_is_a_column(const std::vector<std::string>& names);
+  // The parts of a dataset that are columns: one, or those of a matrix.
+  std::vector<Part> check(hid_t dataset, const std::string& name);
+  std::vector<Part> take_rows(hid_t dataset, const std::string& name);
+  void take_chunk(hid_t dataset, hid_t properties, const Part& part, const std::string& name);
   void check_size(const Hdf5Wanted& wanted) const;
   void keep_unpacked(std::size_t bytes);
   void turn_to(std::size_t column);
@@ -87,7 +96,8 @@ class Hdf5Columns {
   Hdf5Id access_, file_, place_;
   Hdf5Header header_;
   std::vector<Column> columns_;
-  std::vector<std::string> groups_;  // within the group
+  std::vector<std::string> datasets_;  // by column
+  std::vector<std::string> groups_;    // within the group
   std::size_t block_rows_ = 0, chunk_bytes_ = 0;
   std::size_t kept_ = 0;                   // bytes of unpacked chunks, a dataset
   std::uint64_t stored_ = 0;               // bytes of all values as the file has them, unpacked

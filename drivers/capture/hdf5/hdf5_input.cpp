@@ -128,21 +128,21 @@ void send_columns(const Hdf5Source& source, const Hdf5Wanted& wanted, const Send
 
 }  // namespace
 
-Hdf5Input::Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names,
-                     const std::string& time)
-    : path_(file.path()) {
-  Hdf5Source source{path_, {}};
+Hdf5File::Hdf5File(InputFile& file) : path(file.path()) {
   struct stat info {};
-  std::uint64_t bytes = 0;
-  if (file.reopens() && stat(path_.c_str(), &info) == 0) {
+  if (file.reopens() && stat(path.c_str(), &info) == 0) {
     bytes = static_cast<std::uint64_t>(info.st_size);
-  } else {
-    copy_ = file.bytes();
-    bytes = copy_.size();
-    source.image = copy_;
+    return;
   }
+  image = file.bytes();
+  bytes = image.size();
+}
+
+Hdf5Input::Hdf5Input(const Hdf5File& file, const std::string& group, const std::vector<std::string>& names,
+                     const std::string& time)
+    : path_(file.path) {
   try {
-    start(source, {group, names, time, bytes});
+    start({path_, file.image}, {group, names, time, file.bytes});
   } catch (...) {
     end();
     throw;
@@ -156,7 +156,6 @@ void Hdf5Input::start(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   reader_ = fork();
   if (reader_ == 0) read_for(source, wanted, ends[1]);
   ::close(ends[1]);
-  copy_ = {};
   if (reader_ < 0) throw std::runtime_error(path_ + ": no process to read it: " + reason());
   try {
     stream_ = std::make_unique<ColumnStream>([this](std::span<char> to) { return receive_all(pipe_, to); });

@@ -20,12 +20,20 @@
 
 namespace ifog {
 
+// A file as it can be read more than once: by its name, or kept in memory where that does not open it again.
+struct Hdf5File {
+  explicit Hdf5File(InputFile& file);
+
+  std::string path, image;
+  std::uint64_t bytes = 0;
+};
+
 class Hdf5Input {
  public:
   // group: path of the group, or of a table of records; "": the file's root. names: the datasets that are
-  // wanted, as paths from there; empty: all of the group. time: which of them it is. Standard input, pipes
-  // and packed files are kept in memory. Throws std::runtime_error with one line.
-  Hdf5Input(InputFile& file, const std::string& group, const std::vector<std::string>& names,
+  // wanted, as paths from there; empty: all of the group. time: which of them it is. Throws
+  // std::runtime_error with one line.
+  Hdf5Input(const Hdf5File& file, const std::string& group, const std::vector<std::string>& names,
             const std::string& time);
   ~Hdf5Input();
   Hdf5Input(const Hdf5Input&) = delete;
@@ -45,7 +53,6 @@ class Hdf5Input {
   void end();
 
   std::string path_;
-  std::string copy_;  // of what has no name to open it by, until the reader has it
   int pipe_ = -1;
   pid_t reader_ = -1;
   std::unique_ptr<ColumnStream> stream_;

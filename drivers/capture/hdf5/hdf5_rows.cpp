@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +10,8 @@
 
 #include "drivers/capture/chosen_columns.h"
 #include "drivers/capture/column_names.h"
+#include "drivers/capture/column_roles.h"
+#include "drivers/capture/csv_header.h"
 #include "drivers/capture/hdf5/hdf5_attributes.h"
 #include "drivers/capture/hdf5/hdf5_input.h"
 #include "drivers/capture/measurable.h"
@@ -38,6 +39,12 @@ std::string one_line(std::string text) {
   return text;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  return list;
+}
+
 bool picks(const CsvLayout& layout) { return !layout.columns.empty(); }
 std::string time_of(const CsvLayout& layout) { return layout.time.value_or(CsvTime{}).header; }
 
@@ -56,14 +63,14 @@ std::vector<std::string> wanted_of(const CsvLayout& layout, const std::string& p
 CsvLayout completed(CsvLayout layout, const Hdf5Header& header, const std::string& path) {
   if (!layout.time && header.exact_time) layout.time = CsvTime{kHdf5ExactTime, 1e-9, true};
   if (layout.time)
-    if (const std::string unit = layout.time->other_unit(); !unit.empty())
+    if (const std::string unit = other_unit(*layout.time); !unit.empty())
       refuse(path, unit_by_name(layout.time->header, unit, option_for(*layout.time, unit)));
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     CsvColumn& column = layout.columns[i];
     if (!column.unit.empty()) continue;
     column.unit = header.units[i + 1];
     if (!column.angle_rad() && !convert_unit(column.unit, unit_of_name(column.name))) column.unit.clear();
-    if (const std::string unit = column.other_unit(); !unit.empty())
+    if (const std::string unit = other_unit(column); !unit.empty())
       refuse(path, unit_by_name(column.header, unit, option_for(column, unit)));
   }
   return layout;
@@ -89,12 +96,47 @@ void check_names(const Hdf5Header& header, const CsvLayout& layout, const std::s
 // Which of the file's columns is the time; of picked columns the first that was asked for.
 std::size_t place_of_time(const Hdf5Header& header, const CsvLayout& layout, const std::string& path) {
   if (picks(layout)) return 0;
-  const std::string name = time_of(layout);
-  const auto time = std::find(header.names.begin(), header.names.end(), name);
-  if (time == header.names.end())
-    refuse_header(path, 0, "no dataset " + in_quotes(name) + " in its group", header.names);
   check_names(header, layout, path);
-  return static_cast<std::size_t>(time - header.names.begin());
+  return static_cast<std::size_t>(std::find(header.names.begin(), header.names.end(), time_of(layout)) -
+                                  header.names.begin());
+}
+
+// Of a file that is no capture by its names: the columns that they give, or those that were asked for beside
+// them. notice: how it is read.
+CsvLayout layout_of(const Hdf5File& file, const std::string& group, CsvLayout asked, std::string& notice) {
+  if (!asked.only_header.empty() || asked.sample_rate_hz)
+    refuse(file.path, "is an HDF5 file, expected none of --only and --sample-rate with it");
+  if (asked.time && picks(asked)) return asked;
+  Hdf5Input probe(file, group, {}, "");
+  const Hdf5Header& header = probe.header();
+  const auto has = [&](const std::string& name) {
+    return std::find(header.names.begin(), header.names.end(), name) != header.names.end();
+  };
+  const bool rates = std::any_of(header.names.begin(), header.names.end(), [](const std::string& name) {
+    return is_rate_column(name) || is_signal_column(name);
+  });
+  if ((rates || picks(asked)) && has(time_of(asked))) return asked;
+  TableSample sample{header.names, {}, header.units, header.comments, true};
+  std::vector<std::vector<double>> block;
+  constexpr std::size_t kRows = 64;
+  probe.next(block);
+  for (std::size_t c = 0; c < block.size(); ++c) {
+    const double from =
+        header.time_from && header.names[c] == kTime ? static_cast<double>(*header.time_from) : 0.0;
+    sample.cells.emplace_back();
+    for (std::size_t row = 0; row < std::min(kRows, block[c].size()); ++row)
+      sample.cells.back().push_back(shortest(from + block[c][row]));
+  }
+  const Readings found = readings_of(sample, asked);
+  if (found.ways.empty() && has(time_of(asked))) return asked;
+  const Reading* const clear = found.clear();
+  if (clear == nullptr || clear->layout.time->header.find('+') != std::string::npos)
+    refuse(file.path,
+           found.why + options_in_words(found) +
+               (found.ways.empty() ? "; its columns are " + printable(listed(header.names), kLongestMessage)
+                                   : ""));
+  notice = file.path + ": read as: " + in_words(clear->layout);
+  return clear->layout;
 }
 
 class Hdf5Rows {
@@ -111,6 +153,9 @@ class Hdf5Rows {
 
   InputFile& file_;
   const std::string path_;
+  const Hdf5File source_;
+  std::string notice_;
+  const CsvLayout asked_;
   Hdf5Input input_;
   const CsvLayout layout_;
   const std::size_t time_;
@@ -122,14 +167,15 @@ class Hdf5Rows {
   RowSink& sink_;
   RowNotes notes_;
   std::optional<RowChecks> checks_;
-  double last_ = -std::numeric_limits<double>::infinity();  // time as it came
 };
 
 Hdf5Rows::Hdf5Rows(InputFile& file, const std::string& group, const CsvLayout& asked, RowSink& sink)
     : file_(file),
       path_(file.path()),
-      input_(file, group, wanted_of(asked, path_), time_of(asked)),
-      layout_(completed(asked, input_.header(), path_)),
+      source_(file),
+      asked_(layout_of(source_, group, asked, notice_)),
+      input_(source_, group, wanted_of(asked_, path_), time_of(asked_)),
+      layout_(completed(asked_, input_.header(), path_)),
       time_(place_of_time(input_.header(), layout_, path_)),
       time_range_(measurable_in_file(layout_.time.value_or(CsvTime{}))),
       time_from_(input_.header().time_from),
@@ -138,6 +184,7 @@ Hdf5Rows::Hdf5Rows(InputFile& file, const std::string& group, const CsvLayout& a
   const Hdf5Header& header = input_.header();
   for (const std::string& comment : header.comments) notes_.comments += one_line(comment) + '\n';
   for (const std::string& notice : header.notices) notes_.notices.push_back(path_ + ": " + notice);
+  if (!notice_.empty()) notes_.notices.push_back(notice_);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < header.names.size(); ++i) {
     if (i == time_) continue;
@@ -188,18 +235,12 @@ std::string Hdf5Rows::said(double time) const {
 void Hdf5Rows::take_time(std::vector<double>& time) {
   const std::string& name = input_.header().names[time_];
   const auto from = static_cast<double>(time_from_.value_or(0));
-  const double last = time.back();
   for (std::size_t row = 0; row < time.size(); ++row) {
-    const double before = row == 0 ? last_ : time[row - 1];
-    const bool possible = time_range_.holds(from + time[row]);
-    if (possible && time[row] > before) continue;
+    if (time_range_.holds(from + time[row])) continue;
     const std::string where = said(time[row]) + in_row(checks_->rows() + row);
-    if (!std::isnan(time[row]) && !possible) refuse(path_, what_no_sensor_measures(name, where, time_range_));
-    refuse(path_, printable(name) + " is " + where + ", " +
-                      (std::isnan(time[row]) ? "expected a time"
-                                             : expected_to_go_on((before - time[row]) * unit_s())));
+    refuse(path_, std::isnan(time[row]) ? printable(name) + " is " + where + ", expected a time"
+                                        : what_no_sensor_measures(name, where, time_range_));
   }
-  last_ = last;
   if (time_from_)
     for (double& each : time) each += stamps_.since(from);
 }
@@ -213,7 +254,7 @@ void Hdf5Rows::take_out_impossible(std::size_t column, std::vector<double>& valu
     if (std::isinf(value))
       refuse(path_, printable(from.name) + " is infinite" + in_row(checks_->rows() + row) +
                         ", expected a finite number or nan");
-    if (found.count++ == 0) found = {1, checks_->rows() + row, shortest(value)};
+    if (found.count++ == 0) found = {1, checks_->rows() + row, 0, shortest(value)};
     value = kMissing;
   }
 }

@@ -245,7 +245,7 @@ class Checks:
     def check_what_is_no_column_is_refused(self):
         time = numpy.arange(4.0)
         for name, extra, parts in [
-                ("rank", {"rate_radps": numpy.zeros((4, 2))}, ["'rate_radps' has 2 dimensions, expected one"]),
+                ("rank", {"rate_radps": numpy.zeros((4, 2, 2))}, ["'rate_radps' has 3 dimensions, expected one"]),
                 ("scalar", {"rate_radps": 5.0}, ["'rate_radps' has 0 dimensions, expected one"]),
                 ("short", {"rate_radps": numpy.zeros(3)}, ["'time_s' has 4 rows, expected the 3 of 'rate_radps'"]),
                 ("text", {"rate_radps": numpy.array([b"a"] * 4)}, ["'rate_radps' holds text, expected numbers"]),
@@ -258,10 +258,10 @@ class Checks:
         ]:
             self.refused(write(self.folder / f"{name}.h5", {"time_s": time, **extra}), *parts)
         still = {"rate_radps": numpy.zeros(4)}
-        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, 1, 2], **still}), "time_s is 1 in row 3, expected more than in the row before")
+        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, 0.5, 2], **still}), "time_s is 0.5 s in row 3, expected more than in the row before")
         self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, numpy.nan, 2], **still}), "time_s is nan in row 3, expected a time")
         self.refused(write(self.folder / "t.h5", {"time_s": numpy.zeros(0), "rate_radps": numpy.zeros(0)}), "no rows")
-        self.refused(write(self.folder / "t.h5", {"Time": time, "GyroX": time}), "no dataset 'time_s'", "--time Time:UNIT", "GyroX")
+        self.refused(write(self.folder / "t.h5", {"Time": time, "GyroX": time}), "the unit of the time is not named", "--time Time:s", "GyroX:rad/s")
         self.refused(write(self.folder / "t.h5", {"time_s": time, "rate_radps": time * 1e9}), "which no sensor measures")
         refused(2, "convert", self.good, self.folder / "x.csv", "--separator", ";", says=["--separator"])
 
@@ -354,7 +354,7 @@ class Checks:
         with h5py.File(file, "w") as inside:  # a chunk that unpacks to more than there may be of memory
             for name in ("time_s", "rate_radps"):
                 inside.create_dataset(name, data=numpy.zeros(2**24), chunks=(2**24,), compression="gzip", compression_opts=9)
-        self.refused(file, "time_s is 0 in row 2")
+        assert self.converted(file)["time_s"] == [0]  # a row, and what repeats it
 
     def check_damaged_files_are_refused_or_read(self):
         """Cut off at any place; single bytes and runs of bytes changed. Never a crash, never two lines, never a wait."""

@@ -58,13 +58,14 @@ TEST_F(CaptureFile, SortsColumnsByTheirNames) {
 }
 
 TEST_F(CaptureFile, RefusesWithFileLineValueAndExpectation) {
-  EXPECT_EQ(refusal("rate_radps\n1\n"), "c.csv:1: first column is 'rate_radps', expected 'time_s'");
+  EXPECT_EQ(refusal("rate_radps\n1\n"),
+            "c.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=rate_radps:radps");
   EXPECT_EQ(refusal("time_s,temperature_degC\n0,1\n"),
             "c.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …");
   EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1,1x\n"),
             "c.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n0.0,1\n"),
-            "c.csv:3: time_s is 0.0, expected more than in the row before");
+  EXPECT_EQ(refusal("time_s,rate_radps\n1,1\n0.5,1\n"),
+            "c.csv:3: time_s is 0.5 s, expected more than in the row before");
   EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1\n"), "c.csv:3: 1 cells, expected 2 (a truncated line?)");
   EXPECT_EQ(refusal("time_s,rate_radps\n"), "c.csv: no rows after the header");
   EXPECT_EQ(refusal("time_s,rate_radps\n0,inf\n"),

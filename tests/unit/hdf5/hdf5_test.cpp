@@ -150,7 +150,7 @@ void write(const std::string& path, const std::vector<double>& values, const std
   writer.finish();
 }
 
-class Hdf5File : public testing::Test {
+class Hdf5Folder : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() / ("ifog-hdf5-" + std::to_string(getpid()));
@@ -164,7 +164,7 @@ class Hdf5File : public testing::Test {
 };
 
 // More than a block, so that there are several.
-TEST_F(Hdf5File, GivesBackWhatWasWrittenToTheBit) {
+TEST_F(Hdf5Folder, GivesBackWhatWasWrittenToTheBit) {
   constexpr std::size_t kRows = 150'001;
   std::vector<double> time, rate, odd;
   for (std::size_t i = 0; i < kRows; ++i) {
@@ -191,7 +191,7 @@ TEST_F(Hdf5File, GivesBackWhatWasWrittenToTheBit) {
   EXPECT_EQ(std::memcmp(table.columns[1].values.data(), odd.data(), kRows * sizeof(double)), 0);
 }
 
-TEST_F(Hdf5File, ManyLongCommentsAreKept) {
+TEST_F(Hdf5Folder, ManyLongCommentsAreKept) {
   std::string comments;
   for (int i = 0; i < 6000; ++i) comments += std::to_string(i) + std::string(100, 'x') + "\n";
   write(path("c.h5"), {0.0, 1.0}, comments);
@@ -200,13 +200,13 @@ TEST_F(Hdf5File, ManyLongCommentsAreKept) {
 }
 
 // Left half-way by whoever reads it: its process goes with it.
-TEST_F(Hdf5File, ALeftReaderIsGone) {
+TEST_F(Hdf5Folder, ALeftReaderIsGone) {
   std::vector<double> time;
   for (int i = 0; i < 400'000; ++i) time.push_back(i * 1e-3);
   write(path("c.h5"), time, "");
   for (int i = 0; i < 5; ++i) {
     InputFile input(path("c.h5"));
-    Hdf5Input reader(input, "", {}, "time_s");
+    Hdf5Input reader(ifog::Hdf5File(input), "", {}, "time_s");
     std::vector<std::vector<double>> block;
     EXPECT_TRUE(reader.next(block));
   }
@@ -230,7 +230,7 @@ void write_chunks(const std::string& path, const std::vector<std::vector<double>
 }
 
 // In chunks larger than are kept of every column at once: one, two and a part of one, and one beyond the end.
-TEST_F(Hdf5File, ReadsChunksOfAnySizeToTheBit) {
+TEST_F(Hdf5Folder, ReadsChunksOfAnySizeToTheBit) {
   constexpr std::size_t kRows = 2'500'001;
   std::vector<std::vector<double>> columns(3, std::vector<double>(kRows));
   for (std::size_t i = 0; i < kRows; ++i) {
@@ -241,7 +241,7 @@ TEST_F(Hdf5File, ReadsChunksOfAnySizeToTheBit) {
   for (const std::size_t chunk : {kRows, std::size_t{1'200'000}, std::size_t{1'048'577}}) {
     write_chunks(path("c.h5"), columns, chunk);
     InputFile input(path("c.h5"));
-    Hdf5Input reader(input, "", {}, "time_s");
+    Hdf5Input reader(ifog::Hdf5File(input), "", {}, "time_s");
     EXPECT_TRUE(reader.header().by_column);
     const std::vector<std::size_t> of = {2, 2, 1, 0};  // again, count, rate, time, as they are sorted
     ASSERT_EQ(reader.header().names.size(), of.size());

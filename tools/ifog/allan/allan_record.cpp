@@ -83,13 +83,6 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
   return rest;
 }
 
-[[noreturn]] void refuse_header_of(const LongTable& table, const std::string& name) {
-  std::vector<std::string> all{"time_s"};
-  all.insert(all.end(), table.header.begin(), table.header.end());
-  refuse_header(name, table.header_line,
-                "no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`", all);
-}
-
 LongSeries less_reference(const std::string& name, const LongTable& table, const SeriesView& rate,
                           const std::string& axis) {
   const std::string wanted = axis.empty() ? "reference_rate_radps" : "reference_rate_" + axis + "_radps";
@@ -142,7 +135,9 @@ std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& tab
     else
       rates.push_back({column, signal, axis});
   }
-  if (axes.empty()) refuse_header_of(table, name);
+  if (axes.empty())
+    fail_at(name, table.header_line,
+            "no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`");
   if (rates.empty() && left_out.empty())
     throw std::runtime_error(name + ": --axis is " + in_quotes(wanted) + ", expected " + expected_axes(axes));
   if (rates.empty()) refuse_without_rates(name, rows.end - rows.begin);

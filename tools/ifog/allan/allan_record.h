@@ -11,6 +11,7 @@
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/allan/theo1.h"
+#include "filters/rest/value_faults.h"
 #include "tools/ifog/captures/long_table.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/report/coefficients.h"
@@ -48,6 +49,7 @@ struct AllanRecord {
   std::vector<LongPoint> longer;  // Thêo1, when asked for
   std::optional<NoiseCoefficients> fit;
   std::vector<NoiseChange> noise_changes;
+  std::vector<ValueFault> findings;  // what the values say of the logger
   double trusted_tau_s = 0.0;      // up to here the deviation is known to a quarter
   std::vector<std::string> notes;  // what the reader should know, one line each
 

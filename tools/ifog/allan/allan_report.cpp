@@ -100,6 +100,9 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["misfit"] = record.fit ? finite(record.fit->misfit) : ordered_json(nullptr);
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
+    axis["findings"] = ordered_json::array();
+    for (const ValueFault& found : record.findings)
+      axis["findings"].push_back({{"name", found.name}, {"text", found.text}});
     axis["notes"] = record.notes;
     out["axes"].push_back(axis);
   }

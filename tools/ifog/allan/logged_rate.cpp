@@ -10,6 +10,7 @@
 
 #include "filters/allan/row_times.h"
 #include "filters/rest/glitches.h"
+#include "filters/rest/value_faults.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
@@ -166,6 +167,9 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
   // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
   const Glitches leaps = signal == "denoised" ? Glitches{} : find_glitches(logged.rate, parts);
+  if (signal == "rate") record.findings = value_faults(logged.rate, parts, period, told_time_s);
+  for (const ValueFault& found : record.findings)
+    record.notes.push_back(name + ": " + column + ": " + found.text);
   const std::optional<LongSeries> repaired = without_leaps(logged.rate, leaps);
   const SeriesView rate = repaired ? SeriesView(*repaired) : logged.rate;
   const AngleSum sum(rate, parts);

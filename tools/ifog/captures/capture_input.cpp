@@ -7,6 +7,7 @@
 
 #include "drivers/capture/candump.h"
 #include "drivers/capture/capture_builder.h"
+#include "drivers/capture/column_names.h"
 #include "drivers/capture/csv_rows.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/ifog/quoted.h"
@@ -15,6 +16,7 @@
 #include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/rate_rows.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
@@ -42,12 +44,23 @@ void CaptureInput::add_to(const Command& command) {
   command
       .add_option(
           "--column", columns,
-          "Column of a CSV file with another header, or dataset of an HDF5 file: rate_x_radps=GyroX:deg/s; a "
-          "unit of angle (deg) makes its differences the rate, one of increments (deg/sample) the turn "
-          "within each "
-          "sample. May stand several times; columns not named are passed over")
+          "Column of a CSV file with another header, by its name or number (#3), or dataset of an HDF5 file: "
+          "rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes its differences the rate, one of increments "
+          "(deg/sample) the turn within each sample. May stand several times; columns not named are passed "
+          "over")
       .type_name("NAME=HEADER[:UNIT]");
-  command.add_option("--time", time, "Its time column: t:ms").type_name("HEADER[:UNIT]");
+  command
+      .add_option("--time", time,
+                  "Its time column: t:ms; sec+nsec or date+time: two columns that are one time")
+      .type_name("HEADER[:UNIT]");
+  command
+      .add_option("--sample-rate", sample_rate_hz, "Its rows are even, at this rate, whatever its times say")
+      .positive();
+  command.add_option("--only", only, "Rows in which this column holds this text: sensor_id=0")
+      .type_name("HEADER=VALUE");
+  command.add_option("--repeats", repeats, "Rows that repeat the one before: drop or keep")
+      .type_name("WHAT")
+      .one_of({"drop", "keep"});
   command.add_option("--separator", separator, "What stands between the cells of a CSV file: ';' or tab")
       .type_name("C");
   command
@@ -64,6 +77,12 @@ CsvLayout CaptureInput::layout() const {
       if (out.columns[i].name == name) throw WrongUsage("--column", "gives " + in_quotes(name) + " twice");
   }
   if (!time.empty()) out.time = parsed("--time", time, CsvTime::parse);
+  if (sample_rate_hz > 0.0) out.sample_rate_hz = sample_rate_hz;
+  if (out.time && out.sample_rate_hz)
+    throw WrongUsage("--sample-rate", "stands beside --time, expected one of them");
+  if (!only.empty())
+    parsed("--only", only, [&out](const std::string& text) { return out.parse_only(text), 0; });
+  out.keep_repeats = repeats == "keep";
   if (!separator.empty()) out.separator = parsed("--separator", separator, CsvLayout::parse_separator);
   return out;
 }
@@ -99,6 +118,9 @@ std::string CaptureInput::as_typed() const {
   add("--channel", channel);
   for (const std::string& each : columns) add("--column", each);
   add("--time", time);
+  if (sample_rate_hz > 0.0) add("--sample-rate", shortest(sample_rate_hz));
+  add("--only", only);
+  if (repeats != "drop") add("--repeats", repeats);
   add("--separator", separator);
   add("--group", group);
   return text;
@@ -186,6 +208,8 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {
+  if (const std::string other = other_can_log(file.head()); !other.empty())
+    throw std::runtime_error(file.path() + ": " + other);
   const FileKind found = kind(file);
   if (found == FileKind::capture && has_driver())
     throw std::runtime_error(file.path() +
@@ -212,7 +236,14 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
   LongTable table;
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = column_rows(file, sink);
+  keep_rates(table, file.path());
   return table;
+}
+
+void CaptureInput::keep_rates(LongTable& table, const std::string& path) {
+  const std::size_t told = table.notices.size();
+  keep_rate_rows(table, path);
+  tell({table.notices.begin() + static_cast<std::ptrdiff_t>(told), table.notices.end()}, {});
 }
 
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
@@ -246,6 +277,7 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   static_cast<RowNotes&>(table) = read_rows(file, sink);
   // A driver says what its device may send, not what it sent.
   if (!whole) table.leave_out_unknown(file.path());
+  if (found == FileKind::capture) keep_rates(table, file.path());
   return table;
 }
 

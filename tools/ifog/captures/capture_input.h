@@ -31,6 +31,9 @@ struct CaptureInput {
   // Of a CSV or HDF5 file that is no capture by its header, see csv_layout.h.
   std::vector<std::string> columns;  // --column NAME=HEADER:UNIT
   std::string time;                  // --time HEADER:UNIT
+  double sample_rate_hz = 0.0;       // --sample-rate HZ; 0: not given
+  std::string only;                  // --only HEADER=VALUE
+  std::string repeats = "drop";      // --repeats keep|drop
   std::string separator;             // --separator C, of CSV
   std::string group;                 // --group PATH, of HDF5
 
@@ -51,7 +54,8 @@ struct CaptureInput {
   // Likewise of the options of a file of columns.
   [[nodiscard]] CsvLayout layout() const;
   [[nodiscard]] bool has_layout() const {
-    return !columns.empty() || !time.empty() || !separator.empty() || !group.empty();
+    return !columns.empty() || !time.empty() || !separator.empty() || !group.empty() || !only.empty() ||
+           sample_rate_hz > 0.0;
   }
   // A file of columns (FileKind::capture) by them, CSV or HDF5, also beside a driver that is there to write
   // with; what may be meant otherwise is told on standard error.
@@ -89,6 +93,7 @@ struct CaptureInput {
   [[nodiscard]] FileKind readable(const InputFile& file) const;
   void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
              const std::function<void()>& added) const;
+  static void keep_rates(LongTable& table, const std::string& path);
   static void tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults);
 };
 

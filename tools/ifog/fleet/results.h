@@ -2,11 +2,13 @@
 // The folder of a fleet's results, which is all that its processes share. Every file is there whole or not at
 // all, and what says that a step is done is written last:
 //
-//   gyros/SERIAL/diagnosis.json, model.toml, report.html, gyro.json   what `ifog diagnose` says; gyro.json
-//   last gyros/SERIAL/measured-ID.json     the type's effects in this gyro gyros/SERIAL/with_prior.toml the
-//   model with what the type adds type.json                         the type's effects as they are measured,
-//   of ID fleet.json, fleet.html            the population log/INDEX.txt                     what the
-//   processes of a gyro said
+//   gyros/SERIAL/diagnosis.json, model.toml, report.html, gyro.json
+//                                     what `ifog diagnose` says; gyro.json last
+//   gyros/SERIAL/measured-ID.json     the type's effects in this gyro
+//   gyros/SERIAL/with_prior.toml      the model with what the type adds
+//   type.json                         the type's effects as they are measured, of ID
+//   fleet.json, fleet.html            the population
+//   log/INDEX.txt                     what the processes of a gyro said
 #pragma once
 
 #include <nlohmann/json.hpp>

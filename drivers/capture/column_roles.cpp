@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/column_roles.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "drivers/capture/column_names.h"
+#include "drivers/capture/column_times.h"
+#include "drivers/capture/column_words.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kMostWays = 4;  // more than a message can show
+
+// A column that may be a rate.
+struct Candidate {
+  std::size_t place = 0;
+  std::string unit;  // "" where it is unknown
+  std::string axis;
+  bool reference = false, increment = false;
+};
+
+// By sensor: columns whose names differ by the axis only belong together.
+using Sensors = std::map<std::string, std::vector<Candidate>>;
+
+bool has_any(const Words& words, std::initializer_list<std::string_view> wanted) {
+  return std::any_of(wanted.begin(), wanted.end(), [&](std::string_view word) { return words.has(word); });
+}
+
+// What follows from a rate, describes it or belongs to another quantity is no rate, whatever else its name
+// says.
+bool excluded(const Words& words) {
+  return has_any(words, {"bias",         "offset",        "range",       "std",          "stddev",
+                         "sigma",        "var",           "variance",    "cov",          "covariance",
+                         "noise",        "temp",          "temperature", "id",           "dt",
+                         "status",       "state",         "count",       "counter",      "num",
+                         "flag",         "flags",         "valid",       "clip",         "clipping",
+                         "quality",      "scale",         "sf",          "min",          "max",
+                         "mean",         "avg",           "rms",         "err",          "error",
+                         "residual",     "limit",         "threshold",   "gain",         "timestamp",
+                         "period",       "relative",      "sample",      "sampling",     "update",
+                         "frame",        "odr",           "integral",    "accel",        "acc",
+                         "acceleration", "accelerometer", "mag",         "magnetometer", "denoised",
+                         "compensated",  "innovation",    "command",     "cmd",          "setpoint",
+                         "desired",      "target"});
+}
+
+bool is_reference(const Words& words) {
+  return has_any(words, {"reference", "ref", "truth", "true", "groundtruth", "gt"});
+}
+
+// The turn within a sample: delta_angle, dtheta.
+bool speaks_of_increment(const Words& words) {
+  return has_any(words, {"dtheta", "dangle", "dang"}) ||
+         (has_any(words, {"delta", "inc", "increment"}) && has_any(words, {"angle", "theta", "ang"}));
+}
+
+bool speaks_of_rate(const Words& words) {
+  const bool speed = has_any(words, {"rate", "speed", "velocity", "vel"});
+  return has_any(words, {"gyro", "gyr", "gyros", "gyroscope", "omega", "angvel", "angrate", "angularvelocity",
+                         "angularrate", "rotationrate", "turnrate", "turnspeed"}) ||
+         (speed && has_any(words, {"angular", "ang", "rotation", "rot", "turn", "body"})) ||
+         (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
+         // gx, wz; w_RS_S_x of kalibr.
+         (!words.axis.empty() && (words.first() == "w" || (words.first() == "g" && words.size() == 1)));
+}
+
+// In which the sensor's rate is given, where its name or a convention says so: "rad" of a gyro is a second's.
+std::string rate_unit(const Words& words, const std::string& unit) {
+  const bool increment = speaks_of_increment(words);
+  if (unit.empty()) {
+    // sensor_msgs/Imu of ROS gives rad/s; vehicle_imu of PX4 radians within a sample.
+    if (words.has("angular") && words.has("velocity")) return "rad/s";
+    return increment && words.has("delta") && words.has("angle") ? "rad/sample" : "";
+  }
+  if (angle_unit(unit, true, false)) return unit;
+  if (increment) return unit + "/sample";
+  return unit + "/s";
+}
+
+// Whether a column is a rate at all; the candidate's place is the caller's.
+std::optional<Candidate> candidate_of(const Words& words, const std::string& unit) {
+  if (excluded(words)) return std::nullopt;
+  const bool rate = angle_unit(unit, true, false).has_value(),
+             angle = angle_unit(unit, false, false).has_value();
+  if (!unit.empty() && !rate && !angle) return std::nullopt;
+  const bool named = speaks_of_rate(words) || speaks_of_increment(words);
+  if (!named && !(rate && !words.axis.empty())) return std::nullopt;
+  Candidate found;
+  found.unit = rate_unit(words, unit);
+  found.axis = words.axis;
+  found.reference = is_reference(words);
+  found.increment = speaks_of_increment(words);
+  return found;
+}
+
+std::string unit_of(const TableSample& table, std::size_t place) {
+  if (place < table.units.size() && !table.units[place].empty()) return table.units[place];
+  if (const std::string unit = unit_in_name(table.names[place]); !unit.empty()) return unit;
+  const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
+  const std::string last = text.substr(text.rfind('_') + 1);
+  return angle_unit(last, false, false) ? last : "";
+}
+
+// p, q and r together are body rates.
+void add_body_rates(const TableSample& table, Sensors& sensors) {
+  if (!sensors.empty()) return;
+  std::vector<Candidate> found;
+  for (const std::string_view name : {"p", "q", "r"})
+    for (std::size_t i = 0; i < table.names.size(); ++i) {
+      const Words words(table.names[i]);
+      const std::string unit = unit_of(table, i);
+      if (words.stem == name && words.size() == 1 && (unit.empty() || angle_unit(unit, true, true)))
+        found.push_back({i, unit.empty() ? "" : rate_unit(words, unit),
+                         std::string(1, static_cast<char>('x' + (name[0] - 'p')))});
+    }
+  if (found.size() == 3) sensors["p q r"] = found;
+}
+
+Sensors sensors_of(const TableSample& table, bool references) {
+  Sensors sensors;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const Words words(table.names[i]);
+    auto found = candidate_of(words, unit_of(table, i));
+    if (!found || found->reference != references) continue;
+    found->place = i;
+    sensors[words.stem].push_back(*found);
+  }
+  if (!references) add_body_rates(table, sensors);
+  return sensors;
+}
+
+bool axes_differ(const std::vector<Candidate>& columns) {
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (columns[i].axis == columns[j].axis) return false;
+  return true;
+}
+
+// The sensors that may be meant: the one with the most axes, or all of those.
+std::vector<std::vector<Candidate>> choices_of(const Sensors& sensors) {
+  std::vector<Candidate> together;
+  std::size_t most = 0;
+  bool named_axes = false;
+  for (const auto& [stem, columns] : sensors) {
+    most = std::max(most, columns.size());
+    for (const Candidate& column : columns) named_axes = named_axes || !column.axis.empty();
+    together.insert(together.end(), columns.begin(), columns.end());
+  }
+  // "norm of the rate" beside three axes is none of them.
+  if (named_axes) std::erase_if(together, [](const Candidate& column) { return column.axis.empty(); });
+  if (together.empty()) return {};
+  std::sort(together.begin(), together.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
+  if (axes_differ(together)) return {together};
+  std::vector<std::vector<Candidate>> choices;
+  for (const auto& [stem, columns] : sensors) {
+    if (columns.size() != most) continue;
+    if (axes_differ(columns)) {
+      choices.push_back(columns);
+      continue;
+    }
+    for (const Candidate& column : columns) choices.push_back({column});
+  }
+  std::sort(choices.begin(), choices.end(),
+            [](const auto& a, const auto& b) { return a[0].place < b[0].place; });
+  return choices;
+}
+
+std::string capture_name(const Candidate& column) {
+  return std::string(column.reference ? "reference_rate" : "rate") +
+         (column.axis.empty() ? "" : "_" + column.axis) + "_radps";
+}
+
+// temperature_degC for "Temp (degF)": the first unit of the quantity; "" where its unit says nothing.
+std::string channel_name(const Words& words, const std::string& unit) {
+  const std::string known = units_beside(unit);
+  if (known.empty() || words.text.empty() || time_unit(unit) || angle_unit(unit, true, false)) return "";
+  return words.text + "_" + known.substr(0, known.find(','));
+}
+
+// Every other column whose unit is known, and the references of the axes that are read.
+void add_others(const TableSample& table, const std::vector<Candidate>& rates,
+                std::vector<CsvColumn>& columns) {
+  const auto add = [&](const std::string& name, std::size_t place, const std::string& unit) {
+    const auto taken = [&](const CsvColumn& c) { return c.name == name || c.header == table.names[place]; };
+    if (!name.empty() && std::none_of(columns.begin(), columns.end(), taken))
+      columns.push_back({name, table.names[place], unit});
+  };
+  for (const auto& choice : choices_of(sensors_of(table, true)))
+    for (const Candidate& column : choice)
+      if (!column.unit.empty() &&
+          std::any_of(rates.begin(), rates.end(), [&](const Candidate& r) { return r.axis == column.axis; }))
+        add(capture_name(column), column.place, column.unit);
+  for (std::size_t i = 0; i < table.names.size(); ++i)
+    add(channel_name(Words(table.names[i]), unit_of(table, i)), i, unit_of(table, i));
+}
+
+Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::optional<TimeCandidate>& time,
+                   const std::vector<Candidate>& rates) {
+  Reading way{asked, true, ""};
+  const auto add = [&way](const std::string& option) {
+    way.options += (way.options.empty() ? "" : " ") + option;
+  };
+  if (time) {
+    way.layout.time = time->time;
+    if (time->time.header != "time_s") add(option_for(time->time, time->unit));
+  } else if (asked.sample_rate_hz) {
+    add("--sample-rate " + shortest(*asked.sample_rate_hz));
+  } else if (asked.time) {
+    if (asked.time->header != "time_s" || asked.time->told)
+      add(option_for(*asked.time, name_of_seconds(asked.time->unit_s)));
+  } else {
+    const auto stated = stated_rate_hz(table.comments);
+    way.clear = false;
+    add("--sample-rate " + (stated ? shortest(*stated) : "HZ"));
+  }
+  if (!asked.columns.empty()) {
+    for (const CsvColumn& column : asked.columns) add(option_for(column, column.unit));
+    return way;
+  }
+  for (const Candidate& rate : rates) {
+    way.layout.columns.push_back({capture_name(rate), table.names[rate.place], rate.unit});
+  }
+  add_others(table, rates, way.layout.columns);
+  for (const CsvColumn& column : way.layout.columns) add(option_for(column, column.unit));
+  return way;
+}
+
+// A reading for each unit that may be meant, where names and values do not tell: what is printed is what can
+// be typed.
+template <typename Item, typename Units>
+std::vector<Item> in_every_unit(const Item& item, bool known, const Units& units,
+                                void (*set)(Item&, std::string_view)) {
+  if (known) return {item};
+  std::vector<Item> all;
+  for (const std::string_view unit : units) {
+    all.push_back(item);
+    set(all.back(), unit);
+  }
+  return all;
+}
+
+using Rates = std::vector<Candidate>;
+std::vector<Rates> in_every_unit(const Rates& rates) {
+  const bool known =
+      std::all_of(rates.begin(), rates.end(), [](const Candidate& rate) { return !rate.unit.empty(); });
+  return in_every_unit<Rates>(rates, known, std::array<std::string_view, 2>{"rad", "deg"},
+                              [](Rates& all, std::string_view angle) {
+                                for (Candidate& rate : all)
+                                  if (rate.unit.empty())
+                                    rate.unit = std::string(angle) + (rate.increment ? "/sample" : "/s");
+                              });
+}
+
+std::vector<TimeCandidate> in_every_unit(const TimeCandidate& time) {
+  return in_every_unit<TimeCandidate>(time, !time.unit.empty(),
+                                      std::array<std::string_view, 4>{"s", "ms", "us", "ns"},
+                                      [](TimeCandidate& one, std::string_view unit) {
+                                        one.unit = unit;
+                                        one.time = CsvTime::parse(one.time.header + ":" + one.unit);
+                                      });
+}
+
+// Columns that have no names: one column of numbers is the rate, three are its axes, behind those of the
+// time.
+std::vector<Candidate> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time) {
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const bool of_time =
+        time && ("+" + time->time.header + "+").find("+" + table.names[i] + "+") != std::string::npos;
+    if (!of_time && varies(table.cells[i])) found.push_back({i, "", ""});
+  }
+  if (found.size() > 3) found.resize(3);
+  if (found.size() == 2) found.resize(1);
+  for (std::size_t i = 0; found.size() == 3 && i < 3; ++i)
+    found[i].axis = std::string(1, static_cast<char>('x' + i));
+  return found;
+}
+
+}  // namespace
+
+Readings readings_of(const TableSample& table, const CsvLayout& asked) {
+  Readings out;
+  std::vector<std::optional<TimeCandidate>> times;
+  std::size_t time_columns = 0;
+  if (!asked.time && !asked.sample_rate_hz)
+    for (const TimeCandidate& time : times_of(table)) {
+      ++time_columns;
+      for (const TimeCandidate& in_unit : in_every_unit(time)) times.emplace_back(in_unit);
+    }
+  const bool no_time = times.empty() && !asked.time && !asked.sample_rate_hz;
+  if (times.empty()) times.emplace_back();
+  std::vector<Rates> sensors(1), rates;
+  if (asked.columns.empty()) {
+    sensors = table.named ? choices_of(sensors_of(table, false))
+                          : std::vector<Rates>(1, rates_by_place(table, times[0]));
+    std::erase_if(sensors, [](const Rates& each) { return each.empty(); });
+    if (sensors.empty()) {
+      out.why = "no column is named as a gyro's rate";
+      return out;
+    }
+  }
+  for (const Rates& sensor : sensors)
+    for (const Rates& in_unit : in_every_unit(sensor)) rates.push_back(in_unit);
+  for (const auto& time : times)
+    for (const Rates& each : rates)
+      if (out.ways.size() < kMostWays) out.ways.push_back(reading_by(table, asked, time, each));
+  if (no_time) {
+    const std::string counted = counting_column(table);
+    out.why =
+        counted.empty() ? "no time column" : "no time column, " + in_quotes(counted) + " counts the rows";
+  } else if (time_columns > 1 || sensors.size() > 1) {
+    out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
+  } else if (out.ways.size() > 1) {
+    out.why = "the unit of the " + std::string(times.size() > 1 ? "time" : "rate") + " is not named";
+  }
+  return out;
+}
+
+std::string in_words(const CsvLayout& layout) {
+  std::string text;
+  if (layout.sample_rate_hz) text = "rows " + shortest(*layout.sample_rate_hz) + " Hz apart";
+  if (layout.time)
+    text = "time " + in_quotes(layout.time->header) + " in " + name_of_seconds(layout.time->unit_s);
+  for (const CsvColumn& column : layout.columns) {
+    const std::size_t line = column.name.rfind('_');
+    text += (text.empty() ? "" : ", ") + column.name.substr(0, line) + " " + in_quotes(column.header) +
+            " in " + printable(column.unit.empty() ? column.name.substr(line + 1) : column.unit);
+  }
+  return text;
+}
+
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
+  for (const std::string& comment : comments) {
+    std::string text;
+    for (const char c : comment) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::size_t at = std::string::npos;
+    for (const char* name :
+         {"output rate", "sample rate", "sampling rate", "data rate", "sample frequency",
+          "sampling frequency", "sample_rate", "sampling_rate", "samplerate", "update rate"})
+      if (at == std::string::npos && (at = text.find(name)) != std::string::npos)
+        at += std::string_view(name).size();
+    if (at == std::string::npos) continue;
+    const std::size_t digits = text.find_first_of("0123456789", at);
+    if (digits == std::string::npos || digits > at + 12) continue;
+    const double rate_hz = std::strtod(text.c_str() + digits, nullptr);
+    if (rate_hz > 0.0 && rate_hz <= 1e6) return rate_hz;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ifog

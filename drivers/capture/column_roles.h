@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the columns of a foreign table are to a capture, by their names, units and first values. The same
+// rules make the reading and the suggestion, so that what is suggested is what reads the file.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/csv_layout.h"
+
+namespace ifog {
+
+// A table's beginning.
+struct TableSample {
+  std::vector<std::string> names;               // of the columns; "#1", "#2", … where no header names them
+  std::vector<std::vector<std::string>> cells;  // by column: those of the first rows
+  std::vector<std::string> units;               // of each column where the file keeps them apart, or empty
+  std::vector<std::string> comments;            // lines above the header, which may state the sample rate
+  bool named = true;
+};
+
+// One way to read the table.
+struct Reading {
+  CsvLayout layout;
+  bool clear = true;    // nothing is left for the user to say
+  std::string options;  // as a user types it; HZ stands for a sample rate that nothing states
+};
+
+struct Readings {
+  std::vector<Reading> ways;  // empty: nothing looks like a gyro; several: all that the names allow
+  std::string why;            // of a table that is not read without options: what is missing or ambiguous
+
+  // The one reading that needs no question, or null.
+  [[nodiscard]] const Reading* clear() const {
+    return ways.size() == 1 && ways[0].clear ? &ways[0] : nullptr;
+  }
+};
+
+// asked: what the user chose already; only the rest is looked for.
+Readings readings_of(const TableSample& table, const CsvLayout& asked);
+
+// "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s", for the line that says how a file is read.
+std::string in_words(const CsvLayout& layout);
+
+// A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
+
+}  // namespace ifog

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/column_times.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "drivers/capture/column_names.h"
+#include "drivers/capture/column_words.h"
+#include "drivers/capture/date_time.h"
+#include "drivers/ifog/decimal.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // at which gyros are logged
+constexpr std::size_t kFewRows = 8;                          // too few to say what a column is
+
+std::optional<double> number_in(const std::string& cell) {
+  double value = 0.0;
+  const char* const end = cell.data() + cell.size();
+  const auto [at, error] = read_decimal(cell.data(), end, value);
+  return error == std::errc() && at == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::vector<double> numbers_in(const std::vector<std::string>& cells) {
+  std::vector<double> values;
+  for (const std::string& cell : cells)
+    if (const auto value = number_in(cell)) values.push_back(*value);
+  return values;
+}
+
+// Goes on from row to row, but for a rollover or two.
+bool goes_on(const std::vector<double>& values) {
+  std::size_t back = 0, on = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] < values[i - 1]) ++back;
+    if (values[i] > values[i - 1]) ++on;
+  }
+  return values.size() < 2 || (on > 0 && back <= 1);
+}
+
+bool counts(const std::vector<double>& values) {
+  if (values.size() < kFewRows) return false;
+  std::size_t other = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] - values[i - 1] != 1.0) ++other;
+  return other <= 1 && std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+}
+
+struct UnitOfTime {
+  std::string_view name;
+  double s, since_1970;  // of the year 2000 in it
+};
+constexpr std::array<UnitOfTime, 4> kUnits{
+    {{"s", 1.0, 9.4e8}, {"ms", 1e-3, 9.4e11}, {"us", 1e-6, 9.4e14}, {"ns", 1e-9, 9.4e17}}};
+
+// The unit in which the values are times since 1970, or else that in which alone the rows come as fast as a
+// gyro's.
+std::string unit_by_values(const std::vector<double>& values) {
+  if (values.size() < 2) return "";
+  // A rollover steps back, and what comes in bursts has many short steps.
+  double forward = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) forward += std::max(0.0, values[i] - values[i - 1]);
+  const double step = forward / static_cast<double>(values.size() - 1);
+  std::string found;
+  for (const UnitOfTime& unit : kUnits) {
+    const double rate_hz = 1.0 / (step * unit.s);
+    if (values.front() >= unit.since_1970 && values.front() < 5.0 * unit.since_1970 &&
+        rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz)
+      return std::string(unit.name);
+    if (!(rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz)) continue;
+    if (!found.empty()) return "";
+    found = unit.name;
+  }
+  return found;
+}
+
+// How well a name says that a column is the time of the rows; 0: not at all.
+int rank_of(const std::string& name, const Words& words) {
+  if (name == "time_s") return 5;
+  for (const std::string_view not_time :
+       {"dt", "relative", "period", "delta", "integral", "id", "status", "valid", "offset", "zone", "delay",
+        "age", "exposure", "week", "accuracy", "interval", "flags", "tflags"})
+    if (words.has(not_time)) return 0;
+  constexpr std::array<std::string_view, 16> kTimes{
+      "time",    "timestamp", "stamp",          "t",        "utc",  "datetime", "date",  "zeit", "seconds",
+      "elapsed", "tow",       "sampletimefine", "timeusec", "secs", "millis",   "micros"};
+  const auto is_time = [&](const std::string& word) {
+    return std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
+  };
+  if (words.has("header") && words.has("stamp")) return 4;  // when it was measured, as ROS has it
+  if (!words.words.empty() && std::all_of(words.words.begin(), words.words.end(), is_time)) return 3;
+  return std::any_of(words.words.begin(), words.words.end(), is_time) ? 2 : 0;
+}
+
+std::string unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
+  if (place < table.units.size() && time_unit(table.units[place])) return table.units[place];
+  const std::string named = unit_in_name(table.names[place]);
+  if (time_unit(named)) return named;
+  if (words.has("sample") && words.has("time") && words.has("fine"))
+    return "100us";  // Xsens: a clock of 10 kHz
+  if (words.has("millis")) return "ms";
+  if (words.has("micros")) return "us";
+  if (words.has("sec") || words.has("secs") || words.has("seconds")) return "s";
+  return "";
+}
+
+std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
+  TimeCandidate out;
+  out.time.header = table.names[place];
+  const std::vector<std::string>& cells = table.cells[place];
+  const bool dated = !cells.empty() && std::all_of(cells.begin(), cells.end(),
+                                                   [](const std::string& cell) { return is_date(cell); });
+  if (dated && cells.size() > 1 && cells.front() == cells.back()) return std::nullopt;  // the day of all rows
+  const std::vector<double> values = numbers_in(cells);
+  out.unit = dated ? "s" : unit_by_name(table, place, words);
+  if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
+    return std::nullopt;
+  if (out.unit.empty()) out.unit = unit_by_values(values);
+  if (!out.unit.empty()) out.time = CsvTime::parse(out.time.header + ":" + out.unit);
+  return out;
+}
+
+constexpr std::array<std::pair<std::string_view, int>, 14> kParts{{{"nsec", 9},
+                                                                   {"nsecs", 9},
+                                                                   {"nanosec", 9},
+                                                                   {"nanosecs", 9},
+                                                                   {"nanosecond", 9},
+                                                                   {"nanoseconds", 9},
+                                                                   {"ns", 9},
+                                                                   {"usec", 6},
+                                                                   {"usecs", 6},
+                                                                   {"us", 6},
+                                                                   {"microsec", 6},
+                                                                   {"microseconds", 6},
+                                                                   {"ms", 3},
+                                                                   {"msec", 3}}};
+
+// Without its last word, so that stamp.sec and stamp.nanosec are one.
+std::string all_but_last_word(const std::string& name) {
+  std::size_t end = name.size();
+  while (end > 0 && std::isalnum(static_cast<unsigned char>(name[end - 1])) != 0) --end;
+  return name.substr(0, end);
+}
+std::string last_word(const std::string& name) {
+  std::string word = name.substr(all_but_last_word(name).size());
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
+// Two columns that are one time: seconds and a part of one, or a date and a time of day.
+std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first, std::size_t second) {
+  const std::vector<std::string>&a = table.cells[first], &b = table.cells[second];
+  if (a.empty()) return std::nullopt;
+  TimeCandidate out;
+  out.time.header = table.names[first] + "+" + table.names[second];
+  out.time.told = true;
+  out.unit = "s";
+  const bool day = is_date(a[0]) && a[0].find(':') == std::string::npos;
+  if (day && is_date(b[0]) && b[0].find(':') != std::string::npos && b[0].find(':') < 3) return out;
+  const std::string of_second = last_word(table.names[second]);
+  const bool part =
+      std::any_of(kParts.begin(), kParts.end(), [&](const auto& each) { return each.first == of_second; });
+  const std::string of_first = last_word(table.names[first]);
+  const bool named = (of_first == "sec" || of_first == "secs" || of_first == "s" || of_first == "seconds") &&
+                     part && all_but_last_word(table.names[first]) == all_but_last_word(table.names[second]);
+  const std::vector<double> whole = numbers_in(a), parts = numbers_in(b);
+  const auto is_whole = [](double v) { return v == std::floor(v); };
+  const bool by_values = !table.named && whole.size() == a.size() && parts.size() == b.size() &&
+                         whole.size() > 1 && whole.front() >= 9.4e8 && whole.back() < 5e9 &&
+                         std::all_of(whole.begin(), whole.end(), is_whole) &&
+                         std::all_of(parts.begin(), parts.end(), is_whole) &&
+                         *std::max_element(parts.begin(), parts.end()) > 1e6 &&
+                         *std::max_element(parts.begin(), parts.end()) < 1e9;
+  return named || by_values ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<TimeCandidate> times_of(const TableSample& table) {
+  std::vector<TimeCandidate> best;
+  int rank = 1;
+  for (std::size_t i = 0; i + 1 < table.names.size(); ++i)
+    if (const auto two = joined(table, i, i + 1)) return {*two};
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const Words words(table.names[i]);
+    const int here = table.named ? rank_of(table.names[i], words) : 1;
+    if (here < rank) continue;
+    const auto found = candidate_at(table, i, words);
+    if (!found || (!table.named && !best.empty())) continue;
+    if (here > rank) best.clear();
+    rank = here;
+    // Twins say the same.
+    const auto same = [&](const TimeCandidate& other) {
+      const auto at =
+          std::find(table.names.begin(), table.names.end(), other.time.header) - table.names.begin();
+      return table.cells[static_cast<std::size_t>(at)] == table.cells[i];
+    };
+    if (std::none_of(best.begin(), best.end(), same)) best.push_back(*found);
+  }
+  return best;
+}
+
+std::string counting_column(const TableSample& table) {
+  for (std::size_t i = 0; i < table.names.size(); ++i)
+    if (counts(numbers_in(table.cells[i]))) return table.names[i];
+  return "";
+}
+
+bool varies(const std::vector<std::string>& cells) {
+  const std::vector<double> values = numbers_in(cells);
+  return !values.empty() && (values.size() < 2 || std::any_of(values.begin(), values.end(),
+                                                              [&](double v) { return v != values[0]; }));
+}
+
+std::string name_of_seconds(double unit_s) {
+  for (const UnitOfTime& unit : kUnits)
+    if (std::abs(unit_s / unit.s - 1.0) < 1e-9) return std::string(unit.name);
+  if (unit_s == 60.0) return "min";
+  if (unit_s == 3600.0) return "h";
+  return shortest(std::round(unit_s * 1e15) / 1e9) + "us";
+}
+
+int digits_of_second(const std::string& name, const std::vector<std::string>& cells) {
+  if (!cells.empty() && is_date(cells[0])) return 0;
+  for (const auto& [word, digits] : kParts)
+    if (last_word(name) == word) return digits;
+  double most = 0.0;
+  for (const double value : numbers_in(cells)) most = std::max(most, value);
+  return most >= 1e6 ? 9 : most >= 1e3 ? 6 : 3;
+}
+
+}  // namespace ifog

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A column's name taken apart: "w_RS_S_x [rad s^-1]" is the words w, rs and s of axis x.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ifog {
+
+struct Words {
+  explicit Words(const std::string& header);
+
+  std::vector<std::string> words;  // in small letters, without the axis, the unit and an index
+  std::string axis;                // "x", "y", "z"; "" where the name tells none
+  std::string stem;                // the words, a blank between them: the same for all axes of a sensor
+  std::string text;  // the name without its unit, as a column's name may be: letters, digits, "_"
+
+  [[nodiscard]] bool has(std::string_view word) const;
+  [[nodiscard]] std::string_view first() const { return words.empty() ? std::string_view() : words.front(); }
+  [[nodiscard]] std::string_view last() const { return words.empty() ? std::string_view() : words.back(); }
+  [[nodiscard]] std::size_t size() const { return words.size(); }
+};
+
+}  // namespace ifog

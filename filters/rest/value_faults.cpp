@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/rest/value_faults.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numbers>
+
+#include "filters/units/told_time.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kMostSamples = 1'000'000, kFewSamples = 256;
+constexpr std::size_t kStuck = 8;  // equal samples in a row
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMostBias_radps = 5.0 * kDegree, kMostNoise_radps = 0.2 * kDegree;
+
+std::string six(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+// The values of the stretches, one after the other, with the sample of each.
+struct Values {
+  std::vector<double> rate;
+  std::vector<std::size_t> sample;
+};
+
+Values values_of(const SeriesView& rate, std::span<const Stretch> parts) {
+  Values out;
+  std::vector<double> room;
+  for (const Stretch& part : parts) {
+    const std::size_t count = std::min(part.size(), kMostSamples - out.rate.size());
+    for (std::size_t at = 0; at < count; at += kSeriesPiece) {
+      const auto piece = rate.piece(part.begin + at, std::min(kSeriesPiece, count - at), room);
+      out.rate.insert(out.rate.end(), piece.begin(), piece.end());
+    }
+    for (std::size_t i = 0; i < count; ++i) out.sample.push_back(part.begin + i);
+  }
+  return out;
+}
+
+// Equal values in a row.
+struct Run {
+  std::size_t begin = 0, length = 0;
+};
+std::vector<Run> runs_of(const std::vector<double>& values) {
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i == 0 || values[i] != values[i - 1]) runs.push_back({i, 0});
+    ++runs.back().length;
+  }
+  return runs;
+}
+
+void find_held(const Values& values, double period_s, const std::function<double(std::size_t)>& time_s,
+               std::vector<ValueFault>& found) {
+  const std::vector<Run> runs = runs_of(values.rate);
+  std::map<std::size_t, std::size_t> lengths;
+  std::size_t stuck = 0, longest = 0, first = 0;
+  for (const Run& run : runs) {
+    ++lengths[run.length];
+    if (run.length < kStuck) continue;
+    if (stuck++ == 0) first = run.begin;
+    longest = std::max(longest, run.length);
+  }
+  const auto usual = std::max_element(lengths.begin(), lengths.end(),
+                                      [](const auto& a, const auto& b) { return a.second < b.second; });
+  const bool nearly_all = 10 * usual->second >= 9 * runs.size() && runs.size() > 16;
+  if (nearly_all && usual->first > 1)
+    found.push_back({"held", "each value stands " + std::to_string(usual->first) +
+                                 " times: the sensor's own rate is " +
+                                 six(1.0 / (period_s * static_cast<double>(usual->first))) +
+                                 " Hz, and figures below that period are the logger's"});
+  if (nearly_all && usual->first == 1 && stuck > 0)
+    found.push_back({"stuck", "stands still for up to " + std::to_string(longest) + " samples, " +
+                                  std::to_string(stuck) + (stuck == 1 ? " time" : " times") + ", first at " +
+                                  told_time(time_s(values.sample[first])) +
+                                  " s: the sensor or the logger repeated a value"});
+}
+
+void find_clipped(std::vector<double> sorted, std::vector<ValueFault>& found) {
+  const auto clipped = [&](auto begin, auto end, const char* which) {
+    const double extreme = *begin;
+    const auto next = std::find_if(begin, end, [&](double v) { return v != extreme; });
+    if (next == end) return;
+    const auto after = std::find_if(next, end, [&, second = *next](double v) { return v != second; });
+    const auto here = static_cast<double>(next - begin), beside = static_cast<double>(after - next);
+    if (100.0 * here < static_cast<double>(sorted.size()) || here < 3.0 * beside) return;
+    found.push_back({"clipped", six(100.0 * here / static_cast<double>(sorted.size())) +
+                                    " % of the samples are at the " + which + " value, " +
+                                    six(extreme / kDegree) +
+                                    " °/s: the sensor or its number format is at full scale"});
+  };
+  clipped(sorted.rbegin(), sorted.rend(), "largest");
+  clipped(sorted.begin(), sorted.end(), "smallest");
+}
+
+void find_wrapped(const std::vector<double>& values, const std::vector<double>& sorted,
+                  std::vector<ValueFault>& found) {
+  const double low = sorted.front(), high = sorted.back(), range = high - low;
+  const auto inside = std::lower_bound(sorted.begin(), sorted.end(), high - 0.2 * range) -
+                      std::upper_bound(sorted.begin(), sorted.end(), low + 0.2 * range);
+  if (inside > 0 || !(range > 0.0)) return;
+  std::size_t across = 0, above = 0;
+  double sum_low = 0.0, sum_high = 0.0, least_high = high, most_low = low;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0 && std::abs(values[i] - values[i - 1]) > 0.6 * range) ++across;
+    const bool up = values[i] > low + 0.5 * range;
+    above += up ? 1 : 0;
+    (up ? sum_high : sum_low) += values[i];
+    if (up) least_high = std::min(least_high, values[i]);
+    if (!up) most_low = std::max(most_low, values[i]);
+  }
+  if (100 * across < values.size() || above == 0 || above == values.size()) return;
+  found.push_back({"wrapped", six(100.0 * static_cast<double>(above) / static_cast<double>(values.size())) +
+                                  " % of the samples stand about " + six(range / kDegree) +
+                                  " °/s above the others, none between: signed counts read as unsigned"});
+}
+
+void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>& found) {
+  const auto scatter = [&](std::size_t apart) {
+    std::vector<double> differences;
+    for (std::size_t i = apart; i < values.size(); ++i)
+      differences.push_back(std::abs(values[i] - values[i - apart]));
+    const auto middle = differences.begin() + std::ssize(differences) / 2;
+    std::nth_element(differences.begin(), middle, differences.end());
+    return *middle;
+  };
+  const double neighbours = scatter(1);
+  for (std::size_t sensors = 2; sensors <= 4; ++sensors) {
+    if (!(neighbours > 2.0 * scatter(sensors)) || scatter(sensors) == 0.0) continue;
+    // A vibration would come round at other distances, too.
+    if (neighbours < 1.5 * scatter(sensors + 1) && sensors == 2 && scatter(3) < 0.5 * neighbours) continue;
+    found.push_back({"interleaved",
+                     "samples " + std::to_string(sensors) +
+                         " apart differ by less than half of what neighbours do: " + std::to_string(sensors) +
+                         " sensors in turn? --only COLUMN=VALUE reads one of them"});
+    return;
+  }
+}
+
+void find_implausible(const std::vector<double>& values, double period_s, std::vector<ValueFault>& found) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  const double mean = sum / static_cast<double>(values.size());
+  if (std::abs(mean) > kMostBias_radps)
+    found.push_back(
+        {"unit", "the mean at rest is " + six(mean / kDegree) +
+                     " °/s, more than the bias of any gyro: is it at rest, and is the unit right?"});
+  const auto second = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / period_s)));
+  double before = 0.0, squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t at = 0; at + second <= values.size(); at += second, ++count) {
+    double average = 0.0;
+    for (std::size_t i = 0; i < second; ++i) average += values[at + i];
+    average /= static_cast<double>(second);
+    if (count > 0) squares += 0.5 * (average - before) * (average - before);
+    before = average;
+  }
+  if (count < 3) return;
+  const double deviation = std::sqrt(squares / static_cast<double>(count - 1));
+  if (deviation > kMostNoise_radps)
+    found.push_back(
+        {"moving", "means of 1 s scatter by " + six(deviation / kDegree) +
+                       " °/s, more than the noise of any gyro: it was never at rest, or the unit is wrong"});
+}
+
+}  // namespace
+
+std::vector<ValueFault> value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+                                     const std::function<double(std::size_t)>& time_s) {
+  std::vector<ValueFault> found;
+  const Values values = values_of(rate, parts);
+  if (values.rate.size() < kFewSamples) return found;
+  std::vector<double> sorted = values.rate;
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.front() == sorted.back()) return found;
+  find_held(values, period_s, time_s, found);
+  find_wrapped(values.rate, sorted, found);
+  if (found.empty()) find_interleaved(values.rate, found);
+  find_clipped(std::move(sorted), found);
+  find_implausible(values.rate, period_s, found);
+  return found;
+}
+
+}  // namespace ifog

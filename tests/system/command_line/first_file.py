@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The first file of a new user: logs as phones, autopilots, ROS, MATLAB, spreadsheets and makers' programs write them, each with
+noise of a known density. A file is read as it is, or every line of options that the refusal prints is typed as it stands; one of
+them gives the density. Oracle: the density that was put in; the header lines are those of public logs.
+
+usage: first_file.py PATH_OF_IFOG SOURCE_DIR
+"""
+import gzip
+import json
+import math
+import pathlib
+import random
+import re
+import shlex
+import sys
+
+from run import main_of, ran
+
+ROWS, RATE_HZ = 4000, 200
+N = 0.2  # °/√h of every file made here
+SIGMA_DPS = N / 60 * math.sqrt(RATE_HZ)
+RAD = math.pi / 180
+CASES = pathlib.Path(sys.argv[2]).resolve().parent / "shared/cases"
+
+
+def typed(path, *options, hz=None):
+    """N by axis of `ifog allan`, with what it said; or its refusal."""
+    output = path.with_suffix(".json")
+    result = ran("allan", path, "--json", output, *[o.replace("HZ", str(hz)) if hz else o for o in options])
+    if result.returncode != 0:
+        return None, result.stderr
+    document = json.loads(output.read_text())
+    densities = {axis["axis"]: axis["coefficients"]["N"]["value"] / RAD * 60 for axis in document["axes"]}
+    return densities, result.stdout + result.stderr
+
+
+def by_hand(path, hz=None):
+    """As a user who types what is printed: the readings of the file, one, or those of each line of options."""
+    densities, said = typed(path, hz=hz)
+    if densities is not None:
+        return [densities], said
+    assert said.count("\n") == 1, f"{path.name}: more than one line: {said}"
+    found = re.search(r"to read it: (.*)\n", said)
+    assert found, f"{path.name}: refused without a way: {said}"
+    readings = []
+    for line in found.group(1).split("; or: "):
+        readings.append(typed(path, *shlex.split(line), hz=hz)[0])
+        assert readings[-1] is not None, f"{path.name}: what is printed does not read it: {line}: {typed(path, *shlex.split(line), hz=hz)[1]}"
+    return readings, said
+
+
+class Checks:
+    def __init__(self, folder):
+        self.folder = folder
+        dice = random.Random(11)
+        self.noise = {axis: [dice.gauss(0, SIGMA_DPS) for _ in range(ROWS)] for axis in "xyz"}
+
+    def file(self, name, lines):
+        path = self.folder / name
+        text = "\n".join(lines) + "\n"
+        path.write_bytes(gzip.compress(text.encode()) if name.endswith(".gz") else text.encode())
+        return path
+
+    def rows(self, form, separator=","):
+        """A line for each sample; form(i, x, y, z) in °/s gives its cells."""
+        return [separator.join(map(str, form(i, *(self.noise[a][i] for a in "xyz")))) for i in range(ROWS)]
+
+    def reads(self, name, lines, axes="xyz", hz=None, unasked=None, says=()):
+        path = self.file(name, lines)
+        readings, said = by_hand(path, hz)
+        wanted = set(axes)
+        right = [r for r in readings if set(r) == wanted and all(abs(r[a] / N - 1) < 0.05 for a in wanted)]
+        assert right, f"{name}: N {readings}, put in {N} on {sorted(wanted)}; said: {said}"
+        if unasked is not None:
+            assert (len(readings) == 1 and "read as" in said) == unasked, f"{name}: unasked is not {unasked}: {said}"
+        for part in says:
+            assert part in said, f"{name}: not said: {part}: {said}"
+
+    def check_what_needs_no_option(self):
+        self.reads("phyphox.csv", ['"Time (s)","Gyroscope x (rad/s)","Gyroscope y (rad/s)","Gyroscope z (rad/s)","Absolute (rad/s)"',
+                                   *self.rows(lambda i, x, y, z: (i / RATE_HZ, x * RAD, y * RAD, z * RAD, 0.1))], unasked=True)
+        self.reads("sensorlog.csv", ["loggingTime(txt),motionTimestamp_sinceReboot(s),motionRotationRateX(rad/s),motionRotationRateY(rad/s),motionRotationRateZ(rad/s)",
+                                     *self.rows(lambda i, x, y, z: ("phone", f"{80000 + i / RATE_HZ:.6f}", x * RAD, y * RAD, z * RAD))], unasked=True)
+        self.reads("euroc.csv", ["#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2]",
+                                 *self.rows(lambda i, x, y, z: (1403636579758555392 + i * 5_000_000, x * RAD, y * RAD, z * RAD, 9.8))], unasked=True)
+        self.reads("vehicle_imu.csv", ["timestamp,accel_device_id,gyro_device_id,delta_angle[0],delta_angle[1],delta_angle[2],delta_angle_dt",
+                                       *self.rows(lambda i, x, y, z: (112579605 + 5000 * i, 2621450, 2621450, *(v * RAD / RATE_HZ for v in (x, y, z)), 5000))],
+                   unasked=True)
+        self.reads("bag.csv", ["header.stamp.sec,header.stamp.nanosec,header.frame_id,angular_velocity.x,angular_velocity.y,angular_velocity.z,angular_velocity_covariance_0",
+                               *self.rows(lambda i, x, y, z: (1727992974 + i // RATE_HZ, i % RATE_HZ * 5_000_000, "imu", x * RAD, y * RAD, z * RAD, 0.1))], unasked=True)
+        self.reads("shimmer.csv", ["sep=;", "Timestamp;Gyro_X;Gyro_Y;Gyro_Z;Temperature", "ms;deg/s;deg/s;deg/s;degC",
+                                   *[line.replace(".", ",") for line in self.rows(lambda i, x, y, z: (1000 + 5.0 * i, x, y, z, 25.5), ";")]], unasked=True)
+        self.reads("bias.csv", ["Date,Time (s),gyro_range_dps,gyro_bias_x_dps,gyro_x_dps,gyro_temp_degC",
+                                *self.rows(lambda i, x, y, z: ("2026-05-01", i / RATE_HZ, 250, 0.3, x, 24))], axes="x", unasked=True)
+
+    def check_what_has_a_preamble(self):
+        self.reads("maker.txt", ["// General information:", "//  Version: 2022.2.0", "//  Filter Profile: human(46.1)",
+                                 "PacketCounter\tSampleTimeFine\tAcc_X\tGyr_X\tGyr_Y\tGyr_Z",
+                                 *self.rows(lambda i, x, y, z: ((51400 + i) % 65536, (4294900000 + 50 * i) % 2**32, 9.8, x * RAD, y * RAD, z * RAD), "\t")],
+                   unasked=False, says=("SampleTimeFine",))
+        self.reads("info.csv", ["FILE_INFO", "ListSeparator=comma", "", "SESSION_INFO", "StartTime,02/10/2017 16:13:52", "", "DATA_START",
+                                "GPS TFlags,GPS Week,GPS TOW,Roll [x800C],X Gyro [x8005],Y Gyro [x8005],Z Gyro [x8005],Lat [x8103]",
+                                *self.rows(lambda i, x, y, z: (5, 1969, 137649.863104 + i / RATE_HZ, 0.01, x * RAD, y * RAD, z * RAD, ""))])
+
+    def check_what_has_no_time(self):
+        self.reads("demo.csv", ["gyro_x (deg/s),gyro_y (deg/s),gyro_z (deg/s)", *self.rows(lambda i, x, y, z: (x, y, z))], hz=RATE_HZ, says=("--sample-rate HZ",))
+        self.reads("epson.csv", ["#Log esensorlib,,,Output Rate,200.0,Filter Setting,K32_FC50", "Sample No.,Gx[dps],Gy[dps],Gz[dps]",
+                                 *self.rows(lambda i, x, y, z: (i, x, y, z))], says=("counts the rows", "--sample-rate 200"))
+        self.reads("bare.csv", self.rows(lambda i, x, y, z: (x, y, z)), hz=RATE_HZ, says=("no header line",))
+        self.reads("echo.csv", self.rows(lambda i, x, y, z: (1727992974 + i // RATE_HZ, i % RATE_HZ * 5_000_000, "imu_link", x * RAD, y * RAD, z * RAD)),
+                   says=("#1+#2",))
+        self.reads("space.txt", self.rows(lambda i, x, y, z: (f"{i / RATE_HZ:.3f} ", x, y, z), " "))
+
+    def check_what_names_no_unit(self):
+        self.reads("mavlink.csv", ["time_usec,xgyro,ygyro,zgyro", *self.rows(lambda i, x, y, z: (5000 * i, x * RAD, y * RAD, z * RAD))], unasked=False)
+        self.reads("px4.csv", ["timestamp,gyro_rad[0],gyro_rad[1],gyro_rad[2],gyro_integral_dt,accelerometer_timestamp_relative",
+                               *self.rows(lambda i, x, y, z: (112574496 + 5000 * i, x * RAD, y * RAD, z * RAD, 5000, 0))], unasked=True)
+        self.reads("ardupilot.csv", ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,EG,T,GH",
+                                     *self.rows(lambda i, x, y, z: (f"{1727992974 + i / RATE_HZ:.6f}", 5000 * i, 0, x * RAD, y * RAD, z * RAD, 9.8, 0, 40, 1))])
+        self.reads("rates.csv", ["time_s,p,q,r", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z))], unasked=False)
+
+    def check_two_candidates_are_both_shown(self):
+        path = self.file("twice.csv", ["time_s,gyro1_x_dps,gyro2_x_dps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 3 * y))])
+        readings, said = by_hand(path)
+        assert sorted(round(r["x"] / N) for r in readings) == [1, 3], readings
+        assert "more than one column may be the rate" in said, said
+
+    def check_stamps(self):
+        header = "time_s,rate_x_radps"
+        self.reads("packets.csv", [header, *self.rows(lambda i, x, y, z: (f"{0.03 + i // 7 * 0.035 + i % 7 * 1e-4:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
+        self.reads("same.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 7 * 0.035:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
+        rows = self.rows(lambda i, x, y, z: (f"{i / RATE_HZ:.3f}", x * RAD))
+        self.reads("twice.csv", [header, *self.rows(lambda i, x, y, z: (f"{(i - (i % 37 == 36)) / RATE_HZ:.6f}", x * RAD))], axes="x", says=("have the time of the row before",))
+        self.reads("repeated.csv", [header, *[row for i, row in enumerate(rows) for row in [row] * (2 if i % 80 == 5 else 1)]], axes="x", says=("50 rows repeat the row before",))
+        self.reads("rollover.csv", ["t,gyro_x_dps", *self.rows(lambda i, x, y, z: ((4_294_000_000 + 5000 * i) % 2**32, x))], axes="x", says=("rolls over",))
+        merged = [line for row in rows for line in (row + ",", *[f"{float(row.split(',')[0]) + k * 0.00125:.5f},,0.01" for k in (1, 2, 3)])]
+        self.reads("merged.csv", ["time_s,rate_x_radps,accel_x_mps2", *merged], axes="x", says=("4000 of 16000 rows have a rate",))
+        back = self.file("back.csv", [header, "0,0", "0.005,0", "0.003,0", "0.015,0"])
+        assert ":4: time_s is 0.003 s" in typed(back)[1], typed(back)[1]
+
+    def check_sensors_in_turn(self):
+        path = self.file("turn.csv", ["time_s,sensor_id,rate_x_radps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, i % 2, (x + i % 2) * RAD))])
+        _, said = typed(path)
+        option = re.search(r"--only sensor_id=\S+", said)
+        assert option, said
+        densities, _ = typed(path, *shlex.split(option.group(0)))
+        assert abs(densities["x"] / N * math.sqrt(0.5) - 1) < 0.07, densities  # half of the samples a second
+
+    def check_what_the_values_say(self):
+        def findings(name, rates, unit=RAD, rate_hz=RATE_HZ):
+            path = self.file(name, ["time_s,rate_x_radps", *[f"{i / rate_hz:.6f},{v * unit!r}" for i, v in enumerate(rates)]])
+            assert ran("allan", path, "--json", path.with_suffix(".json")).returncode == 0, name
+            return {f["name"]: f["text"] for axis in json.loads(path.with_suffix(".json").read_text())["axes"] for f in axis["findings"]}
+
+        noise = self.noise["x"]
+        assert findings("good.csv", noise) == {}, findings("good.csv", noise)
+        assert findings("coarse.csv", [round(v / SIGMA_DPS) * SIGMA_DPS for v in noise]) == {}
+        assert "5 times" in findings("held.csv", [v for v in noise for _ in range(5)], rate_hz=5 * RATE_HZ)["held"]
+        stuck = list(noise)
+        for at in range(300, 3900, 400):
+            stuck[at:at + 12] = [stuck[at]] * 12
+        assert "12 samples, 9 times" in findings("stuck.csv", stuck)["stuck"]
+        assert "clipped" in findings("clipped.csv", [min(v, 0.3 * SIGMA_DPS) for v in noise])
+        lsb = 500 / 65536
+        assert "wrapped" in findings("wrapped.csv", [round(v / lsb) % 65536 * lsb for v in noise])
+        assert "interleaved" in findings("interleaved.csv", [v + 20 * SIGMA_DPS * (i % 2) for i, v in enumerate(noise)])
+        assert "unit" in findings("unit.csv", [v + 500 for v in noise])
+        angle = self.file("angle.csv", ["time_s,angle", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x / RATE_HZ))])
+        _, said = typed(angle, "--column", "rate_x_radps=angle:deg")
+        assert "undo each other" in said, said
+        densities, _ = typed(angle, *shlex.split(re.search(r"--column \S+/sample", said).group(0)))
+        assert abs(densities["x"] / N - 1) < 0.05, densities
+
+    def check_files_of_others(self):
+        if not CASES.is_dir():
+            return
+        for path, axes, wanted, hz in (("bias_column_suggested/log.csv", "x", 0.212, None), ("merged_rows_gyro_between_accel/merged.csv.gz", "x", 0.344, None),
+                                       ("bursts_hilti/hilti.csv", "x", 0.688, None), ("counter_as_seconds/g370.csv", "x", 0.342, 200),
+                                       ("increments_as_angle/vehicle_imu_0.csv.gz", "x", 0.344, None)):
+            readings, said = by_hand(copy_of(CASES / path, self.folder), hz)
+            assert any(abs(r[axes] / wanted - 1) < 0.05 for r in readings), f"{path}: {readings}, expected {wanted}: {said}"
+
+
+def copy_of(path, folder):
+    target = folder / path.name
+    target.write_bytes(path.read_bytes())
+    return target
+
+
+if __name__ == "__main__":
+    sys.exit(main_of(Checks))

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/rate_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "drivers/capture/column_names.h"
+#include "filters/series/series_view.h"
+
+namespace ifog::tools {
+namespace {
+
+bool is_rate(const std::string& column) {
+  std::string axis;
+  return axis_of(column, "rate", axis);
+}
+
+// By row: whether any rate has a value there.
+std::vector<bool> rows_with_rate(const LongTable& table) {
+  std::vector<bool> with(table.size());
+  for (const LongColumn& column : table.columns) {
+    if (!is_rate(column.name)) continue;
+    for_each_piece(column.values, 0, table.size(), [&](std::span<const double> values, std::size_t first) {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (!std::isnan(values[i])) with[first + i] = true;
+    });
+  }
+  return with;
+}
+
+// Half of the rows with a rate stand beside none with one.
+bool stand_apart(const std::vector<bool>& with) {
+  std::size_t rows = 0, apart = 0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    if (!with[i]) continue;
+    ++rows;
+    apart += (i == 0 || !with[i - 1]) && (i + 1 == with.size() || !with[i + 1]) ? 1 : 0;
+  }
+  return rows > 2 && rows < with.size() && 2 * apart >= rows;
+}
+
+// latest: a row without a value takes the last one since the row kept before.
+LongSeries kept_of(const SeriesView& values, const std::vector<bool>& with, bool latest) {
+  LongSeries kept;
+  double last = kMissing;
+  for_each_piece(values, 0, values.size(), [&](std::span<const double> piece, std::size_t first) {
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      if (!latest || !std::isnan(piece[i])) last = piece[i];
+      if (!with[first + i]) continue;
+      kept.add(last);
+      last = kMissing;
+    }
+  });
+  return kept;
+}
+
+}  // namespace
+
+void keep_rate_rows(LongTable& table, const std::string& name) {
+  if (std::none_of(table.columns.begin(), table.columns.end(),
+                   [](const LongColumn& column) { return is_rate(column.name); }))
+    return;
+  const std::vector<bool> with = rows_with_rate(table);
+  if (!stand_apart(with)) return;
+  for (LongColumn& column : table.columns)
+    column.values = kept_of(column.values, with, !is_rate(column.name));
+  const std::size_t before = table.size();
+  table.time_s = kept_of(table.time_s, with, false);
+  // Lines are known by the row as it came.
+  table.header_line = 0;
+  table.notices.push_back(name + ": " + std::to_string(table.size()) + " of " + std::to_string(before) +
+                          " rows have a rate, and only they are read: the others are of a faster sensor");
+}
+
+}  // namespace ifog::tools
