@@ -3,6 +3,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 
 std::string describe(const Event& event) {
@@ -44,6 +46,11 @@ std::string describe(const Event& event) {
           "the device did not count on for a while, or whole rounds of its counter were lost: times of day "
           "follow from number {} on, intervals and angles do not",
           event.sequence);
+    case EventKind::beyond_stated:
+      return fmt::format(
+          "{} is {:g}, beyond the {:g} that the file states: kept, counted and flagged; only range_radps, "
+          "minimum and maximum of the configuration make a value invalid",
+          printable(event.name.data()), event.a, event.b);
     case EventKind::publish_failed:
       return fmt::format("LCM did not take number {}", event.sequence);
   }

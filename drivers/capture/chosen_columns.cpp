@@ -10,7 +10,7 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/turn.h"
+#include "drivers/units/turn.h"
 
 namespace ifog {
 namespace {

@@ -307,24 +307,6 @@ TEST(Incrementer, WhatWasReadLateIsNotMissing) {
   EXPECT_EQ(last.sequence, 4999U);
 }
 
-TEST(Incrementer, OfWhatWasReadLateTheLostAreCountedRoundsIncluded) {
-  Incrementer incrementer(counting_rate_sensor());
-  const Increment last = read_late(incrementer, 1500, true);
-  EXPECT_EQ(incrementer.counts().missing, 1500U);
-  EXPECT_EQ(last.sequence, 4999U);
-}
-
-TEST(Incrementer, ADeviceWithoutACounterReadLateHasNoGapUnlessTimeIsShort) {
-  SensorFacts facts = counting_rate_sensor();
-  facts.sequence_modulus = 0;
-  Incrementer incrementer(facts);
-  read_late(incrementer, 0, false);
-  EXPECT_EQ(incrementer.counts().missing, 0U);
-  Incrementer short_of_some(facts);
-  read_late(short_of_some, 1500, false);
-  EXPECT_NEAR(static_cast<double>(short_of_some.counts().missing), 1500.0, 5.0);
-}
-
 TEST(Incrementer, AStepOfTheWallClockMovesTheLabelAloneAndIsFlagged) {
   for (const std::int64_t step_ns : {-5'000'000'000, 3'600'000'000'000}) {
     for (const bool counts : {true, false}) {

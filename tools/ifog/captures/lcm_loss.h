@@ -7,12 +7,29 @@
 #include <ifog/rate_t.hpp>
 #include <optional>
 
+#include "drivers/timeline/two_devices.h"
+
 namespace ifog::tools {
 
 class LcmLoss {
  public:
-  // The messages of one sensor, in order. Returns how many are missing before this one.
+  // The messages of one sensor. Returns how many are missing before this one. One that comes out of order was
+  // not lost; while two publishers send on the channel nothing is known to be.
   std::int64_t take(const rate_t& message) {
+    publishers_.saw(static_cast<std::uint32_t>(message.seq), std::uint64_t{1} << 32U,
+                    comes_late(message.seq));
+    if (publishers_.found()) {
+      last_.reset();
+      return 0;
+    }
+    if (comes_late(message.seq)) {
+      const std::uint64_t place = std::uint64_t{1} << static_cast<unsigned>(last_->seq - message.seq);
+      lost_ -= (came_ & place) == 0 && lost_ > 0 ? 1 : 0;
+      came_ |= place;
+      return 0;
+    }
+    const std::int64_t by = last_ ? message.seq - last_->seq : 1;
+    came_ = (by > 0 && by < 64 ? came_ << static_cast<unsigned>(by) : 0) | 1U;
     // A number passed over without the daemon's own gap flag or a merge was lost on the way.
     const bool told = (message.flags & rate_t::FLAG_GAP) != 0 || (message.flags & rate_t::FLAG_MERGED) != 0;
     std::int64_t lost = 0;
@@ -33,6 +50,8 @@ class LcmLoss {
   // How often the number was one that no sample of this sensor can have had by then: nothing is known to be
   // lost.
   [[nodiscard]] std::int64_t began_anew() const { return began_anew_; }
+  // Two sequences run on this channel: of two daemons, or of a daemon and a log that is played.
+  [[nodiscard]] bool two_publishers() const { return publishers_.found(); }
 
  private:
   struct Place {
@@ -42,6 +61,9 @@ class LcmLoss {
   // Steps are a mean and times of samples are fitted ones.
   static constexpr double kTimes = 2.0, kSlack_s = 1.0;
 
+  [[nodiscard]] bool comes_late(std::int64_t seq) const {
+    return last_ && seq < last_->seq && seq >= 0 && last_->seq - seq < 64;
+  }
   // Samples that fit in between at the sensor's rate, by the clock that tells of more; both go back where one
   // of them is set.
   [[nodiscard]] double most_since_last(const rate_t& message) const {
@@ -57,6 +79,8 @@ class LcmLoss {
   }
 
   std::optional<Place> last_;
+  std::uint64_t came_ = 0;  // bit n: the message n before the last
+  TwoDevices publishers_;
   std::int64_t lost_ = 0, began_anew_ = 0, steps_ = 0;
   double steps_s_ = 0.0;
 };
