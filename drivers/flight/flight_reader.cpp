@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/system/nanoseconds.h"
+
 namespace ifog {
 namespace {
 
@@ -156,14 +158,15 @@ void FlightReader::note_arrival() {
 void FlightReader::end_run() {
   constexpr std::int64_t kClockIsSet_ns = 631'152'000'000'000'000;  // 1990: no such computer is older
   if (run_began_ns_ == 0) return;
-  const std::int64_t began_ns = run_began_ns_ + wall_set_ns_, pause_ns = began_ns - last_run_ended_ns_;
+  const std::int64_t began_ns = ns_after(run_began_ns_, wall_set_ns_);
+  const std::int64_t pause_ns = ns_between(last_run_ended_ns_, began_ns);
   const bool alike = (last_run_ended_ns_ < kClockIsSet_ns) == (began_ns < kClockIsSet_ns);
   if (last_run_ended_ns_ > 0 && alike && pause_ns > 0) {
     const double pause_s = static_cast<double>(pause_ns) * 1e-9;
     counts_.between_runs_s += pause_s;
     counts_.longest_between_runs_s = std::max(counts_.longest_between_runs_s, pause_s);
   }
-  last_run_ended_ns_ = arrived_ns_ + wall_set_ns_;
+  last_run_ended_ns_ = ns_after(arrived_ns_, wall_set_ns_);
   run_began_ns_ = wall_set_ns_ = 0;
 }
 

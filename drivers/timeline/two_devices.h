@@ -13,6 +13,7 @@ namespace ifog {
 class TwoDevices {
  public:
   [[nodiscard]] bool found() const noexcept { return found_; }
+  [[nodiscard]] bool suspected() const noexcept { return crossed_ > 0; }
   // The next frame's count. own: it is of the device that is followed though it does not continue its count.
   void saw(std::uint32_t sequence, std::uint64_t modulus, bool own) noexcept {
     const auto continues = [&](std::uint32_t one) { return (one + std::uint64_t{1}) % modulus == sequence; };
