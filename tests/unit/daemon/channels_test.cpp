@@ -337,34 +337,6 @@ TEST(ChannelSources, AnLcmChannelIsTheOneOfThatName) {
   }
 }
 
-// Each value is new and all seem to be an hour old: their computer's clock is behind, and they are not.
-TEST(ChannelSources, AValueFromAComputerWhoseClockIsBehindIsFresh) {
-  if (const std::string why = enter_private_network(); !why.empty())
-    GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
-  ChannelConfig one = config(ChannelConfig::Source::lcm);
-  one.lcm_channel = "HULL";
-  const auto hull = std::make_shared<ChannelTable>(1);
-  ChannelSources sources({{one, hull, 0}}, kUrl);
-  sources.start();
-  lcm_t* const lcm = lcm_create(kUrl);
-  ASSERT_NE(lcm, nullptr);
-  for (int n = 0; n < 5; ++n) {
-    channel_t message{};
-    message.utime = realtime_ns() / 1000 - 3'600'000'000;
-    message.name = "coil_degC";
-    message.value = 20.0 + n;
-    const std::vector<std::uint8_t> bytes = encoded(message);
-    lcm_publish(lcm, "HULL", bytes.data(), static_cast<unsigned>(bytes.size()));
-    EXPECT_EQ(await(*hull, 20.0 + n).value, 20.0 + n);
-  }
-  EXPECT_LT(look(*hull).age_s, 10.0F);
-  EXPECT_EQ(describe(one, hull->fault(0)),
-            "channel 'coil_degC': LCM channel 'HULL': the clock that dates it is 3600 s behind this "
-            "computer's: ages "
-            "are counted from the newest that has come");
-  lcm_destroy(lcm);
-}
-
 // By the sender's own dates, unless its clock was set back from a time that is still to come.
 TEST(ChannelSources, ALateMessageNeverReplacesANewerOne) {
   if (const std::string why = enter_private_network(); !why.empty())

@@ -19,7 +19,6 @@
 #include <fstream>
 #include <ifog/channel_t.hpp>
 #include <ifog/status_t.hpp>
-#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -202,16 +201,6 @@ TEST_F(Ifogd, WithoutItsOnlyDeviceItIsReadyAndWaits) {
       << all_said();
   EXPECT_EQ(lines_with("nose: trying again to open /dev/no-gyro at "), 1) << all_said();
   EXPECT_EQ(lines_with("stopping on SIGTERM"), 1) << all_said();
-}
-
-// Serial lines of ARM boards have other names than those of a PC.
-TEST(Unit, LetsTheDaemonToTheSerialLinesOfArmBoards) {
-  std::ifstream unit(IFOG_SOURCE_DIR "/systemd/ifogd.service.in");
-  std::set<std::string> allowed;
-  for (std::string line; std::getline(unit, line);)
-    if (line.starts_with("DeviceAllow=")) allowed.insert(line);
-  for (const char* name : {"ttyS", "ttyAMA", "ttymxc", "ttyTHS", "ttyPS", "ttySC"})
-    EXPECT_EQ(allowed.count(std::string("DeviceAllow=char-") + name + " rw"), 1U) << name;
 }
 
 TEST_F(Ifogd, AFileIsReadToItsEnd) {
