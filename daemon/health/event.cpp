@@ -43,7 +43,8 @@ std::string describe(const Event& event) {
           event.sequence);
     case EventKind::label_moved:
       return fmt::format(
-          "the device did not count on for a while, or whole rounds of its counter were lost: times of day "
+          "the device stood still for a while, or its deliveries take longer or shorter than before: times "
+          "of day "
           "follow from number {} on, intervals and angles do not",
           event.sequence);
     case EventKind::beyond_stated:

@@ -20,7 +20,7 @@ enum class EventKind : std::uint8_t {
   divergence,        // the estimator started again
   clock_step,        // the wall clock was set; a: how far it is now from where it was at start-up, s
   sensor_clock_set,  // the device's own clock was set while it measured on
-  label_moved,       // the device stood still, or whole rounds of its counter are lost: times of day follow
+  label_moved,       // the device stood still, or deliveries take another time: times of day follow
   beyond_stated,     // a: the first value beyond the range that the format's description states, b: its limit
   publish_failed,
 };

@@ -307,6 +307,23 @@ TEST(Incrementer, WhatWasReadLateIsNotMissing) {
   EXPECT_EQ(last.sequence, 4999U);
 }
 
+// NTP slews it by up to a twelfth of the time: the labels follow, and nobody set it.
+TEST(Incrementer, ASlewedWallClockIsFollowedAndNotFlagged) {
+  Incrementer incrementer(counting_rate_sensor());
+  Increment increment;
+  for (std::uint64_t n = 0; n < 10'000; ++n) {
+    Reading reading = sample(n, 0.1);
+    reading.came_ns = reading.arrival_ns;
+    reading.wall_shift_ns = static_cast<std::int64_t>(n) * 83'333;
+    ASSERT_TRUE(incrementer.next(reading, increment));
+    ASSERT_EQ(increment.flags, 0U) << n;
+    ASSERT_NEAR(increment.dt_s, 1e-3, 1e-12);
+    ASSERT_NEAR(static_cast<double>(increment.utime_ns - reading.arrival_ns - reading.wall_shift_ns), 0.0,
+                1e5);
+  }
+  EXPECT_EQ(incrementer.counts().clock_steps, 0U);
+}
+
 TEST(Incrementer, AStepOfTheWallClockMovesTheLabelAloneAndIsFlagged) {
   for (const std::int64_t step_ns : {-5'000'000'000, 3'600'000'000'000}) {
     for (const bool counts : {true, false}) {
