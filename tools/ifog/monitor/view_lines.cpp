@@ -89,7 +89,7 @@ std::string head_line(std::string_view name, const SensorView& sensor) {
   std::string out = printable(name);
   // A status comes each second: a daemon that was killed says nothing of its end.
   if (sensor.silent_s() > kStale_s)
-    out += text("  no message for %.0f s: is ifogd running?", sensor.silent_s());
+    out += text("  no message for %.0f s: has ifogd ended?", sensor.silent_s());
   else if (sensor.status())
     out += std::string("  ") + state_name(sensor.status()->state);
   if (sensor.judged()) out += "  " + in_hertz(sensor.message_rate_hz());
