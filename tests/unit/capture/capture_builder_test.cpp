@@ -44,8 +44,8 @@ TEST(CaptureBuilder, OverAGapInWhichAnAngleMayHaveGoneRoundNoRateIsMadeUp) {
   }
 }
 
-// Ten seconds of 1 °/s are lost, some rollovers of the counter: no row turns faster or slower, and one that may
-// have gone half way round has no rate.
+// Ten seconds of 1 °/s are lost, some rollovers of the counter: no row turns faster or slower, and one that
+// may have gone half way round has no rate.
 TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {
   constexpr double kRate = std::numbers::pi / 180.0;
   for (const double wrap : {0.0, 8.0 * std::numbers::pi / 180.0}) {
